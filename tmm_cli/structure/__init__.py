@@ -1,0 +1,1 @@
+"""Who is joined to whom: mobility, Assur groups, names of links."""

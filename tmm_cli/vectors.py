@@ -1,0 +1,36 @@
+"""Planar vectors as complex numbers: x + iy, metres; turning is multiplying."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
+Vector = NDArray[Any]  # complex arrays, likewise
+
+
+def dot(a: Any, b: Any) -> Any:
+    """Scalar product a.b."""
+    return a.real * b.real + a.imag * b.imag
+
+
+def cross(a: Any, b: Any) -> Any:
+    """z component of a x b: positive when b lies to the left of a."""
+    return a.real * b.imag - a.imag * b.real
+
+
+def along(a: Any, amount: Any) -> Any:
+    """The vector a scaled by a real amount (no complex product, so no spurious rounding)."""
+    return a * amount
+
+
+def unit(angle: Any) -> Any:
+    """e^(i angle)."""
+    return np.cos(angle) + 1j * np.sin(angle)
+
+
+def left(a: Any) -> Any:
+    """a turned through +90 degrees."""
+    return 1j * a
