@@ -1,0 +1,77 @@
+"""PRP: both links slide along guides of known links and are hinged to one another at C.
+
+C lies where two lines meet: every result is divided by det = u1 x u2, the sine of the angle between the guides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
+from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
+from tmm_cli.vectors import Vector, cross, unit
+
+
+@dataclass(frozen=True)
+class PRP(Dyad):
+    """Two lines: one assembly only."""
+
+    type = "PRP"
+    assemblies = 1
+
+    @property
+    def _ends(self) -> tuple[Run, Run, Turn]:
+        a, b = self.ends
+        assert isinstance(a, Run) and isinstance(b, Run) and isinstance(self.inner, Turn)
+        return a, b, self.inner
+
+    def place(self, poses: Mapping[str, Pose]) -> Placement:
+        a, b, c = self._ends
+        (P, u), (Q, v) = line(a, poses), line(b, poses)
+        za, zb = poses[a.known].z * unit(a.turned), poses[b.known].z * unit(b.turned)
+        C, det = meet(P + (c.there - a.here) * za, u, Q + (c.here - b.here) * zb, v)
+        gap, slack = parallel(det)
+        return Placement(Pose(C - c.there * za, za), Pose(C - c.here * zb, zb), det, np.abs(det), gap, slack)
+
+    def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
+        """C and the directions of both guides."""
+        a, b, c = self._ends
+        return at.a.at(c.there), line(a, poses)[1], line(b, poses)[1]
+
+    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+        a, b, c = self._ends
+        C, u, v = self._frame(at, poses)
+        ra, rb = rates[a.known], rates[b.known]
+        vC = slide_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
+        return (
+            Rate(vC - 1j * ra.w * (c.there * at.a.z), ra.w),
+            Rate(vC - 1j * rb.w * (c.here * at.b.z), rb.w),
+        )
+
+    def accelerations(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
+    ) -> tuple[Accel, Accel]:
+        a, b, c = self._ends
+        C, u, v = self._frame(at, poses)
+        vC = rates[self.group.links[0]].at(c.there * at.a.z)
+        by_a = slide_acceleration(C, vC, (poses[a.known].x, u, rates[a.known], accels[a.known]))
+        by_b = slide_acceleration(C, vC, (poses[b.known].x, v, rates[b.known], accels[b.known]))
+        aC = slide_rate(by_a, u, by_b, v, at.det)
+        (wa, ea), (wb, eb) = ((rates[k].w, accels[k].e) for k in (a.known, b.known))
+        return (
+            Accel(aC - (1j * ea - wa * wa) * (c.there * at.a.z), ea),
+            Accel(aC - (1j * eb - wb * wb) * (c.here * at.b.z), eb),
+        )
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+        """The polygon gives both guides' forces, moments of each link about C their couples."""
+        a, b, c = self._ends
+        _, u, v = self._frame(at, poses)
+        by_a, by_b = split(on_a.force + on_b.force, u, v, at.det)
+        arm_a, arm_b = c.there * at.a.z, c.here * at.b.z
+        couple_a = -on_a.about(arm_a) - cross(a.runner_arm(at.a, poses) - arm_a, by_a)
+        couple_b = -on_b.about(arm_b) - cross(b.runner_arm(at.b, poses) - arm_b, by_b)
+        return Holding(Held(by_a, couple_a), Held(by_b, couple_b), Held(-(by_b + on_b.force)))

@@ -1,0 +1,86 @@
+"""RPP: link a hangs on A; b slides along a guide of a known link and along a.
+
+Both angles follow from the known link; a's place from A; b lies where the two guides meet: every result is divided by
+det, the sine of the angle between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
+from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
+from tmm_cli.vectors import Vector, cross, unit
+
+
+@dataclass(frozen=True)
+class RPP(Dyad):
+    """Two lines: one assembly only."""
+
+    type = "RPP"
+    assemblies = 1
+
+    @property
+    def _ends(self) -> tuple[Turn, Run, Run]:
+        a, b = self.ends
+        assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Run)
+        return a, b, self.inner
+
+    def place(self, poses: Mapping[str, Pose]) -> Placement:
+        a, b, run = self._ends
+        Q, v = line(b, poses)
+        zb = poses[b.known].z * unit(b.turned)
+        za = zb * unit(-run.turned)
+        A = poses[a.known].at(a.there)
+        pose_a = Pose(A - a.here * za, za)
+        u = za * unit(run.direction)
+        # b's origin runs along both guides
+        origin, det = meet(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
+        gap, slack = parallel(det)
+        return Placement(pose_a, Pose(origin, zb), det, np.abs(det), gap, slack)
+
+    def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:
+        """Directions of the guides on a and on the known link."""
+        _, b, run = self._ends
+        return at.a.z * unit(run.direction), line(b, poses)[1]
+
+    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+        a, b, _ = self._ends
+        u, v = self._frame(at, poses)
+        w = rates[b.known].w
+        vA = rates[a.known].at(a.there * poses[a.known].z)
+        rate_a = Rate(vA - 1j * w * (a.here * at.a.z), w)
+        by_a = rate_a.at(at.b.x - at.a.x)
+        by_g = rates[b.known].at(at.b.x - poses[b.known].x)
+        return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
+
+    def accelerations(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
+    ) -> tuple[Accel, Accel]:
+        a, b, _ = self._ends
+        u, v = self._frame(at, poses)
+        w, e = rates[b.known].w, accels[b.known].e
+        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
+        accel_a = Accel(aA - (1j * e - w * w) * (a.here * at.a.z), e)
+        rate_a, rate_b = (rates[link] for link in self.group.links)
+        by_a = slide_acceleration(at.b.x, rate_b.v, (at.a.x, u, rate_a, accel_a))
+        by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
+        return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+        """b's polygon gives both guides' forces, a's polygon the hinge, moments of a about A and then of b the couples."""
+        a, b, run = self._ends
+        u, v = self._frame(at, poses)
+        inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link
+        RA = inner - on_a.force
+        # a carries the opposite of `inner` and of its couple, both at the running point
+        arm_a = a.here * at.a.z
+        on_own = run.there * at.a.z if not run.runs_here else at.b.at(run.here) - at.a.x
+        couple = on_a.about(arm_a) - cross(on_own - arm_a, inner)
+        arm = run.runner_arm(at.b, {run.known: at.a})
+        moment = on_b.about(arm) + couple
+        held = b.runner_arm(at.b, poses) - arm
+        return Holding(Held(RA), Held(guide, -moment - cross(held, guide)), Held(inner, couple))

@@ -1,0 +1,120 @@
+"""RPR: link a hangs on A, link b on B, and they slide along one another.
+
+Both turn together. With u along the guide and B - A = (x + i h) u, h is fixed and x is the length of the slide:
+every result is divided by det = x. It is lost when the stone comes over the pivot of its slotted link.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import (
+    ROUNDINGS,
+    Accel,
+    Dyad,
+    Held,
+    Holding,
+    Placement,
+    Pose,
+    Rate,
+    Run,
+    Turn,
+    Wrench,
+    epsilon,
+)
+from tmm_cli.vectors import Real, Vector, cross, dot, unit
+
+
+@dataclass(frozen=True)
+class RPR(Dyad):
+    """A right triangle on AB: the sign tells which way along the guide b lies from a."""
+
+    type = "RPR"
+
+    @property
+    def _ends(self) -> tuple[Turn, Turn, Run]:
+        a, b = self.ends
+        assert isinstance(a, Turn) and isinstance(b, Turn) and isinstance(self.inner, Run)
+        return a, b, self.inner
+
+    def _offset(self) -> Real:
+        """h: how far B lies to the left of the line through A along the guide, m."""
+        a, b, run = self._ends
+        turned = unit(run.turned)
+        # In a's axes, B - A = (there - a.here) + s e^(i direction) - (run.here - b.here) e^(i turned).
+        fixed = (run.there - a.here) - (run.here - b.here) * turned
+        offset: Real = cross(unit(run.direction), fixed)
+        return offset
+
+    def place(self, poses: Mapping[str, Pose]) -> Placement:
+        a, b, run = self._ends
+        A, B = poses[a.known].at(a.there), poses[b.known].at(b.there)
+        base = B - A
+        d, h = np.abs(base), self._offset()
+        x = self.sign * np.sqrt(np.maximum((d - h) * (d + h), 0))
+        full = x + 1j * h
+        # base / (x + i h), and |x + i h| = d
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = base * np.conj(full) / (d * d)
+        za = u * np.conj(unit(run.direction))
+        zb = za * unit(run.turned)
+        slack = epsilon(d) * (ROUNDINGS * np.maximum(d, np.abs(h)) + 2 * (np.abs(A) + np.abs(B)))
+        size = np.maximum(d, self.size)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            margin = np.abs(x) / size
+        return Placement(Pose(A - a.here * za, za), Pose(B - b.here * zb, zb), x, margin, np.abs(h) - d, slack)
+
+    def _frame(self, at: Placement) -> tuple[Vector, Real]:
+        _, _, run = self._ends
+        return at.a.z * unit(run.direction), self._offset()
+
+    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+        a, b, _ = self._ends
+        u, _ = self._frame(at)
+        vA = rates[a.known].at(a.there * poses[a.known].z)
+        vB = rates[b.known].at(b.there * poses[b.known].z)
+        w = cross(u, vB - vA) / at.det
+        return Rate(vA - 1j * w * (a.here * at.a.z), w), Rate(vB - 1j * w * (b.here * at.b.z), w)
+
+    def accelerations(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
+    ) -> tuple[Accel, Accel]:
+        a, b, _ = self._ends
+        u, h = self._frame(at)
+        armA, armB = a.there * poses[a.known].z, b.there * poses[b.known].z
+        w = rates[self.group.links[0]].w
+        sliding = dot(u, rates[b.known].at(armB) - rates[a.known].at(armA)) + w * h
+        aA = accels[a.known].at(armA, rates[a.known].w)
+        aB = accels[b.known].at(armB, rates[b.known].w)
+        # aB - aA = (i e - w^2) (x + i h) u + 2 i w sliding u + (sliding)' u
+        e = (cross(u, aB - aA) + w * w * h - 2 * w * sliding) / at.det
+        return (
+            Accel(aA - (1j * e - w * w) * (a.here * at.a.z), e),
+            Accel(aB - (1j * e - w * w) * (b.here * at.b.z), e),
+        )
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+        """b along the guide, moments of the whole group about A, then the polygons of each link."""
+        a, b, run = self._ends
+        u, h = self._frame(at)
+        A = at.a.at(a.here)
+        push = -dot(on_b.force, u)
+        turn = (-(on_a.about(a.here * at.a.z) + on_b.about(A - at.b.x)) + h * push) / at.det
+        tau, normal = 1j * u * turn, u * push
+        RB = tau + normal
+        guide = -1j * u * dot(RB + on_b.force, 1j * u)  # on b from a
+        RA = guide - on_a.force
+        # on b; from moments of the runner, whose arm is fixed and often nothing, so that no large terms cancel
+        if run.runs_here:
+            couple = -on_b.about(b.here * at.b.z) - cross((run.here - b.here) * at.b.z, guide)
+        else:
+            couple = on_a.about(a.here * at.a.z) - cross((run.there - a.here) * at.a.z, guide)
+        push_a = u * dot(RA, u)
+        return Holding(
+            Held(RA, tangential=RA - push_a, normal=push_a),
+            Held(RB, tangential=tau, normal=normal),
+            Held(guide, couple),
+        )

@@ -1,0 +1,110 @@
+"""RRP: link a hangs on A and is hinged to b at C; b slides along a guide of a known link.
+
+With ra = C - A and u along the guide every result is divided by det = u . ra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import (
+    ROUNDINGS,
+    Accel,
+    Dyad,
+    Held,
+    Holding,
+    Placement,
+    Pose,
+    Rate,
+    Run,
+    Turn,
+    Wrench,
+    epsilon,
+    line,
+)
+from tmm_cli.vectors import Vector, cross, dot, unit
+
+
+@dataclass(frozen=True)
+class RRP(Dyad):
+    """A circle and a line: the sign tells on which side of the foot of A on the guide the hinge C lies."""
+
+    type = "RRP"
+
+    @property
+    def _ends(self) -> tuple[Turn, Run, Turn]:
+        a, b = self.ends
+        assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Turn)
+        return a, b, self.inner
+
+    def place(self, poses: Mapping[str, Pose]) -> Placement:
+        a, b, c = self._ends
+        A = poses[a.known].at(a.there)
+        Q, u = line(b, poses)
+        zb = poses[b.known].z * unit(b.turned)
+        arm = c.there - a.here
+        la = np.abs(arm)
+        start = Q + (c.here - b.here) * zb  # C runs on the parallel line through here
+        off = A - start
+        y, run = cross(u, off), dot(u, off)
+        half = self.sign * np.sqrt(np.maximum((la - y) * (la + y), 0))
+        ra = u * (half - 1j * y)
+        za = ra * (np.conj(arm) / (la * la))
+        C = start + u * (run + half)
+        gap = np.abs(y) - la
+        slack = epsilon(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
+        return Placement(
+            Pose(A - a.here * za, za), Pose(C - c.here * zb, zb), half, np.abs(half) / la, gap, slack
+        )
+
+    def _arms(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
+        """ra, u, and C from the origin of the guide's link."""
+        a, b, c = self._ends
+        _, u = line(b, poses)
+        return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
+
+    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+        a, b, c = self._ends
+        ra, u, onto = self._arms(at, poses)
+        vA = rates[a.known].at(a.there * poses[a.known].z)
+        carried = rates[b.known].at(onto)
+        w = carried - vA
+        wa = cross(u, w) / at.det
+        vC = carried - u * (dot(w, ra) / at.det)
+        wb = rates[b.known].w
+        return Rate(vA - 1j * wa * (a.here * at.a.z), wa), Rate(vC - 1j * wb * (c.here * at.b.z), wb)
+
+    def accelerations(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
+    ) -> tuple[Accel, Accel]:
+        a, b, c = self._ends
+        ra, u, onto = self._arms(at, poses)
+        wa, wb = rates[self.group.links[0]].w, rates[b.known].w
+        vC = rates[self.group.links[1]].at(c.here * at.b.z)
+        sliding = dot(u, vC - rates[b.known].at(onto))
+        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
+        carried = accels[b.known].at(onto, wb) + 2j * wb * sliding * u
+        w = carried - (aA - wa * wa * ra)
+        ea = cross(u, w) / at.det
+        aC = carried - u * (dot(w, ra) / at.det)
+        eb = accels[b.known].e
+        return (
+            Accel(aA - (1j * ea - wa * wa) * (a.here * at.a.z), ea),
+            Accel(aC - (1j * eb - wb * wb) * (c.here * at.b.z), eb),
+        )
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+        """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
+        _, b, c = self._ends
+        ra, u, _ = self._arms(at, poses)
+        tau = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
+        rest = on_a.force + on_b.force + tau
+        normal = ra * (-dot(rest, u) / at.det)
+        guide = 1j * u * (-dot(rest + normal, 1j * u))
+        inner = -(guide + on_b.force)
+        arm_c = c.here * at.b.z
+        couple = -on_b.about(arm_c) - cross(b.runner_arm(at.b, poses) - arm_c, guide)
+        return Holding(Held(tau + normal, tangential=tau, normal=normal), Held(guide, couple), Held(inner))

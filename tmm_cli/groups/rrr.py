@@ -1,0 +1,119 @@
+"""RRR: links a and b hinged at C; a hangs on A, b on B, and the places of A and B are known.
+
+With ra = C - A, rb = C - B every result is divided by det = ra x rb = (distance AB) (half-chord).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import (
+    ROUNDINGS,
+    Accel,
+    Dyad,
+    Held,
+    Holding,
+    Placement,
+    Pose,
+    Rate,
+    Turn,
+    Wrench,
+    epsilon,
+)
+from tmm_cli.vectors import Real, Vector, cross, dot
+
+
+@dataclass(frozen=True)
+class RRR(Dyad):
+    """Two circles: the half-chord from the factored (Heron) product, W. Kahan, Miscalculating area and angles of a
+    needle-like triangle, 2014; the side of AB on which C lies is the sign of the group."""
+
+    type = "RRR"
+
+    @property
+    def _ends(self) -> tuple[Turn, Turn, Turn]:
+        a, b = self.ends
+        assert isinstance(a, Turn) and isinstance(b, Turn) and isinstance(self.inner, Turn)
+        return a, b, self.inner
+
+    def _arms(self, at: Placement) -> tuple[Vector, Vector]:
+        a, b, c = self._ends
+        return (c.there - a.here) * at.a.z, (c.here - b.here) * at.b.z
+
+    def place(self, poses: Mapping[str, Pose]) -> Placement:
+        a, b, c = self._ends
+        A, B = poses[a.known].at(a.there), poses[b.known].at(b.there)
+        arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
+        la, lb = np.abs(arm_a), np.abs(arm_b)
+        base = B - A
+        d = np.abs(base)
+        if np.ndim(la) == np.ndim(lb) == 0:
+            flip = bool(lb < la)
+        else:
+            flip = np.asarray(lb < la)  # type: ignore[assignment]
+        r, R = np.minimum(la, lb), np.maximum(la, lb)
+        reach, spare = _slacks(d, r, R)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            m = np.maximum(reach, 0) * (d + (R - r)) / (2 * d)
+            p = np.maximum(spare, 0) * (d + (R + r)) / (2 * d)
+            h = self.sign * np.sqrt(m * p)
+            x = (p - m) / 2
+            # Seen from the smaller circle's centre; from B the base runs the other way and so does the side.
+            small = np.where(flip, x - 1j * h, x + 1j * h) * np.where(flip, -base, base) / d
+        ra = np.where(flip, small + base, small)
+        rb = np.where(flip, small, small - base)
+        za, zb = ra * (np.conj(arm_a) / (la * la)), rb * (np.conj(arm_b) / (lb * lb))
+        gap = -np.minimum(reach, spare)
+        slack = epsilon(d) * (ROUNDINGS * (la + lb) + 2 * (np.abs(A) + np.abs(B)))
+        return Placement(
+            Pose(A - a.here * za, za), Pose(B - b.here * zb, zb), d * h, np.abs(d * h) / (la * lb), gap, slack
+        )
+
+    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+        a, b, _ = self._ends
+        ra, rb = self._arms(at)
+        vA = rates[a.known].at(a.there * poses[a.known].z)
+        vB = rates[b.known].at(b.there * poses[b.known].z)
+        w = vB - vA
+        wa, wb = dot(w, rb) / at.det, dot(w, ra) / at.det
+        return Rate(vA - 1j * wa * (a.here * at.a.z), wa), Rate(vB - 1j * wb * (b.here * at.b.z), wb)
+
+    def accelerations(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
+    ) -> tuple[Accel, Accel]:
+        a, b, _ = self._ends
+        la, lb = self.group.links
+        ra, rb = self._arms(at)
+        wa, wb = rates[la].w, rates[lb].w
+        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
+        aB = accels[b.known].at(b.there * poses[b.known].z, rates[b.known].w)
+        w = (aB - wb * wb * rb) - (aA - wa * wa * ra)
+        ea, eb = dot(w, rb) / at.det, dot(w, ra) / at.det
+        return (
+            Accel(aA - (1j * ea - wa * wa) * (a.here * at.a.z), ea),
+            Accel(aB - (1j * eb - wb * wb) * (b.here * at.b.z), eb),
+        )
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+        """Moments of each link about C give the tangential components, the polygon the normal ones."""
+        _, _, c = self._ends
+        ra, rb = self._arms(at)
+        tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
+        tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / dot(rb, rb))
+        rest = on_a.force + on_b.force + tau_a + tau_b
+        n_a, n_b = ra * (-cross(rest, rb) / at.det), rb * (cross(rest, ra) / at.det)
+        RA, RB = tau_a + n_a, tau_b + n_b
+        inner = -(RB + on_b.force)
+        return Holding(
+            Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b), Held(inner)
+        )
+
+
+def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:
+    """How far d is from the sum of the radii and from their difference, subtracting the nearest numbers first."""
+    with_base = 2 * r <= R
+    t = d - R
+    return np.where(with_base, r - t, (R + r) - d), np.where(with_base, r + t, d - (R - r))
