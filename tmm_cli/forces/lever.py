@@ -1,0 +1,66 @@
+"""Stage: the Zhukovsky lever. From velocities alone: it shares nothing with the force plan but the loads.
+
+The velocity plan turned through 90 degrees is a rigid lever on its pole; every force stands at the end of its point's
+velocity, a couple M on a link as a couple of forces; moments about the pole give what balances the driver. Taken per
+unit speed of the driver, so it exists at rest too. N. E. Zhukovsky 1909; I. I. Artobolevsky, ch. 16.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.forces.loads import Applied
+from tmm_cli.motion import Motion
+from tmm_cli.vectors import Real, Vector, dot
+
+
+@dataclass(frozen=True)
+class Item:
+    """A force or couple on the lever. arm: of the force about the pole (m per unit of the driver's motion), or the
+    ratio omega_link / omega_driver for a couple; moment = size * arm (N m, or N for a cylinder)."""
+
+    name: str
+    link: str
+    size: Real
+    arm: Real
+    moment: Real
+    end: Vector | None = None  # of its point's velocity on the plan, per unit of the driver's motion
+    force: Vector | None = None
+
+
+@dataclass(frozen=True)
+class Lever:
+    """Moments about the pole, what balances them, and how far the force plan's answer is from it.
+
+    balancing: N m for a crank, N for a cylinder. difference: relative to the largest balancing value of all positions.
+    """
+
+    items: tuple[Item, ...]
+    balancing: Real
+    difference: Real
+
+
+def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
+    """The lever at every position, compared with the force plan's balancing moment (or force)."""
+    items = []
+    for load in loads:
+        if load.has_force:
+            end = motion.point(load.link, load.at).first
+            size = np.abs(load.force)
+            moment = dot(load.force, end)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                arm = np.where(size > 0, moment / size, 0.0)
+            items.append(Item(load.name, load.link, size, arm, moment, end, load.force))
+        if load.has_moment:
+            ratio = motion.link(load.link).first
+            name = load.couple_name or load.name
+            items.append(Item(name, load.link, load.moment, ratio, load.moment * ratio))
+    total = np.zeros(np.shape(motion.q))
+    for item in items:
+        total = total + item.moment
+    balancing = -total
+    largest = np.nanmax(np.abs(np.where(motion.moving, plan, np.nan)), initial=0.0)
+    difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
+    return Lever(tuple(items), balancing, difference)

@@ -1,0 +1,98 @@
+"""All that acts on the links besides reactions: weights, inertia, the loads of the task."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.linkage import FRAME, Linkage, Load
+from tmm_cli.motion import Motion
+from tmm_cli.quality import Strokes, output_run
+from tmm_cli.vectors import Real, Vector
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position."""
+
+    name: str
+    kind: Literal["weight", "inertia", "load"]
+    link: str
+    at: complex
+    force: Vector
+    moment: Real
+    couple_name: str = ""
+
+    @property
+    def has_force(self) -> bool:
+        return bool(np.any(self.force != 0))
+
+    @property
+    def has_moment(self) -> bool:
+        return bool(np.any(self.moment != 0))
+
+
+def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
+    """Everything that acts on each moving link, in the order of the links. Massless links carry nothing."""
+    linkage = motion.linkage
+    still = np.zeros(np.shape(motion.q))
+    found = []
+    for name in linkage.moving:
+        link = linkage.links[name]
+        if np.any(link.mass != 0):
+            found.append(
+                Applied(f"G{name}", "weight", name, link.centre, link.mass * linkage.gravity + still, still)
+            )
+        if np.any(link.mass != 0) or np.any(link.inertia != 0):
+            inertia = -link.mass * motion.centre(name).a
+            moment = -link.inertia * motion.link(name).epsilon
+            found.append(Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}"))
+    found += [_given(load, motion, strokes) for load in linkage.loads]
+    order = {name: k for k, name in enumerate(linkage.links)}
+    return tuple(sorted(found, key=lambda a: order[a.link]))
+
+
+def _given(load: Load, motion: Motion, strokes: Strokes | None) -> Applied:
+    size = np.ones(np.shape(motion.q))
+    if load.table is not None:
+        size = load.table(_argument(load.table.against, motion, strokes))
+    if load.working_stroke_only and strokes is not None and strokes.strokes:
+        size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
+    turn = motion.poses[load.link].z if load.follows else 1.0
+    return Applied(load.name, "load", load.link, load.at, load.force * size * turn, load.moment * size, load.name)
+
+
+def _argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
+    """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
+    driver = motion.linkage.driver
+    if against == "crank angle":
+        return np.mod(motion.q, 2 * np.pi)
+    first = strokes.strokes[0] if strokes and strokes.strokes else None
+    if against == "crank turn":
+        start = first.start if first else motion.linkage.sketch.at
+        return np.mod(driver.sense * (motion.q - start) + 1e-12, 2 * np.pi) - 1e-12
+    assert strokes is not None and first is not None
+    run = output_run(motion, strokes.link)[0] - first.low
+    if strokes.kind == "swing":
+        run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
+    return run * np.sign(first.run)
+
+
+def resisted(linkage: Linkage, link: str | None) -> float:
+    """The sign of the output's run that the loads of the working stroke resist; 0 when they tell nothing."""
+    for slide in linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            along = np.exp(1j * slide.direction)
+            if slide.runner == FRAME:
+                along = -along
+            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
+                       if x.link == link and x.working_stroke_only)  # fmt: skip
+            return -float(np.sign(push))
+    turn = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
+    return -float(np.sign(turn))
+
+
+def _mean(load: Load) -> float:
+    return float(np.mean(load.table.values)) if load.table else 1.0
