@@ -1,0 +1,288 @@
+"""Stage: how far the driver can go, dead positions on its way, and the strokes of the output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import Dyad
+from tmm_cli.linkage import FRAME, Linkage, Request
+from tmm_cli.motion import Law, Motion, move
+from tmm_cli.vectors import Real
+
+SCAN = 1440  # places looked at in a first round; what lies between is refined
+DEAD = 1e-6  # a margin below this, refined, is a dead position
+HALVINGS = 60  # from a step of the scan to the last bit
+
+
+@dataclass(frozen=True)
+class Limit:
+    """An end of the driver's way: its place, the group that stops it."""
+
+    place: float
+    group: str
+
+
+@dataclass(frozen=True)
+class Range:
+    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider)."""
+
+    start: float
+    end: float
+    full: bool
+    limits: tuple[Limit, ...] = ()
+
+
+@dataclass(frozen=True)
+class DeadPosition:
+    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there."""
+
+    place: float
+    group: str
+    margin: float
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed)."""
+
+    start: float
+    length: float
+    low: float
+    run: float
+    working: bool
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Strokes of the output link in a turn of the driver, beginning with the working one; empty when it has none.
+
+    kind: the output slides (m), or swings (rad). k is the time of the working strokes over that of the idle ones at
+    constant speed. rule: why that stroke is the working one.
+    """
+
+    link: str
+    kind: str
+    strokes: tuple[Stroke, ...]
+    rule: str
+
+    @property
+    def working(self) -> tuple[Stroke, ...]:
+        return tuple(s for s in self.strokes if s.working)
+
+    @property
+    def travel(self) -> float:
+        """Stroke H (m) or swing psi (rad)."""
+        return max((abs(s.run) for s in self.strokes), default=0.0)
+
+    @property
+    def k(self) -> float:
+        """Coefficient of change of mean speed."""
+        idle = sum(s.length for s in self.strokes if not s.working)
+        return sum(s.length for s in self.working) / idle if idle else float("nan")
+
+    def share(self, q: Real, sense: int) -> Real:
+        """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
+        inside = np.zeros(np.shape(q), dtype=bool)
+        for stroke in self.working:
+            way = np.mod(sense * (q - stroke.start) + 1e-9, 2 * np.pi) - 1e-9
+            inside |= way < stroke.length - 1e-9
+        return inside
+
+
+def output_link(linkage: Linkage, dyads: tuple[Dyad, ...]) -> str | None:
+    """The output: named in the file, or the last link that is joined to the frame and not the driver."""
+    if linkage.output is not None:
+        return linkage.output.link
+    for dyad in reversed(dyads):
+        held = [link for link in dyad.group.links if _guide(linkage, link) or _pivot(linkage, link)]
+        if held:
+            return next((link for link in held if _guide(linkage, link)), held[0])
+    return None
+
+
+def _guide(linkage: Linkage, link: str) -> bool:
+    return any({s.carrier, s.runner} == {FRAME, link} for s in linkage.slides)
+
+
+def _pivot(linkage: Linkage, link: str) -> bool:
+    return any(FRAME in h.links and link in h.links for h in linkage.hinges)
+
+
+def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
+    """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
+    for slide in motion.linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            sliding = motion.slide(slide)
+            return sliding.run, sliding.first, sliding.second
+    turning = motion.link(link)
+    return turning.angle, turning.first, turning.second
+
+
+def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
+    """The driver's way about the sketch, its limits to the last bit."""
+    at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
+    half = np.pi if turns else 4 * max((d.size for d in dyads), default=1.0)
+    steps = np.linspace(-half, half, SCAN + 1)
+    law = Law(at, 1.0, 0.0, 1)
+    reached = move(linkage, dyads, at + steps, law)
+    if bool(np.all(reached.placed)):
+        return Range(at - half, at + half, turns)
+    blocked = np.flatnonzero(~reached.placed)
+    middle = SCAN // 2
+
+    def limit(index: int, towards: int) -> Limit:
+        good, bad = at + steps[index - towards], at + steps[index]
+        for _ in range(HALVINGS):
+            half_way = (good + bad) / 2
+            there = move(linkage, dyads, np.array([half_way]), law)
+            good, bad = (half_way, bad) if there.placed[0] else (good, half_way)
+        beyond = move(linkage, dyads, np.array([at + steps[index]]), law)
+        return Limit(good, next(title for title, lost in beyond.missing.items() if lost[0]))
+
+    below, above = blocked[blocked < middle], blocked[blocked > middle]
+    first = limit(int(below[-1]), -1) if below.size else None
+    last = limit(int(above[0]), 1) if above.size else None
+    if turns and first is None and last is not None:  # the gap straddles the scan's end
+        first = limit_from(last, blocked, steps, at, limit)
+    if turns and last is None and first is not None:
+        last = limit_from(first, blocked, steps, at, limit)
+    start = first.place if first else at - half
+    end = last.place if last else at + half
+    return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def limit_from(
+    known: Limit, blocked: Real, steps: Real, at: float, limit: Callable[[int, int], Limit]
+) -> Limit:
+    """The other limit when all blocked places lie on one side of the sketch: a turn away."""
+    if known.place > at:
+        other = limit(int(blocked[-1]), -1)
+        return Limit(other.place - 2 * np.pi, other.group)
+    other = limit(int(blocked[0]), 1)
+    return Limit(other.place + 2 * np.pi, other.group)
+
+
+def find_dead(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> tuple[DeadPosition, ...]:
+    """Dead positions inside the driver's way (its limits are dead too and are not repeated here)."""
+    q = np.linspace(way.start, way.end, SCAN + 1)
+    law = Law(way.start, 1.0, 0.0, 1)
+    motion = move(linkage, dyads, q, law)
+    found = []
+    for number, dyad in enumerate(dyads):
+        margin = np.where(motion.placed, motion.placements[number].margin, np.inf)
+        inner = margin[1:-1]
+        low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1)) + 1
+        places = list(q[low])
+        steps = q[1] - q[0]
+        if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
+            places.append(q[0])
+        for place in places:
+            best, least = _least(lambda x, n=number: _margin(linkage, dyads, x, n), place - steps, place + steps)
+            if least < DEAD and (way.full or way.start + steps < best < way.end - steps):
+                found.append(DeadPosition(best, dyad.group.title, least))
+    return tuple(sorted(found, key=lambda d: d.place))
+
+
+def _margin(linkage: Linkage, dyads: tuple[Dyad, ...], q: Real, number: int) -> Real:
+    motion = move(linkage, dyads[: number + 1], q, Law(0.0, 1.0, 0.0, 1))
+    return np.where(motion.placed, motion.placements[number].margin, 0.0)
+
+
+def _least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:
+    """Place and value of the least of a function with one minimum: nine places at once, the best third kept."""
+    for _ in range(HALVINGS // 2):
+        places = np.linspace(low, high, 9)
+        best = int(np.argmin(function(places)))
+        low, high = places[max(best - 1, 0)], places[min(best + 1, 8)]
+    middle = np.array([(low + high) / 2])
+    return float(middle[0]), float(function(middle)[0])
+
+
+def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0) -> Strokes | None:
+    """Strokes of the output over the driver's way; None when there is no output joined to the frame.
+
+    resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
+    stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
+    """
+    link = output_link(linkage, dyads)
+    if link is None or not (_guide(linkage, link) or _pivot(linkage, link)):
+        return None
+    kind = "slide" if _guide(linkage, link) else "swing"
+    sense = linkage.driver.sense
+    law = Law(way.start, 1.0, 0.0, 1)
+    q = np.linspace(way.start, way.end, SCAN + 1)
+    slope = output_run(move(linkage, dyads, q, law), link)[1]
+    signs = np.sign(slope)
+    change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
+    if not change.size:
+        return Strokes(link, kind, (), "")
+    turns = _roots(lambda x: output_run(move(linkage, dyads, x, law), link)[1], q[change], q[change + 1])
+    if not way.full:
+        return Strokes(link, kind, (), "")
+    turns = np.unique(np.round(np.mod(turns, 2 * np.pi), 14))[::sense]
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), 2 * np.pi)
+    runs = _runs(linkage, dyads, turns, lengths, link, kind)
+    lows = output_run(move(linkage, dyads, turns, law), link)[0]
+    forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
+    direction, rule = _working(linkage, forward, back, resists)
+    strokes = [
+        Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
+        for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
+    ]
+    first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
+    return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
+
+
+def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:
+    asked = linkage.output.working if linkage.output else "auto"
+    if asked != "auto":
+        return (1 if asked == "forward" else -1), "as the file says"
+    if abs(forward - back) > 1e-9:
+        return (1 if forward > back else -1), "the slower one"
+    if resists:
+        return int(np.sign(resists)), "the one that the load resists"
+    return 1, "the forward one"
+
+
+def _runs(
+    linkage: Linkage, dyads: tuple[Dyad, ...], turns: Real, lengths: Real, link: str, kind: str
+) -> Real:
+    """How far the output goes in each stroke (an angle is followed through, so that it may pass 180 degrees)."""
+    law = Law(0.0, 1.0, 0.0, 1)
+    places = turns[:, None] + linkage.driver.sense * lengths[:, None] * np.linspace(0, 1, 65)
+    run = output_run(move(linkage, dyads, places.ravel(), law), link)[0].reshape(places.shape)
+    if kind == "swing":
+        run = np.unwrap(run, axis=1)
+    return run[:, -1] - run[:, 0]
+
+
+def _roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
+    """Roots between places where a function has different signs, by halving all intervals at once."""
+    sign_low = np.sign(function(low))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        same = np.sign(function(middle)) == sign_low
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return (low + high) / 2
+
+
+def places(request: Request, way: Range, strokes: Strokes | None, sense: int) -> Real:
+    """The driver's places that are asked for (rad or m); position 0 is the zero.
+
+    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost.
+    """
+    if request.places:
+        return np.array(request.places)
+    steps = np.arange(request.count)
+    if way.full:
+        start = request.start
+        if start == "working stroke":
+            start = strokes.strokes[0].start if strokes and strokes.strokes else way.start + np.pi
+        return start + sense * (2 * np.pi * steps / request.count)
+    share = (steps + 0.5) / request.count
+    if sense < 0:
+        share = 1 - share
+    return way.start + (way.end - way.start) * share

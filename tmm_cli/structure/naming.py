@@ -1,0 +1,33 @@
+"""What each link is called, from its pairs and from whether it can turn all the way round (a crank) or not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tmm_cli.linkage import FRAME, Linkage
+
+
+def roles(linkage: Linkage, turns: Mapping[str, bool]) -> dict[str, str]:
+    """The role of each moving link; `turns` tells which links turn through 360 degrees."""
+    return {name: _role(linkage, name, turns.get(name, False)) for name in linkage.moving}
+
+
+def _role(linkage: Linkage, name: str, turns: bool) -> str:
+    slides = [s for s in linkage.slides if name in (s.carrier, s.runner)]
+    carries = any(s.carrier == name and s.runner != FRAME for s in slides)
+    runs = any(s.runner == name and s.carrier != FRAME for s in slides)
+    if any(FRAME in (s.carrier, s.runner) for s in slides):
+        return "slider"
+    if any(FRAME in h.links and name in h.links for h in linkage.hinges):
+        if carries:
+            return "slotted link"
+        if runs:
+            return "rocking slider"
+        return "crank" if turns else "rocker"
+    if runs:
+        return "stone"
+    if carries:
+        runner = next(s.runner for s in slides if s.carrier == name)
+        pivoted = any(FRAME in h.links and runner in h.links for h in linkage.hinges)
+        return "rod" if pivoted else "slotted link"
+    return "coupler"
