@@ -10,44 +10,19 @@ from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Dyad, Placement, Pose
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import driven_state, frame_state
+from tmm_cli.refused import Misfit, NoAssembly, NotSolvable, Undecided
 from tmm_cli.structure.assur import Group, Structure
 
 TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
-NEAR = 0.5  # and fits when its worst point is within this share of the group's size
+FITS = 0.25  # a sketched point may lie this share of the linkage's size from its place, a link 0.5 rad from its angle
 
 
-class NotSolvable(Exception):
-    """A group for which there is no kernel."""
-
-    def __init__(self, group: Group) -> None:
-        super().__init__(group.title)
-        self.group = group
-
-
-class NoAssembly(Exception):
-    """The sketch cannot be assembled. gap: by how much (m) the group is short of closing at the sketch's place."""
-
-    def __init__(self, group: Group, gap: float) -> None:
-        super().__init__(group.title)
-        self.group, self.gap = group, gap
-
-
-class Undecided(Exception):
-    """The sketch does not tell two assemblies apart.
-
-    choices: for points (m) and links (rad) that would tell, the values in each assembly. off: the distance (m) from
-    the sketched points to the nearest assembly, when it is what rules the sketch out.
-    """
-
-    def __init__(self, group: Group, choices: dict[str, tuple[complex | float, ...]], off: float | None) -> None:
-        super().__init__(group.title)
-        self.group, self.choices, self.off = group, choices, off
-
-
-def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Dyad, ...]:
+def assemble(
+    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None
+) -> tuple[Dyad, ...]:
     """The groups with their signs, in solving order.
 
-    Raises NotSolvable, NoAssembly, Undecided.
+    Raises NotSolvable, NoAssembly, Undecided, Misfit.
     """
     q = np.array([linkage.sketch.at])
     poses = {FRAME: frame_state(q)[0], linkage.driver.link: driven_state(linkage, linkage.driver, q)[0]}
@@ -58,31 +33,46 @@ def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] |
         dyad, at = _choose(KERNELS[group.type].of(group, linkage), linkage, poses)
         poses[group.links[0]], poses[group.links[1]] = at.a, at.b
         chosen.append(dyad)
+    _check_fit(linkage, poses)
     return tuple(chosen)
 
 
 def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad, Placement]:
-    signs = (1, -1)[: dyad.assemblies]
     with np.errstate(invalid="ignore", divide="ignore"):
-        ways = [(turned := replace(dyad, sign=sign), turned.place(poses)) for sign in signs]
-    gap = float(ways[0][1].gap[0])
-    if not ways[0][1].assembled[0] or not np.isfinite(ways[0][1].a.x[0]):
-        raise NoAssembly(dyad.group, gap)
+        ways = [(replace(dyad, sign=s), replace(dyad, sign=s).place(poses)) for s in (1, -1)[: dyad.assemblies]]
+    first = ways[0][1]
+    if not first.assembled[0] or not np.isfinite(first.a.x[0] + first.b.x[0]):
+        raise NoAssembly(dyad.group, float(first.gap[0]))
     if len(ways) == 1:
         return ways[0]
+    if first.dead[0]:
+        raise Undecided(dyad.group, {})
     hints = [_hints(dyad, linkage, at) for _, at in ways]
-    tells = [name for name in hints[0] if abs(hints[0][name] - hints[1][name]) > 1e-9 * _scale(name, linkage, dyad)]
-    if not tells and hints[0]:
-        return ways[0]  # a dead position: both assemblies are one
-    sketched = {name: value for name, value in _sketched(linkage).items() if name in tells}
-    errors = [_distance(sketched, hint, dyad) for hint in hints]
+    tells = [name for name in hints[0] if abs(hints[0][name] - hints[1][name]) > _scale(name, linkage, dyad)]
+    sketched = {**linkage.sketch.points, **linkage.sketch.angles}
+    given = {name: sketched[name] for name in tells if name in sketched}
+    errors = [_distance(given, hint, dyad) for hint in hints]
     best = int(np.argmin(errors))
-    choices = {name: (hints[0][name], hints[1][name]) for name in tells}
-    if not sketched or errors[best] > TELLS * errors[1 - best]:
-        raise Undecided(dyad.group, choices, None)
-    if errors[best] > NEAR:
-        raise Undecided(dyad.group, choices, errors[best] * dyad.size)
+    if not given or errors[best] > TELLS * errors[1 - best]:
+        raise Undecided(dyad.group, {name: (hints[0][name], hints[1][name]) for name in tells})
     return ways[best]
+
+
+def _check_fit(linkage: Linkage, poses: dict[str, Pose]) -> None:
+    """Every sketched point and angle, whether it decided something or not, lies about where it was drawn."""
+    places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
+    size = max(abs(p - q) for p in places for q in places)
+    for point, sketched in linkage.sketch.points.items():
+        owner = linkage.owner(point)
+        if owner in poses:
+            found = complex(poses[owner].at(linkage.local(owner, point))[0])
+            if abs(found - sketched) > FITS * size:
+                raise Misfit(point, sketched, found)
+    for link, angle in linkage.sketch.angles.items():
+        if link in poses:
+            turned = float(np.angle(poses[link].z)[0])
+            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * FITS:
+                raise Misfit(link, angle, turned)
 
 
 def _hints(dyad: Dyad, linkage: Linkage, at: Placement) -> dict[str, complex | float]:
@@ -94,12 +84,9 @@ def _hints(dyad: Dyad, linkage: Linkage, at: Placement) -> dict[str, complex | f
     return hints
 
 
-def _sketched(linkage: Linkage) -> dict[str, complex | float]:
-    return {**linkage.sketch.points, **linkage.sketch.angles}
-
-
 def _scale(name: str, linkage: Linkage, dyad: Dyad) -> float:
-    return 1.0 if name in linkage.links else dyad.size
+    """Differences below this are rounding."""
+    return 1e-9 * (1.0 if name in linkage.links else dyad.size)
 
 
 def _distance(sketched: dict[str, complex | float], hint: dict[str, complex | float], dyad: Dyad) -> float:

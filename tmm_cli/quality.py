@@ -10,6 +10,7 @@ import numpy as np
 from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import FRAME, Linkage, Request
 from tmm_cli.motion import Law, Motion, move
+from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
@@ -92,22 +93,24 @@ class Strokes:
         return inside
 
 
-def output_link(linkage: Linkage, dyads: tuple[Dyad, ...]) -> str | None:
+def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
     """The output: named in the file, or the last link that is joined to the frame and not the driver."""
     if linkage.output is not None:
         return linkage.output.link
-    for dyad in reversed(dyads):
-        held = [link for link in dyad.group.links if _guide(linkage, link) or _pivot(linkage, link)]
+    for group in reversed(groups):
+        held = [link for link in group.links if slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)]
         if held:
-            return next((link for link in held if _guide(linkage, link)), held[0])
+            return next((link for link in held if slides_on_frame(linkage, link)), held[0])
     return None
 
 
-def _guide(linkage: Linkage, link: str) -> bool:
+def slides_on_frame(linkage: Linkage, link: str) -> bool:
+    """Whether the link has a guide on the frame."""
     return any({s.carrier, s.runner} == {FRAME, link} for s in linkage.slides)
 
 
-def _pivot(linkage: Linkage, link: str) -> bool:
+def hinged_to_frame(linkage: Linkage, link: str) -> bool:
+    """Whether the link has a hinge on the frame."""
     return any(FRAME in h.links and link in h.links for h in linkage.hinges)
 
 
@@ -180,7 +183,9 @@ def find_dead(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> tuple[De
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
         for place in places:
-            best, least = _least(lambda x, n=number: _margin(linkage, dyads, x, n), place - steps, place + steps)
+            best, least = _least(
+                lambda x, n=number: _margin(linkage, dyads, x, n), place - steps, place + steps
+            )
             if least < DEAD and (way.full or way.start + steps < best < way.end - steps):
                 found.append(DeadPosition(best, dyad.group.title, least))
     return tuple(sorted(found, key=lambda d: d.place))
@@ -201,16 +206,18 @@ def _least(function: Callable[[Real], Real], low: float, high: float) -> tuple[f
     return float(middle[0]), float(function(middle)[0])
 
 
-def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0) -> Strokes | None:
+def find_strokes(
+    linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0
+) -> Strokes | None:
     """Strokes of the output over the driver's way; None when there is no output joined to the frame.
 
     resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
     stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
     """
-    link = output_link(linkage, dyads)
-    if link is None or not (_guide(linkage, link) or _pivot(linkage, link)):
+    link = output_link(linkage, tuple(d.group for d in dyads))
+    if link is None or not (slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)):
         return None
-    kind = "slide" if _guide(linkage, link) else "swing"
+    kind = "slide" if slides_on_frame(linkage, link) else "swing"
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
     q = np.linspace(way.start, way.end, SCAN + 1)
@@ -232,7 +239,9 @@ def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists:
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
         for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
     ]
-    first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
+    first = max(
+        (i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i)
+    )
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
 
 

@@ -1,0 +1,160 @@
+"""Which stage needs which: structure -> assembly -> range and strokes -> motion -> forces -> lever.
+
+Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.assembly import assemble
+from tmm_cli.forces.lever import Lever, lever
+from tmm_cli.forces.loads import Applied, applied, resisted
+from tmm_cli.forces.plan import Reactions, react
+from tmm_cli.groups.base import Dyad
+from tmm_cli.linkage import Linkage
+from tmm_cli.motion import Law, Motion, move
+from tmm_cli.problem.record import Problem
+from tmm_cli.quality import (
+    DeadPosition,
+    Range,
+    Strokes,
+    find_dead,
+    find_range,
+    find_strokes,
+    hinged_to_frame,
+    output_link,
+    places,
+)
+from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
+from tmm_cli.structure.assur import Structure, analyse
+from tmm_cli.structure.naming import roles
+
+Stage = Literal["structure", "kinematics", "forces"]
+
+
+@dataclass(frozen=True)
+class Results:
+    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle."""
+
+    problem: Problem
+    structure: Structure
+    roles: dict[str, str]
+    dyads: tuple[Dyad, ...]
+    way: Range | None = None
+    dead: tuple[DeadPosition, ...] = ()
+    strokes: Strokes | None = None
+    numbers: tuple[int, ...] = ()
+    motion: Motion | None = None
+    loads: tuple[Applied, ...] = ()
+    reactions: Reactions | None = None
+    lever: Lever | None = None
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.problem.linkage
+
+    @property
+    def lever_holds(self) -> bool:
+        """Whether the lever agrees with the force plan within the limit, wherever it could be computed."""
+        if self.lever is None or self.motion is None:
+            return True
+        difference = self.lever.difference[self.motion.moving]
+        return bool(np.all(difference <= self.problem.lever_limit))
+
+
+def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | None = None) -> Results:
+    """Run the stages up to the one asked for, at all positions of the file or at those numbered.
+
+    Raises Refused: WrongMobility, NoSuchPosition, NoStrokes, and what assembly raises.
+    """
+    linkage = problem.linkage
+    structure = analyse(linkage)
+    if structure.freedom != 1 or structure.mobility != 1 or structure.idle or structure.loose:
+        raise WrongMobility(structure)
+    if stage == "structure":
+        return _structure_only(problem, structure)
+    dyads = assemble(linkage, structure)
+    way = find_range(linkage, dyads)
+    strokes = find_strokes(linkage, dyads, way, resisted(linkage, output_link(linkage, structure.groups)))
+    _need_strokes(problem, strokes, way)
+    q = places(problem.request, way, strokes, linkage.driver.sense)
+    numbers = tuple(range(len(q))) if positions is None else tuple(positions)
+    for number in numbers:
+        if not 0 <= number < len(q):
+            raise NoSuchPosition(number, len(q))
+    law = Law(float(q[0]), linkage.driver.rate, linkage.driver.acceleration, linkage.driver.sense)
+    motion = move(linkage, dyads, q[list(numbers)], law)
+    named = roles(linkage, turning_links(linkage, dyads, way))
+    dead = find_dead(linkage, dyads, way)
+    results = Results(problem, structure, named, dyads, way, dead, strokes, numbers, motion)
+    return results if stage == "kinematics" else with_forces(results)
+
+
+def with_forces(results: Results) -> Results:
+    """Add loads, the force plan and the lever to kinematics."""
+    motion = results.motion
+    assert motion is not None
+    loads = applied(motion, results.strokes)
+    reactions = react(motion, results.structure, loads)
+    balance = reactions.balance
+    plan = balance.force if balance.moment is None else balance.moment
+    return Results(
+        results.problem, results.structure, results.roles, results.dyads, results.way, results.dead,
+        results.strokes, results.numbers, motion, loads, reactions, lever(motion, loads, plan),
+    )  # fmt: skip
+
+
+def at_positions(results: Results, q: Sequence[float]) -> Motion:
+    """The same linkage at other places of its driver (trajectories, diagrams)."""
+    driver = results.linkage.driver
+    start = float(results.motion.q[0]) if results.motion is not None else results.linkage.sketch.at
+    return move(
+        results.linkage,
+        results.dyads,
+        np.array(q),
+        Law(start, driver.rate, driver.acceleration, driver.sense),
+    )
+
+
+def turning_links(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> dict[str, bool]:
+    """Which links turn through 360 degrees while the driver goes its way."""
+    turned = {linkage.driver.link: way.full and linkage.driver.kind == "turn"}
+    hung = [d for d in dyads if any(hinged_to_frame(linkage, link) for link in d.group.links)]
+    if hung and way.full:
+        motion = move(linkage, dyads, np.linspace(way.start, way.end, 721), Law(way.start, 1.0, 0.0, 1))
+        for dyad in hung:
+            for link in dyad.group.links:
+                angle = np.unwrap(np.angle(motion.poses[link].z))
+                turned[link] = bool(abs(angle[-1] - angle[0]) > np.pi)
+    return turned
+
+
+def _structure_only(problem: Problem, structure: Structure) -> Results:
+    """Names of links need a turn of the driver; where it cannot be assembled yet, names come from the pairs alone."""
+    linkage = problem.linkage
+    try:
+        dyads = assemble(linkage, structure)
+    except Refused:  # kinematics will say what is wrong; the structure stands without it
+        turns = {linkage.driver.link: linkage.driver.kind == "turn"}
+        return Results(problem, structure, roles(linkage, turns), ())
+    way = find_range(linkage, dyads)
+    return Results(problem, structure, roles(linkage, turning_links(linkage, dyads, way)), dyads, way)
+
+
+def _need_strokes(problem: Problem, strokes: Strokes | None, way: Range) -> None:
+    """Refuse what rests on strokes that are not there, rather than quietly doing without."""
+    if strokes is not None and strokes.strokes:
+        return
+    link = strokes.link if strokes else None
+    if problem.request.start == "working stroke" and way.full:
+        raise NoStrokes(link, ("positions", "from"))
+    for load in problem.linkage.loads:
+        if load.working_stroke_only and way.full:
+            raise NoStrokes(link, ("loads", load.name, "when"))
+        if load.table is not None and load.table.against == "stroke":
+            raise NoStrokes(link, ("loads", load.name, "force" if load.force else "moment"))

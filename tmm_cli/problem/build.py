@@ -1,0 +1,378 @@
+"""From the shape of a problem file to a linkage: names are looked up, numbers get their units."""
+
+from __future__ import annotations
+
+import cmath
+import re
+from dataclasses import replace
+from pathlib import PurePath
+from typing import Any
+
+from pydantic import ValidationError
+
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Output, Request, Sketch, Slide
+from tmm_cli.problem import schema
+from tmm_cli.problem.build_loads import build_loads, with_masses
+from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
+from tmm_cli.problem.expressions import resolve_parameters
+from tmm_cli.problem.reader import Tree, read_file
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import shape_error
+from tmm_cli.problem.sense import Sense, check_name, direction
+from tmm_cli.problem.units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    LENGTH,
+    NUMBER,
+    SPEED,
+    UnitSystem,
+)
+
+MAX_WORK = 2_000_000  # positions times links
+UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
+
+
+def load(path: str) -> Problem:
+    """Read, check and build a problem file. Raises ProblemError, located in the file."""
+    return build(read_file(path))
+
+
+def build(tree: Tree) -> Problem:
+    """A problem from a file that has been read."""
+    try:
+        shape = schema.File.model_validate(tree.data)
+    except ValidationError as error:
+        raise shape_error(error, tree) from None
+    try:
+        return _Builder(shape, tree).problem()
+    except ProblemError as error:
+        raise error.located(tree.file, tree) from None
+
+
+class _Builder:
+    """Builds the parts of one linkage in the order in which they need each other."""
+
+    def __init__(self, shape: schema.File, tree: Tree) -> None:
+        self.shape, self.tree = shape, tree
+        try:
+            units = UnitSystem(shape.units)
+        except ProblemError as error:
+            raise error.at("units") from None
+        try:
+            parameters = resolve_parameters(shape.parameters, units)
+        except ProblemError as error:
+            raise error.at("parameters") from None
+        self.sense = Sense(parameters, units)
+
+    def problem(self) -> Problem:
+        shape = self.shape
+        links = self.links()
+        slides = self.slides(links)
+        hinges = self.hinges(links)
+        self.nothing_stray(links, hinges, slides)
+        driver = self.driver(links, hinges, slides)
+        linkage = Linkage(links, hinges, slides, driver, self.sketch(links, driver), output=self.output(links))
+        linkage = with_masses(linkage, shape, self.sense)
+        linkage = replace(linkage, loads=build_loads(linkage, shape, self.sense))
+        limit = self.sense.positive(shape.checks.lever, NUMBER, ("checks", "lever"), zero=True)
+        file = self.tree.file
+        return Problem(
+            PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
+            limit, shape.description, file, self.tree,
+        )  # fmt: skip
+
+    def links(self) -> dict[str, Link]:
+        frame = {}
+        for name, place in self.shape.points.items():
+            check_name(name, ("points", name), "point")
+            frame[name] = self.sense.vector(place, LENGTH, ("points", name))
+        links = {FRAME: Link(FRAME, frame)}
+        for name, link in self.shape.links.items():
+            path: Path = ("links", name)
+            check_name(name, path, "link")
+            if name == FRAME:
+                raise ProblemError(
+                    "0 is the frame", path=path, found="a moving link 0", allowed="another number; see points", key=True
+                )
+            links[name] = Link(name, self.points(link, name), label=link.name or "")
+        return links
+
+    def points(self, link: schema.Link, name: str) -> dict[str, complex]:
+        path: Path = ("links", name)
+        given = link.points
+        if isinstance(given, dict):
+            if link.length is not None:
+                raise ProblemError(
+                    "coordinates say the length already", path=(*path, "length"), allowed="length or coordinates",
+                )  # fmt: skip
+            points = {p: self.sense.vector(xy, LENGTH, (*path, "points", p)) for p, xy in given.items()}
+        else:
+            points = self.listed(given, link, path)
+        for point in points:
+            spot = (*path, "points", point) if isinstance(given, dict) else (*path, "points", list(points).index(point))
+            check_name(point, spot, "point")
+        for point, place in link.also.items():
+            check_name(point, (*path, "also", point), "point")
+            if point in points:
+                raise ProblemError("this point is there already", path=(*path, "also", point), found=quote(point), key=True)
+            points[point] = self.sense.place(place, points, (*path, "also", point), name)
+        return points
+
+    def listed(self, given: list[str], link: schema.Link, path: Path) -> dict[str, complex]:
+        if len(set(given)) < len(given) or not given:
+            raise ProblemError(
+                "a point is named twice" if given else "a link has at least one point",
+                path=(*path, "points"), found=str(given), allowed="different names",
+            )  # fmt: skip
+        if len(given) > 2:
+            raise ProblemError(
+                "three points and more need coordinates in the link's own axes", path=(*path, "points"),
+                found=", ".join(given), allowed=f"{{{given[0]}: [0, 0], {given[1]}: [x, 0], {given[2]}: [x, y]}}",
+            )  # fmt: skip
+        if len(given) == 1:
+            if link.length is not None:
+                raise ProblemError(
+                    "a length belongs to two points", path=(*path, "length"), found=f"one point, {given[0]}",
+                    allowed=f"points: [{given[0]}, ...]",
+                )  # fmt: skip
+            return {given[0]: 0j}
+        if link.length is None:
+            raise ProblemError(
+                "the length of this link is missing", path=(*path, "length"),
+                allowed=f"length: the distance from {given[0]} to {given[1]}",
+            )  # fmt: skip
+        return {given[0]: 0j, given[1]: complex(self.sense.positive(link.length, LENGTH, (*path, "length")))}
+
+    def slides(self, links: dict[str, Link]) -> tuple[Slide, ...]:
+        for name in self.shape.guides:
+            check_name(name, ("guides", name), "guide")
+        found: list[Slide] = []
+        for name, link in self.shape.links.items():
+            many = isinstance(link.slides, list)
+            given = link.slides if isinstance(link.slides, list) else [link.slides] if link.slides else []
+            for number, slide in enumerate(given):
+                path: Path = ("links", name, "slides", number) if many else ("links", name, "slides")
+                found.append(self.slide(slide, name, links, path, {s.name for s in found}))
+        return tuple(found)
+
+    def slide(self, slide: schema.Slide, runner: str, links: dict[str, Link], path: Path, taken: set[str]) -> Slide:
+        point = slide.point or next(iter(links[runner].points))
+        self.sense.known(point, links[runner].points, (*path, "point"), f"point of link {runner}")
+        guides = self.shape.guides
+        if slide.on in guides:
+            for key in ("along", "through", "angle"):
+                if getattr(slide, key) is not None:
+                    raise ProblemError(
+                        f"guide {slide.on} says where it runs already", path=(*path, key), allowed="on, point, turned",
+                        key=True,
+                    )  # fmt: skip
+            guide, name, where = guides[slide.on], slide.on, ("guides", slide.on)
+            carrier = self.sense.known(guide.on, links, (*where, "on"), "link")
+        elif slide.on in links:
+            carrier, name, where = slide.on, f"{point}'", path
+            guide = schema.Guide(
+                on=carrier, along=slide.along, through=slide.through, angle=slide.angle, offset=slide.offset
+            )
+        else:
+            names = [*guides, *(n for n in links if n != runner)]
+            raise ProblemError(
+                "there is no such guide or link", path=(*path, "on"), found=quote(slide.on),
+                allowed=f"guides: {', '.join(guides) or 'none'}; links: {', '.join(links)}",
+                near=nearest(slide.on, names),
+            )  # fmt: skip
+        if carrier == runner:
+            raise ProblemError("a link cannot slide on itself", path=(*path, "on"), found=quote(slide.on))
+        through, angle = self.guide(guide, carrier, links, where)
+        turned = self.sense.number(slide.turned, ANGLE, (*path, "turned"))
+        name = name if name not in taken else f"{name}.{runner}"
+        return Slide(name, carrier, runner, through, angle, links[runner].points[point], turned, point)
+
+    def guide(self, guide: schema.Guide, carrier: str, links: dict[str, Link], path: Path) -> tuple[complex, float]:
+        points = links[carrier].points
+        if guide.along is None and guide.through is None and guide.angle is None and carrier != FRAME and len(points) == 2:
+            guide = guide.model_copy(update={"along": "-".join(points)})
+        if guide.along is not None:
+            if guide.through is not None or guide.angle is not None:
+                raise ProblemError("along says through and angle already", path=(*path, "along"), allowed="one of the two")
+            first, second = self.sense.two_points(guide.along, points, (*path, "along"), carrier)
+            through, angle = points[first], cmath.phase(points[second] - points[first])
+        elif guide.through is not None:
+            through = self.sense.place(guide.through, points, (*path, "through"), carrier)
+            angle = 0.0 if guide.angle is None else self.sense.number(guide.angle, ANGLE, (*path, "angle"))
+        else:
+            raise ProblemError(
+                "where does this guide run?", path=(*path, "through"), allowed="along: CD, or through: [x, y] and angle",
+            )  # fmt: skip
+        return through + 1j * self.sense.number(guide.offset, LENGTH, (*path, "offset")) * direction(angle), angle
+
+    @staticmethod
+    def hinges(links: dict[str, Link]) -> tuple[Hinge, ...]:
+        owners: dict[str, list[str]] = {}
+        for name, link in links.items():
+            for point in link.points:
+                owners.setdefault(point, []).append(name)
+        return tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
+
+    def nothing_stray(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> None:
+        """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
+        joined = {name for h in hinges for name in h.links} | {n for s in slides for n in (s.carrier, s.runner)}
+        for name in links:
+            if name not in joined and name != FRAME:
+                raise ProblemError(
+                    "this link is joined to nothing", path=("links", name), found=", ".join(links[name].points),
+                    allowed="a point that another link or the frame has too, or slides", key=True,
+                )  # fmt: skip
+        used = {s.on for link in self.shape.links.values() for s in _slides(link)}
+        for guide in self.shape.guides:
+            if guide not in used:
+                raise ProblemError("nothing slides on this guide", path=("guides", guide), found=quote(guide), key=True)
+        self.named_twice(links, hinges)
+
+    def named_twice(self, links: dict[str, Link], hinges: tuple[Hinge, ...]) -> None:
+        shared = {h.point for h in hinges}
+        everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
+        pairs = {a + b: (a, b) for a in everything for b in everything}
+        elsewhere: set[str] = set()
+        for word in _words_outside_points(self.tree.data):
+            elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
+        for name, link in links.items():
+            given = self.shape.links[name].points if name != FRAME else list(link.points)
+            for point in given if isinstance(given, list) else ():
+                runs = name != FRAME and any((s.point or given[0]) == point for s in _slides(self.shape.links[name]))
+                if point in shared or runs or point in elsewhere:
+                    continue
+                path = ("points", point) if name == FRAME else ("links", name, "points", given.index(point))
+                raise ProblemError(
+                    "this point is named nowhere else", path=path, found=quote(point),
+                    allowed="a point of another link; a point that is only watched has coordinates (see also:)",
+                    near=nearest(point, [p for p in everything if p != point and p not in link.points]),
+                    key=name == FRAME,
+                )  # fmt: skip
+
+    def driver(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> Driver:
+        given = self.shape.driver
+        link = self.sense.known(given.link, {n: 0 for n in links if n != FRAME}, ("driver", "link"), "link")
+        pivots = [h.point for h in hinges if FRAME in h.links and link in h.links]
+        runs = [s for s in slides if {s.carrier, s.runner} == {FRAME, link}]
+        if not pivots and not runs:
+            raise ProblemError(
+                "the driver is neither hinged to the frame nor slides on it", path=("driver", "link"), found=quote(link),
+                allowed=", ".join(
+                    [n for h in hinges if FRAME in h.links for n in h.links if n != FRAME]
+                    + [s.runner for s in slides if s.carrier == FRAME]
+                ),
+            )  # fmt: skip
+        turns = bool(pivots)
+        speed = self.sense.number(given.speed, ANGULAR_SPEED if turns else SPEED, ("driver", "speed"))
+        acceleration = self.sense.number(
+            given.acceleration, ANGULAR_ACCELERATION if turns else ACCELERATION, ("driver", "acceleration")
+        )
+        clockwise = given.turns == "cw"
+        if speed < 0 and "turns" in given.model_fields_set:
+            raise ProblemError(
+                "a negative speed and a sense of rotation say the sense twice", path=("driver", "speed"),
+                found=str(given.speed), allowed="a positive speed with turns: ccw or cw",
+            )  # fmt: skip
+        sense = -1 if clockwise or speed < 0 else 1
+        if given.end is not None:
+            self.sense.known(given.end, links[link].points, ("driver", "end"), f"point of link {link}")
+        return Driver(
+            link, "turn" if turns else "slide", pivots[0] if turns else runs[0].name, abs(speed),
+            acceleration if speed >= 0 else -acceleration, sense, given.balance, given.end or "",
+        )  # fmt: skip
+
+    def sketch(self, links: dict[str, Link], driver: Driver) -> Sketch:
+        given = dict(self.shape.sketch)
+        wanted = ANGLE if driver.kind == "turn" else LENGTH
+        if not given:
+            return Sketch(UNTOLD_SKETCH if driver.kind == "turn" else 0.0)
+        if "at" not in given:
+            raise ProblemError(
+                "the driver's place in the sketch is missing", path=("sketch", "at"), allowed=f"at: {wanted}",
+            )  # fmt: skip
+        at = self.sense.number(given.pop("at"), wanted, ("sketch", "at"))
+        owners = {p: n for n, link in links.items() for p in link.points}
+        points, angles = {}, {}
+        for name, value in given.items():
+            path: Path = ("sketch", name)
+            if name in owners and isinstance(value, list):
+                points[name] = self.sense.vector(_two(value, path), LENGTH, path)
+            elif name in links and name != FRAME and not isinstance(value, list):
+                angles[name] = self.sense.number(value, ANGLE, path)
+            else:
+                self.sense.known(name, {**owners, **links}, path, "point or link", key=True)
+                raise ProblemError(
+                    "a point has coordinates and a link has an angle", path=path, found=quote(value),
+                    allowed="[x, y]" if name in owners else "an angle",
+                )  # fmt: skip
+        return Sketch(at, points, angles)
+
+    def output(self, links: dict[str, Link]) -> Output | None:
+        given = self.shape.output
+        if given is None:
+            return None
+        link = self.sense.known(given.link, {n: 0 for n in links if n != FRAME}, ("output",), "link")
+        return Output(link, given.working)
+
+    def request(self, driver: Driver) -> Request:
+        given = self.shape.positions
+        wanted = ANGLE if driver.kind == "turn" else LENGTH
+        places = tuple(
+            self.sense.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ())
+        )  # fmt: skip
+        count = len(places) or given.count
+        if count * len(self.shape.links) > MAX_WORK:
+            raise ProblemError(
+                "too many positions for so many links", path=("positions", "count"), found=str(count),
+                allowed=f"at most {MAX_WORK // len(self.shape.links)}",
+            )  # fmt: skip
+        for k, number in enumerate(given.detail):
+            if not 0 <= number < count:
+                raise ProblemError(
+                    "there is no such position", path=("positions", "detail", k), found=str(number),
+                    allowed=f"0 to {count - 1}",
+                )  # fmt: skip
+        if given.from_ is None:
+            return Request(count, 0.0, places, tuple(given.detail))
+        if given.from_ == "working stroke":
+            if driver.kind == "slide":
+                raise ProblemError(
+                    "a driven slider has no working stroke to start from", path=("positions", "from"), allowed="a length"
+                )
+            return Request(count, "working stroke", places, tuple(given.detail))
+        start = self.sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))
+        return Request(count, start, places, tuple(given.detail))
+
+
+def _slides(link: schema.Link) -> list[schema.Slide]:
+    return link.slides if isinstance(link.slides, list) else [link.slides] if link.slides else []
+
+
+def _two(value: list[Any], path: Path) -> list[Any]:
+    if len(value) != 2:
+        raise ProblemError("two coordinates [x, y] are wanted", path=path, found=quote(value))
+    return value
+
+
+def _value(value: Any, path: Path) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ProblemError("an angle or `working stroke` is wanted", path=path, found=quote(value))
+    return value
+
+
+def _words_outside_points(data: dict[str, Any]) -> list[str]:
+    """Every text of the file that may name a point, the links' own lists of points left out."""
+    words: list[str] = []
+    todo: list[Any] = [{**data, "points": {}, "parameters": {}, "title": "", "description": ""}]
+    while todo:
+        part = todo.pop()
+        if isinstance(part, dict):
+            words += [k for k in part if isinstance(k, str)]
+            todo += [v for k, v in part.items() if k != "points"]
+        elif isinstance(part, list):
+            todo += part
+        elif isinstance(part, str):
+            words.append(part)
+    return words

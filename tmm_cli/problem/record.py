@@ -1,0 +1,28 @@
+"""A problem, ready for the stages: the linkage and what is asked of it. No YAML, no pydantic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from tmm_cli.linkage import Linkage, Request
+from tmm_cli.problem.units import UnitSystem
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem file that has been read.
+
+    name: of the file, without its ending; lever_limit: allowed difference of the lever, a share of one; titles: the
+    file's own names of links; source: what errors found later are located with (a Tree), if there is one.
+    """
+
+    name: str
+    title: str
+    linkage: Linkage
+    request: Request
+    units: UnitSystem
+    lever_limit: float = 0.05
+    description: str = ""
+    file: str = ""
+    source: Any = field(default=None, compare=False, repr=False)

@@ -1,0 +1,235 @@
+"""What went wrong with a file, said once in the file's own terms: from pydantic's errors and from the stages'."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
+from tmm_cli.problem.reader import Tree, decimal_comma_hint
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.units import ANGLE, LENGTH
+from tmm_cli.refused import (
+    Misfit,
+    NoAssembly,
+    NoStrokes,
+    NoSuchPosition,
+    NotSolvable,
+    Refused,
+    Undecided,
+    WrongMobility,
+)
+from tmm_cli.structure.assur import ROMAN, Structure
+
+ANY = object()
+MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
+    ((), schema.File),
+    (("guides", ANY), schema.Guide),
+    (("links", ANY), schema.Link),
+    (("links", ANY, "slides"), schema.Slide),
+    (("links", ANY, "slides", ANY), schema.Slide),
+    (("driver",), schema.Driver),
+    (("masses", ANY), schema.Mass),
+    (("loads", ANY), schema.Load),
+    (("loads", ANY, "force"), schema.Tabulated),
+    (("loads", ANY, "moment"), schema.Tabulated),
+    (("output",), schema.Output),
+    (("positions",), schema.Positions),
+    (("checks",), schema.Checks),
+)
+
+WORDS = {
+    "int_type": "a whole number is wanted",
+    "int_parsing": "a whole number is wanted",
+    "int_from_float": "a whole number is wanted",
+    "string_type": "text is wanted",
+    "list_type": "a list [..., ...] is wanted",
+    "dict_type": "keys with values are wanted",
+    "model_type": "keys with values are wanted",
+    "model_attributes_type": "keys with values are wanted",
+}
+
+
+def shape_error(error: ValidationError, tree: Tree) -> ProblemError:
+    """The first mistake of the file's shape, by its place in the file."""
+    refusals = [_refusal(kind, path, context, tree) for kind, path, context in _meant(_flat(error, ()), tree)]
+    located = [r.located(tree.file, tree) for r in refusals]
+    return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
+
+
+def _flat(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dict[str, Any]]]:
+    for item in error.errors():
+        inner = item.get("ctx", {}).get("error")
+        if isinstance(inner, ValidationError):
+            yield from _flat(inner, (*prefix, *item["loc"]))
+        else:
+            yield item["type"], (*prefix, *item["loc"]), {**item.get("ctx", {}), "msg": item["msg"]}
+
+
+def _meant(
+    errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree
+) -> list[tuple[str, Path, dict[str, Any]]]:
+    """Errors with paths into the data; a branch of a union that the data was not meant for is left out."""
+    meant: list[tuple[str, Path, dict[str, Any]]] = []
+    rest: list[tuple[str, Path, dict[str, Any]]] = []
+    for kind, loc, context in errors:
+        path: list[str | int] = []
+        data: Any = tree.data
+        fits = True
+        for number, step in enumerate(loc):
+            last = number == len(loc) - 1
+            if isinstance(data, dict) and step in data or isinstance(data, list) and isinstance(step, int):
+                path.append(step)
+                data = data[step] if isinstance(data, dict) or step < len(data) else None
+            elif last and kind in ("missing", "extra_forbidden"):
+                path.append(step)
+            else:  # the name of a union's branch
+                fits = fits and isinstance(data, list) == str(step).startswith("list")
+        (meant if fits else rest).append((kind, tuple(path), context))
+    return meant or rest
+
+
+def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> ProblemError:
+    data: Any = tree.data
+    for step in path:
+        data = data[step] if isinstance(data, dict) and step in data or isinstance(data, list) else None
+    if kind == "extra_forbidden":
+        names = _keys(path[:-1])
+        key = str(path[-1])
+        return ProblemError(
+            "unknown key", path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
+        )
+    if kind == "missing":
+        return ProblemError(f"the key `{path[-1]}` is missing", path=path, allowed=_describe(path))
+    if kind == "literal_error":
+        words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
+        return ProblemError(
+            "this word is not known here", path=path, found=quote(data), allowed=words,
+            near=nearest(str(data), words.split(", ")),
+        )  # fmt: skip
+    hint = decimal_comma_hint(tree, path)
+    message = WORDS.get(kind) or _limits(kind, context) or str(context["msg"])
+    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path))
+
+
+def _limits(kind: str, context: dict[str, Any]) -> str | None:
+    if kind == "greater_than_equal":
+        return f"at least {context['ge']} is wanted"
+    if kind == "less_than_equal":
+        return f"at most {context['le']} is wanted"
+    if kind in ("too_long", "string_too_long"):
+        return f"this is too long: at most {context['max_length']}"
+    if kind == "too_short":
+        return "there is nothing here"
+    return None
+
+
+def _model(path: Path) -> type[BaseModel] | None:
+    for pattern, model in MODELS:
+        if len(pattern) == len(path) and all(p is ANY or p == s for p, s in zip(pattern, path, strict=True)):
+            return model
+    return None
+
+
+def _keys(path: Path) -> list[str]:
+    model = _model(path) or schema.OnLine
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+def _describe(path: Path) -> str | None:
+    model = _model(path[:-1])
+    if model is None:
+        return None
+    for name, field in model.model_fields.items():
+        if path[-1] in (name, field.alias):
+            return field.description
+    return None
+
+
+def refusal(error: Refused, problem: Problem) -> ProblemError:
+    """A stage's refusal in the words and at the place of the file."""
+    found = _stage_error(error, problem)
+    return found.located(problem.file, problem.source) if problem.file else found
+
+
+def _stage_error(error: Refused, problem: Problem) -> ProblemError:
+    units = problem.units
+
+    def shown(value: complex | float) -> str:
+        if isinstance(value, complex):
+            return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
+        return f"{units.from_si(value, ANGLE):.6g} {units.symbol(ANGLE)}"
+
+    crank = problem.linkage.driver.kind == "turn"
+    at = units.from_si(problem.linkage.sketch.at, ANGLE if crank else LENGTH)
+    place = f"{at:.6g} {units.symbol(ANGLE if crank else LENGTH)}"
+    match error:
+        case WrongMobility(structure=structure):
+            return _mobility(structure)
+        case NotSolvable(group=group):
+            return ProblemError(
+                f"links {', '.join(group.links)} make a group that this version cannot solve", path=("links", group.links[0]),
+                found=f"class {ROMAN[group.grade]}, {group.type}", allowed="groups of class II: RRR, RRP, RPR, PRP, RPP",
+                key=True,
+            )  # fmt: skip
+        case NoAssembly(group=group, gap=gap):
+            short = f"{units.from_si(gap, LENGTH):.6g} {units.symbol(LENGTH)} short of closing"
+            if group.type in ("PRP", "RPP"):
+                short = "their guides are parallel"
+            return ProblemError(
+                f"links {' and '.join(group.links)} cannot be assembled with the driver at {place}", path=("sketch", "at"),
+                found=short, allowed="lengths that reach, or another place of the driver",
+            )  # fmt: skip
+        case Undecided(group=group, choices=choices) if choices:
+            ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())
+            return ProblemError(
+                f"the sketch does not say which way round links {' and '.join(group.links)} are assembled",
+                path=("sketch",), allowed=f"with the driver at {place}, {ways}", key=True,
+            )  # fmt: skip
+        case Undecided(group=group):
+            return ProblemError(
+                f"links {' and '.join(group.links)} are in their dead position in the sketch", path=("sketch", "at"),
+                found=place, allowed="another place of the driver, where the two assemblies differ",
+            )  # fmt: skip
+        case Misfit(name=name, sketched=sketched, found=value):
+            return ProblemError(
+                "the sketch fits no assembly", path=("sketch", name), found=shown(sketched),
+                allowed=f"about {shown(value)} with the driver at {place}",
+            )  # fmt: skip
+        case NoSuchPosition(number=number, count=count):
+            return ProblemError(
+                "there is no such position", path=("positions",), found=str(number), allowed=f"0 to {count - 1}"
+            )
+        case NoStrokes(link=link, path=path):
+            what = "no output is joined to the frame" if link is None else f"link {link} has no ends of its stroke"
+            return ProblemError("there is no working stroke", path=path, found=what, allowed="see output:")
+    return ProblemError(str(error))
+
+
+def _mobility(structure: Structure) -> ProblemError:
+    n, p = len(structure.links), len(structure.pairs)
+    count = f"W = 3*{n} - 2*{p} = {structure.mobility}"
+    if structure.loose:
+        links = structure.loose
+        return ProblemError(
+            f"mobility is not 1: {_listed(links)} loose", path=("links", links[0]), found=count,
+            allowed="W = 1, the one driver; one pair more takes two freedoms", key=True,
+        )  # fmt: skip
+    name, bodies = structure.idle[0] if structure.idle else ("driver", structure.links)
+    if name == "driver":
+        return ProblemError(
+            "mobility is not 1: the driver cannot move, its links are a truss", path=("driver", "link"),
+            found=f"{count}; over-held: links {', '.join(bodies)}", allowed="W = 1",
+        )  # fmt: skip
+    links = tuple(b for b in bodies if b in structure.links)
+    return ProblemError(
+        f"mobility is not 1: pair {name} holds what is held already", path=("links", links[0]) if links else ("links",),
+        found=f"{count}; over-held: links {', '.join(bodies)}", allowed="W = 1", key=True,
+    )  # fmt: skip
+
+
+def _listed(links: tuple[str, ...]) -> str:
+    return f"link {links[0]} is" if len(links) == 1 else f"links {', '.join(links)} are"

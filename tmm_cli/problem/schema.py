@@ -1,0 +1,225 @@
+"""The shape of a problem file, for pydantic: what keys there are and what may stand in them.
+
+Only shape is checked here; numbers with units, names of points and guides and the rest of the sense are checked where
+the file is built into a linkage (build), which knows the parameters and units. The field descriptions are what
+`tmm schema` prints.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic_core import PydanticCustomError
+
+MAX_LINKS = 100
+MAX_POSITIONS = 100_000
+
+
+def _value(found: Any) -> Any:
+    if isinstance(found, bool) or not isinstance(found, int | float | str):
+        raise PydanticCustomError("value", "a number, text with a unit, or arithmetic on parameters is wanted")
+    return found
+
+
+def _name(found: Any) -> str:
+    if isinstance(found, int) and not isinstance(found, bool):
+        return str(found)
+    if not isinstance(found, str) or not found.strip():
+        raise PydanticCustomError("name", "a name is wanted")
+    if len(found) > 40:
+        raise PydanticCustomError("name", "a name is at most 40 characters long")
+    return found
+
+
+def _vector(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 2:
+        raise PydanticCustomError("vector", "two coordinates [x, y] are wanted")
+    return [_value(item) for item in found]
+
+
+_VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+Value = Annotated[Any, BeforeValidator(_value), WithJsonSchema(_VALUE)]
+Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "integer"}]})]
+Vector = Annotated[
+    Any, BeforeValidator(_vector), WithJsonSchema({"type": "array", "items": _VALUE, "minItems": 2, "maxItems": 2})
+]
+
+
+def _place(found: Any) -> Any:
+    if isinstance(found, str):
+        return _name(found)
+    if isinstance(found, dict):
+        return OnLine.model_validate(found)
+    return _vector(found)
+
+
+class Strict(BaseModel):
+    """Every key is known or refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+
+class OnLine(Strict):
+    """A place on the line of two points of the link: `at` is 0 at the first, 1 at the second; `side` is off it."""
+
+    on: Name = Field(description="two points of the link, written together: CD (or C-D)")
+    at: Value = Field(default=0.5, description="share of the way from the first to the second")
+    side: Value = Field(default=0, description="distance to the left of the line")
+
+
+Place = Annotated[
+    Any,
+    BeforeValidator(_place),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$ref": "#/$defs/OnLine"}]}),
+]
+
+
+class Guide(Strict):
+    """A straight guide on the frame or on a link."""
+
+    on: Name = Field(default="0", description="the link that carries it; the frame when left out")
+    through: Place | None = Field(default=None, description="a point of that link, or [x, y] in its axes")
+    angle: Value | None = Field(default=None, description="direction, from the x axis of that link")
+    along: Name | None = Field(default=None, description="instead of through and angle: two points, CD")
+    offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+
+
+class Slide(Strict):
+    """A sliding pair of this link."""
+
+    on: Name = Field(description="a guide's name, or the link that it slides on")
+    along: Name | None = Field(default=None, description="two points of that link: the guide runs from C to D")
+    through: Place | None = Field(default=None, description="a point of that link on the guide, or [x, y] in its axes")
+    angle: Value | None = Field(default=None, description="direction of the guide, from the x axis of that link")
+    offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+    point: Name | None = Field(default=None, description="the point of this link that runs on the guide; its first")
+    turned: Value = Field(default=0, description="angle of this link's axes from those of the link it slides on")
+
+
+class Link(Strict):
+    """A moving link. Its axes: origin in its first point, x towards the second; or as coordinates say."""
+
+    name: str | None = Field(default=None, max_length=60, description="what the link is called in reports")
+    points: list[Name] | dict[Name, Vector] = Field(description="names of its points, or their coordinates in its axes")
+    length: Value | None = Field(default=None, description="distance of two points")
+    also: dict[Name, Place] = Field(default_factory=dict, description="further points, in its axes")
+    slides: Slide | list[Slide] | None = Field(default=None, description="what it slides on")
+
+
+class Driver(Strict):
+    """The input: a crank on the frame, or a slider on the frame that is driven (cylinder)."""
+
+    link: Name
+    speed: Value = Field(description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s)")
+    acceleration: Value = Field(default=0, description="in the sense of motion; the speed is that of position 0")
+    turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
+    balance: Literal["moment", "force"] = Field(default="moment", description="what balances the crank")
+    end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
+
+
+class Mass(Strict):
+    """Mass properties of a link."""
+
+    mass: Value | None = None
+    weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
+    inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
+    centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+
+
+class Tabulated(Strict):
+    """A force or moment by table, or by size and angle."""
+
+    size: Value | None = None
+    angle: Value | None = Field(default=None, description="direction of the force from the x axis")
+    against: Literal["stroke", "crank angle", "crank turn"] | None = Field(
+        default=None,
+        description="what the table's first column is: run of the output from the start of its working stroke; "
+        "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
+    )
+    table: list[Vector] | None = Field(default=None, max_length=10_000, description="rows [argument, size]")
+
+
+def _force(found: Any) -> Any:
+    return Tabulated.model_validate(found) if isinstance(found, dict) else _vector(found)
+
+
+def _moment(found: Any) -> Any:
+    return Tabulated.model_validate(found) if isinstance(found, dict) else _value(found)
+
+
+_TABLE = {"$ref": "#/$defs/Tabulated"}
+
+
+class Load(Strict):
+    """A force, a moment, or both, on a link."""
+
+    on: Name = Field(description="the link")
+    at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
+    force: Annotated[
+        Any, BeforeValidator(_force), WithJsonSchema({"anyOf": [{"type": "array"}, _TABLE]})
+    ] = Field(default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}")
+    moment: Annotated[Any, BeforeValidator(_moment), WithJsonSchema({"anyOf": [_VALUE, _TABLE]})] = Field(
+        default=None, description="positive counterclockwise; a value, or {against, table}"
+    )
+    axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
+    when: Literal["always", "working stroke"] = "always"
+
+
+class Output(Strict):
+    """The link whose stroke or swing is the purpose of the mechanism."""
+
+    link: Name
+    working: Literal["auto", "forward", "backward"] = Field(
+        default="auto", description="direction of the working stroke; auto: the slower one"
+    )
+
+
+class Positions(Strict):
+    """Which positions are computed. They are numbered from 0 in the driver's sense."""
+
+    count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
+    from_: Any = Field(default=None, alias="from", description="place of position 0: an angle, or `working stroke`")
+    at: list[Value] | None = Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
+    detail: list[int] = Field(default_factory=list, max_length=24, description="numbers of positions drawn in detail")
+
+
+class Checks(Strict):
+    """Limits above which a run says so and ends with exit code 1."""
+
+    lever: Value = Field(default="5 %", description="difference of the Zhukovsky lever from the force plan")
+
+
+class File(Strict):
+    """A problem of planar lever mechanisms."""
+
+    tmm: Literal[1] = Field(description="version of this format")
+    title: str = Field(default="", max_length=200)
+    description: str = Field(default="", max_length=4000)
+    units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
+    parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
+    points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
+    guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
+    links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)
+    driver: Driver
+    sketch: dict[Name, Any] = Field(
+        default_factory=dict,
+        description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
+    )
+    masses: dict[Name, Mass] = Field(default_factory=dict)
+    loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
+    gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
+    output: Any = Field(default=None, description="a link, or {link, working}")
+    positions: Positions = Field(default_factory=Positions)
+    checks: Checks = Field(default_factory=Checks)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short_output(cls, found: Any) -> Any:
+        if isinstance(found, dict):
+            out = found.get("output")
+            if isinstance(out, dict):
+                found = {**found, "output": Output.model_validate(out)}
+            elif out is not None:
+                found = {**found, "output": Output(link=_name(out))}
+        return found

@@ -1,0 +1,72 @@
+"""What a stage may refuse. A stage says what is wrong in numbers and names; the words are put where files are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tmm_cli.structure.assur import Group, Structure
+
+
+class Refused(Exception):  # noqa: N818  a refusal is a result, named for what it is
+    """A linkage or a request for which a stage has no answer."""
+
+
+class WrongMobility(Refused):
+    """The linkage and its one driver do not fit: mobility is not one, or the driver cannot move it."""
+
+    def __init__(self, structure: Structure) -> None:
+        super().__init__(f"W = {structure.mobility}")
+        self.structure = structure
+
+
+class NotSolvable(Refused):
+    """A group for which there is no kernel."""
+
+    def __init__(self, group: Group) -> None:
+        super().__init__(group.title)
+        self.group = group
+
+
+class NoAssembly(Refused):
+    """The sketch cannot be assembled. gap: how much (m) the group is short of closing at the sketch's place."""
+
+    def __init__(self, group: Group, gap: float) -> None:
+        super().__init__(group.title)
+        self.group, self.gap = group, gap
+
+
+class Undecided(Refused):
+    """The sketch does not tell two assemblies apart.
+
+    choices: for points (m) and links (rad) that would tell, the values in each assembly; none in a dead position.
+    """
+
+    def __init__(self, group: Group, choices: Mapping[str, tuple[complex | float, complex | float]]) -> None:
+        super().__init__(group.title)
+        self.group, self.choices = group, choices
+
+
+class Misfit(Refused):
+    """A sketched point (m) or angle (rad) is far from where it comes to lie in the nearest assembly."""
+
+    def __init__(self, name: str, sketched: complex | float, found: complex | float) -> None:
+        super().__init__(name)
+        self.name, self.sketched, self.found = name, sketched, found
+
+
+class NoSuchPosition(Refused):
+    """A position number beyond those of the file."""
+
+    def __init__(self, number: int, count: int) -> None:
+        super().__init__(str(number))
+        self.number, self.count = number, count
+
+
+class NoStrokes(Refused):
+    """Strokes of the output are needed, by the key at `path` of the file, but it has none."""
+
+    def __init__(self, link: str | None, path: tuple[str, ...]) -> None:
+        super().__init__(".".join(path))
+        self.link, self.path = link, path
