@@ -1,0 +1,1 @@
+"""Records to rows, and rows to the terminal, CSV and JSON."""

@@ -1,0 +1,210 @@
+"""result.json: everything that was found, in SI and radians. `schema()` documents it.
+
+Arrays have one entry a position, null where a position cannot be reached or is dead. Vectors are two arrays, x and y.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.forces.plan import Reaction, Reactions
+from tmm_cli.linkage import Driver
+from tmm_cli.motion import Motion, Point
+from tmm_cli.pipeline import Results
+from tmm_cli.quality import output_link
+from tmm_cli.results.reports.cycle import state
+from tmm_cli.results.reports.kinematics import mass_centres, named_points
+from tmm_cli.results.warnings import warnings
+from tmm_cli.structure.assur import ROMAN, Structure
+from tmm_cli.vectors import Vector
+
+FORMAT = 1
+
+
+def plain(value: Any) -> Any:
+    """Numbers and arrays as JSON has them: no nan, no infinity."""
+    if isinstance(value, np.ndarray):
+        return [plain(v) for v in value.tolist()]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, dict):
+        return {key: plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    return value
+
+
+def to_json(results: Results) -> dict[str, Any]:
+    """The whole content of result.json as plain data."""
+    problem = results.problem
+    found: dict[str, Any] = {
+        "tmm": FORMAT,
+        "problem": {"name": problem.name, "title": problem.title, "description": problem.description},
+        "structure": _structure(results.structure, results),
+    }
+    if results.motion is not None:
+        found |= _range(results)
+        found["positions"] = _positions(results.motion, results)
+        found["kinematics"] = _kinematics(results.motion, results)
+    if results.reactions is not None and results.lever is not None:
+        found["forces"] = _forces(results.reactions, results)
+        found["lever"] = {
+            "balancing": results.lever.balancing,
+            "difference": results.lever.difference,
+            "limit": problem.lever_limit,
+            "holds": results.lever_holds,
+            "items": [
+                {"name": i.name, "link": i.link, "kind": "force" if i.end is not None else "couple",
+                 "size": i.size, "arm": i.arm, "moment": i.moment}
+                for i in results.lever.items
+            ],
+        }  # fmt: skip
+    found["warnings"] = list(warnings(results))
+    return {key: plain(value) for key, value in found.items()}
+
+
+def _structure(structure: Structure, results: Results) -> dict[str, Any]:
+    links = results.linkage.links
+    return {
+        "mobility": structure.mobility,
+        "links": [
+            {"name": n, "role": results.roles[n], "label": links[n].label, "points": list(links[n].points)}
+            for n in structure.links
+        ],
+        "pairs": [{"name": p.name, "kind": p.kind, "links": [p.i, p.j], "point": p.point} for p in structure.pairs],
+        "n": len(structure.links),
+        "p1": len(structure.pairs),
+        "contours": structure.contours,
+        "formula": structure.formula,
+        "class": ROMAN[structure.mechanism_class],
+        "groups": [
+            {"links": list(g.links), "class": ROMAN[g.grade], "order": g.order, "type": g.type, "name": g.title,
+             "inner": [p.name for p in g.inner], "outer": [p.name for p in g.outer]}
+            for g in structure.groups
+        ],
+    }  # fmt: skip
+
+
+def _range(results: Results) -> dict[str, Any]:
+    driver: Driver = results.linkage.driver
+    way, strokes = results.way, results.strokes
+    assert way is not None
+    return {
+        "driver": {
+            "link": driver.link,
+            "kind": driver.kind,
+            "sense": driver.sense,
+            "rate": driver.rate,
+            "acceleration": driver.acceleration,
+            "full_turn": way.full,
+            "range": [way.start, way.end],
+            "limits": [{"at": limit.place, "group": limit.group} for limit in way.limits],
+        },
+        "dead_positions": [{"at": d.place, "group": d.group, "margin": d.margin} for d in results.dead],
+        "output": None if strokes is None else {
+            "link": strokes.link,
+            "kind": strokes.kind,
+            "travel": strokes.travel if strokes.strokes else None,
+            "k": strokes.k if strokes.strokes else None,
+            "rule": strokes.rule,
+            "strokes": [
+                {"start": s.start, "length": s.length, "from": s.low, "run": s.run, "working": s.working}
+                for s in strokes.strokes
+            ],
+        },
+    }  # fmt: skip
+
+
+def _positions(motion: Motion, results: Results) -> dict[str, Any]:
+    return {
+        "number": list(results.numbers),
+        "driver": motion.q,
+        "time": motion.time,
+        "rate": motion.rate,
+        "placed": motion.placed,
+        "moving": motion.moving,
+        "state": [state(results, k) for k in range(len(results.numbers))],
+    }
+
+
+def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
+    linkage = results.linkage
+    links = {}
+    for name in linkage.moving:
+        t = motion.link(name)
+        links[name] = {
+            "angle": t.angle, "omega": t.omega, "epsilon": t.epsilon, "first": t.first, "second": t.second
+        }  # fmt: skip
+    slides = {}
+    for slide in linkage.slides:
+        s = motion.slide(slide)
+        slides[slide.name] = {
+            "runner": slide.runner, "carrier": slide.carrier, "run": s.run, "v": s.v, "a": s.a,
+            "coriolis": _xy(s.coriolis), "first": s.first, "second": s.second,
+        }  # fmt: skip
+    margins = {d.group.title: p.margin for d, p in zip(motion.dyads, motion.placements, strict=True)}
+    return {
+        "output": output_link(linkage, results.structure.groups),
+        "points": {name: _point(motion.point(*key)) for name, key in named_points(results).items()},
+        "centres": {name: _point(motion.point(*key)) for name, key in mass_centres(results).items()},
+        "links": links,
+        "slides": slides,
+        "margins": margins,
+    }
+
+
+def _point(p: Point) -> dict[str, Any]:
+    return {"x": _xy(p.x), "v": _xy(p.v), "a": _xy(p.a), "first": _xy(p.first), "second": _xy(p.second)}
+
+
+def _xy(vector: Vector) -> dict[str, Any]:
+    return {"x": vector.real, "y": vector.imag}
+
+
+def _forces(reactions: Reactions, results: Results) -> dict[str, Any]:
+    balance = reactions.balance
+    return {
+        "loads": [
+            {"name": load.name, "kind": load.kind, "link": load.link, "force": _xy(load.force), "moment": load.moment}
+            for load in reactions.applied
+        ],
+        "reactions": {r.pair.name: _reaction(r) for r in reactions.all},
+        "compound_hinges": _pins(reactions, results),
+        "balancing": {
+            "kind": balance.kind,
+            "moment": balance.moment,
+            "force": balance.force,
+            "vector": _xy(balance.vector),
+            "at": _xy(balance.at),
+        },
+    }
+
+
+def _reaction(r: Reaction) -> dict[str, Any]:
+    found = {
+        "on": r.on, "by": r.by, "force": _xy(r.force), "size": np.abs(r.force), "angle": np.angle(r.force),
+        "at": _xy(r.at),
+    }  # fmt: skip
+    if r.tangential is not None and r.normal is not None:
+        found |= {"tangential": _xy(r.tangential), "normal": _xy(r.normal)}
+    if r.couple is not None:
+        found |= {"signed": r.signed, "couple": r.couple, "arm": r.arm}
+    return found
+
+
+def _pins(reactions: Reactions, results: Results) -> dict[str, Any]:
+    """At a compound hinge, what the pin does to each link (however the hinge is counted as pairs)."""
+    found = {}
+    for hinge in results.linkage.hinges:
+        if len(hinge.links) < 3:
+            continue
+        pairs = [r for r in reactions.all if r.pair.slide is None and r.pair.point == hinge.point]
+        found[hinge.point] = {
+            link: _xy(sum(r.onto(link) for r in pairs if link in (r.on, r.by))) for link in hinge.links
+        }  # type: ignore[arg-type]
+    return found

@@ -1,0 +1,61 @@
+"""Structure: mobility, links, pairs, Assur groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.linkage import FRAME
+from tmm_cli.pipeline import Results
+from tmm_cli.results.table import Column, Table
+from tmm_cli.structure.assur import ROMAN
+from tmm_cli.words import say
+
+
+def tables(results: Results) -> Iterable[Table]:
+    """Four small tables."""
+    structure, linkage = results.structure, results.linkage
+    turning = sum(p.kind == "R" for p in structure.pairs)
+    facts = (
+        (say("structure.n"), str(len(structure.links))),
+        (say("structure.p1"), say("structure.kinds", all=len(structure.pairs), r=turning, p=len(structure.pairs) - turning)),
+        (say("structure.W"), say("structure.chebyshev", n=len(structure.links), p=len(structure.pairs), w=structure.mobility)),
+        (say("structure.K"), str(structure.contours)),
+        (say("structure.formula"), structure.formula),
+        (say("structure.class"), ROMAN[structure.mechanism_class]),
+    )
+    yield Table(
+        "structure", say("structure.title"),
+        (Column(say("word.what"), [a for a, _ in facts]), Column(say("word.value"), [b for _, b in facts])),
+    )  # fmt: skip
+    links = [linkage.links[name] for name in structure.links]
+    yield Table(
+        "links", say("links.title"),
+        (
+            Column(say("word.link"), [x.name for x in links]),
+            Column(say("links.role"), [say(f"role.{results.roles[x.name]}") for x in links]),
+            Column(say("links.label"), [x.label for x in links]),
+            Column(say("links.points"), [", ".join(x.points) for x in links]),
+        ),
+    )  # fmt: skip
+    pairs = structure.pairs
+    yield Table(
+        "pairs", say("pairs.title"),
+        (
+            Column(say("word.pair"), [p.name for p in pairs]),
+            Column(say("word.links"), [f"{p.i} - {p.j}" for p in pairs]),
+            Column(say("pairs.kind"), [say(f"pairs.{p.kind}") for p in pairs]),
+            Column(say("pairs.place"), [say("pairs.frame" if FRAME in (p.i, p.j) else "pairs.moving") for p in pairs]),
+        ),
+    )  # fmt: skip
+    groups = structure.groups
+    yield Table(
+        "groups", say("groups.title"),
+        (
+            Column(say("word.group"), [", ".join(g.links) for g in groups]),
+            Column(say("groups.class"), [ROMAN[g.grade] for g in groups]),
+            Column(say("groups.order"), [str(g.order) for g in groups]),
+            Column(say("groups.type"), [g.type for g in groups]),
+            Column(say("groups.inner"), [", ".join(p.name for p in g.inner) for g in groups]),
+            Column(say("groups.outer"), [", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer) for g in groups]),
+        ),
+    )  # fmt: skip

@@ -1,0 +1,57 @@
+"""What the user should know besides the numbers: limited range, dead positions, nearness to them, failed checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.pipeline import Results
+from tmm_cli.problem.dimensions import ANGLE, LENGTH
+from tmm_cli.words import say
+
+NEAR = 0.05  # a margin (sine of the transmission angle) below which a position is said to be near a dead one
+
+
+def warnings(results: Results) -> Iterable[str]:
+    """One sentence each, in the units of the file."""
+    motion, way = results.motion, results.way
+    if motion is None or way is None:
+        return
+    units = results.problem.units
+    measure = ANGLE if results.linkage.driver.kind == "turn" else LENGTH
+
+    def place(q: float) -> str:
+        return f"{units.from_si(q, measure):.6g} {units.symbol(measure)}"
+
+    if not way.full and way.limits and results.linkage.driver.kind == "turn":
+        groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits))
+        yield say("warning.range", link=results.linkage.driver.link, start=place(way.start), end=place(way.end), groups=groups)
+    elif way.limits:
+        for limit in way.limits:
+            yield say("warning.limit", place=place(limit.place), group=limit.group)
+    for dead in results.dead:
+        yield say("warning.dead", place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
+    for k, number in enumerate(results.numbers):
+        for title, lost in motion.missing.items():
+            if lost[k]:
+                gap = motion.placements[list(motion.missing).index(title)].gap[k]
+                short = f"{units.from_si(float(gap), LENGTH):.6g} {units.symbol(LENGTH)}"
+                yield say("warning.missing", number=number, place=place(float(motion.q[k])), group=title, gap=short)
+        for title, dead_here in motion.dead.items():
+            if dead_here[k]:
+                yield say("warning.dead_here", number=number, place=place(float(motion.q[k])), group=title)
+    for dyad, at in zip(motion.dyads, motion.placements, strict=True):
+        margin = np.where(motion.moving, at.margin, np.inf)
+        if margin.size and np.min(margin) < NEAR:
+            k = int(np.argmin(margin))
+            yield say(
+                "warning.near", number=results.numbers[k], group=dyad.group.title, margin=f"{float(margin[k]):.2g}"
+            )
+    if results.lever is not None and not results.lever_holds:
+        worst = np.where(motion.moving, results.lever.difference, 0.0)
+        k = int(np.argmax(worst))
+        yield say(
+            "warning.lever", number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
+            limit=f"{100 * results.problem.lever_limit:.3g}",
+        )  # fmt: skip
