@@ -1,0 +1,45 @@
+"""The library door of the course-project calculator: `load` a problem file, `solve` it.
+
+    from tmm_cli import load, solve
+
+    results = solve(load("problems/shaper.yaml"))
+    results.reactions.balance.moment      # N m, one value a position
+    results.motion.named("E").a           # m/s2, complex: x + iy
+
+Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.ProblemError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from tmm_cli.pipeline import Results
+    from tmm_cli.problem.record import Problem
+
+__version__ = "0.1.0"
+__all__ = ["__version__", "load", "solve"]
+
+
+def load(path: str) -> Problem:
+    """Read, check and build a problem file. Raises ProblemError."""
+    from tmm_cli.problem.build import load as read  # inside, so that importing the package stays cheap
+
+    return read(path)
+
+
+def solve(
+    problem: Problem,
+    stage: Literal["structure", "kinematics", "forces"] = "forces",
+    positions: Sequence[int] | None = None,
+) -> Results:
+    """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError."""
+    from tmm_cli.pipeline import solve as compute
+    from tmm_cli.problem.refusals import refusal
+    from tmm_cli.refused import Refused
+
+    try:
+        return compute(problem, stage, positions)
+    except Refused as error:
+        raise refusal(error, problem) from None

@@ -1,0 +1,1 @@
+"""One file a command: parse, call, print. Heavy packages are imported inside, when their command runs."""

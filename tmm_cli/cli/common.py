@@ -1,0 +1,123 @@
+"""What the commands share: arguments, reading files one after the other, errors, exit codes."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from tmm_cli.pipeline import Results, Stage
+
+OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
+
+Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
+Position = Annotated[
+    list[int] | None,
+    typer.Option("--position", "-p", min=0, help="Compute this position only (may be repeated).", show_default=False),
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
+]
+
+
+def console() -> Console:
+    """For results: standard output, as wide as the tables need when it is not a terminal."""
+    from rich.console import Console
+
+    return Console(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
+
+
+def say(text: str) -> None:
+    """Talk goes to standard error."""
+    typer.echo(text, err=True)
+
+
+def each(files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False) -> NoReturn:
+    """Do the work on every file, with a progress bar when there are several; exit with the worst code.
+
+    Bad input is one message and does not keep the other files from being worked on.
+    """
+    from tmm_cli.problem.errors import ProblemError
+
+    worst = OK
+    for file in _progress(files):
+        try:
+            code = work(file)
+        except ProblemError as error:
+            if as_json:
+                emit_json({"error": error.to_dict()})
+            say(f"error: {error}")
+            code = BAD_INPUT
+        except OSError as error:
+            say(f"error: {error.filename or file}: {error.strerror}")
+            code = BAD_INPUT
+        worst = max(worst, code)
+    raise typer.Exit(worst)
+
+
+def _progress(files: Sequence[str]) -> Iterable[str]:
+    if len(files) < 2:
+        return files
+    from rich.console import Console
+    from rich.progress import track
+
+    return track(files, description="", console=Console(stderr=True), transient=True)
+
+
+def solved(file: str, stage: Stage, positions: Sequence[int] | None) -> Results:
+    """Read and compute one file. Raises ProblemError."""
+    from tmm_cli import load, solve
+
+    return solve(load(file), stage, positions)
+
+
+def emit_json(content: dict[str, Any]) -> None:
+    """Pure JSON on standard output, one document a file."""
+    sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+
+
+def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None) -> int:
+    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code."""
+    from tmm_cli.results.warnings import warnings
+
+    if as_json:
+        from tmm_cli.results.as_json import to_json
+
+        emit_json(to_json(results))
+    else:
+        show(results, names)
+    if out is not None:
+        from tmm_cli.results.output import write_results
+
+        say(f"written: {write_results(results, out)}")
+    for warning in warnings(results):
+        say(f"warning: {warning}")
+    return OK if results.lever_holds else CHECK_FAILED
+
+
+def show(results: Results, names: Iterable[str]) -> None:
+    """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
+    from tmm_cli.results.reports import tables
+    from tmm_cli.results.terminal import show as print_table
+
+    screen, names = console(), set(names)
+    for table in tables(results):
+        if table.name in names:
+            print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
+
+
+def detailed_rows(results: Results, table: Any) -> set[int]:
+    """Rows of a long table that belong to positions in detail; the first position when there are none."""
+    chosen = {results.numbers.index(n) for n in results.problem.request.detail if n in results.numbers}
+    if len(results.numbers) == 1 or not chosen:
+        chosen = {0}
+    per = table.rows // max(len(results.numbers), 1)
+    return {k * per + i for k in chosen for i in range(per)}

@@ -1,0 +1,22 @@
+"""`tmm explain`."""
+
+from __future__ import annotations
+
+from tmm_cli.cli.common import OK, Files, console, each, solved
+
+
+def explain(files: Files) -> None:
+    """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why."""
+
+    def work(file: str) -> int:
+        from tmm_cli.results.explain import explain as tables
+        from tmm_cli.results.terminal import show
+
+        results = solved(file, "structure", None)
+        screen = console()
+        screen.print(f"{results.problem.name}: {results.problem.title}")
+        for table in tables(results):
+            show(table, results.problem.units, screen)
+        return OK
+
+    each(files, work)

@@ -1,0 +1,47 @@
+"""`tmm run`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, say, show, solved
+
+if TYPE_CHECKING:
+    from tmm_cli.pipeline import Results
+
+
+def run(
+    files: Files,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    as_json: Json = False,
+    position: Position = None,
+    drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
+) -> None:
+    """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
+
+    def work(file: str) -> int:
+        from tmm_cli.results.as_json import to_json
+        from tmm_cli.results.output import write_results
+        from tmm_cli.results.warnings import warnings
+
+        results = solved(file, "forces", position)
+        folder = write_results(results, out, drawn(results) if drawings else ())
+        if as_json:
+            emit_json(to_json(results))
+        elif len(files) == 1:
+            show(results, ("structure", "links", "groups", "quality", "cycle"))
+        for warning in warnings(results):
+            say(f"warning: {results.problem.name}: {warning}")
+        say(f"written: {folder}")
+        return OK if results.lever_holds else CHECK_FAILED
+
+    def drawn(results: Results) -> Iterable[tuple[str, bytes]]:
+        from tmm_cli.draw import files as drawing_files
+
+        return drawing_files(results)
+
+    each(files, work, as_json=as_json)

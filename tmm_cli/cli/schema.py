@@ -1,0 +1,23 @@
+"""`tmm schema`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+
+def schema(
+    result: Annotated[bool, typer.Option("--result", help="Of result.json instead of problem files.")] = False,
+) -> None:
+    """Print the JSON Schema of problem files, for editors."""
+    from tmm_cli.cli.common import emit_json
+
+    if result:
+        from tmm_cli.results.json_schema import result_schema
+
+        emit_json(result_schema())
+    else:
+        from tmm_cli.problem.json_schema import file_schema
+
+        emit_json(file_schema())
