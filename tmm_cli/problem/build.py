@@ -116,7 +116,9 @@ class _Builder:
         for point, place in link.also.items():
             check_name(point, (*path, "also", point), "point")
             if point in points:
-                raise ProblemError("this point is there already", path=(*path, "also", point), found=quote(point), key=True)
+                raise ProblemError(
+                    "this point is there already", path=(*path, "also", point), found=quote(point), key=True
+                )
             points[point] = self.sense.place(place, points, (*path, "also", point), name)
         return points
 
@@ -168,7 +170,8 @@ class _Builder:
                         f"guide {slide.on} says where it runs already", path=(*path, key), allowed="on, point, turned",
                         key=True,
                     )  # fmt: skip
-            guide, name, where = guides[slide.on], slide.on, ("guides", slide.on)
+            guide, name = guides[slide.on], slide.on
+            where: Path = ("guides", slide.on)
             carrier = self.sense.known(guide.on, links, (*where, "on"), "link")
         elif slide.on in links:
             carrier, name, where = slide.on, f"{point}'", path
@@ -191,11 +194,19 @@ class _Builder:
 
     def guide(self, guide: schema.Guide, carrier: str, links: dict[str, Link], path: Path) -> tuple[complex, float]:
         points = links[carrier].points
-        if guide.along is None and guide.through is None and guide.angle is None and carrier != FRAME and len(points) == 2:
+        if (
+            guide.along is None
+            and guide.through is None
+            and guide.angle is None
+            and carrier != FRAME
+            and len(points) == 2
+        ):
             guide = guide.model_copy(update={"along": "-".join(points)})
         if guide.along is not None:
             if guide.through is not None or guide.angle is not None:
-                raise ProblemError("along says through and angle already", path=(*path, "along"), allowed="one of the two")
+                raise ProblemError(
+                    "along says through and angle already", path=(*path, "along"), allowed="one of the two"
+                )
             first, second = self.sense.two_points(guide.along, points, (*path, "along"), carrier)
             through, angle = points[first], cmath.phase(points[second] - points[first])
         elif guide.through is not None:
@@ -203,8 +214,8 @@ class _Builder:
             angle = 0.0 if guide.angle is None else self.sense.number(guide.angle, ANGLE, (*path, "angle"))
         else:
             raise ProblemError(
-                "where does this guide run?", path=(*path, "through"), allowed="along: CD, or through: [x, y] and angle",
-            )  # fmt: skip
+                "where does this guide run?", path=(*path, "through"), allowed="along: CD, or through: [x, y] and angle"
+            )
         return through + 1j * self.sense.number(guide.offset, LENGTH, (*path, "offset")) * direction(angle), angle
 
     @staticmethod
@@ -228,9 +239,9 @@ class _Builder:
         for guide in self.shape.guides:
             if guide not in used:
                 raise ProblemError("nothing slides on this guide", path=("guides", guide), found=quote(guide), key=True)
-        self.named_twice(links, hinges)
+        self.named_twice(links, hinges, slides)
 
-    def named_twice(self, links: dict[str, Link], hinges: tuple[Hinge, ...]) -> None:
+    def named_twice(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> None:
         shared = {h.point for h in hinges}
         everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
         pairs = {a + b: (a, b) for a in everything for b in everything}
@@ -238,12 +249,12 @@ class _Builder:
         for word in _words_outside_points(self.tree.data):
             elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
         for name, link in links.items():
-            given = self.shape.links[name].points if name != FRAME else list(link.points)
-            for point in given if isinstance(given, list) else ():
-                runs = name != FRAME and any((s.point or given[0]) == point for s in _slides(self.shape.links[name]))
-                if point in shared or runs or point in elsewhere:
+            given = list(link.points) if name == FRAME else self.shape.links[name].points
+            running = {s.at for s in slides if s.runner == name}
+            for number, point in enumerate(given if isinstance(given, list) else ()):
+                if point in shared or point in elsewhere or link.points[point] in running:
                     continue
-                path = ("points", point) if name == FRAME else ("links", name, "points", given.index(point))
+                path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
                 raise ProblemError(
                     "this point is named nowhere else", path=path, found=quote(point),
                     allowed="a point of another link; a point that is only watched has coordinates (see also:)",
@@ -258,7 +269,8 @@ class _Builder:
         runs = [s for s in slides if {s.carrier, s.runner} == {FRAME, link}]
         if not pivots and not runs:
             raise ProblemError(
-                "the driver is neither hinged to the frame nor slides on it", path=("driver", "link"), found=quote(link),
+                "the driver is neither hinged to the frame nor slides on it",
+                path=("driver", "link"), found=quote(link),
                 allowed=", ".join(
                     [n for h in hinges if FRAME in h.links for n in h.links if n != FRAME]
                     + [s.runner for s in slides if s.carrier == FRAME]
@@ -339,7 +351,9 @@ class _Builder:
         if given.from_ == "working stroke":
             if driver.kind == "slide":
                 raise ProblemError(
-                    "a driven slider has no working stroke to start from", path=("positions", "from"), allowed="a length"
+                    "a driven slider has no working stroke to start from",
+                    path=("positions", "from"),
+                    allowed="a length",
                 )
             return Request(count, "working stroke", places, tuple(given.detail))
         start = self.sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))

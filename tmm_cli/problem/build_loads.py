@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tmm_cli.linkage import FRAME, Linkage, Load, Table
+from tmm_cli.linkage import Linkage, Load, Table
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense, check_name, direction
@@ -20,7 +20,7 @@ def with_masses(linkage: Linkage, shape: schema.File, sense: Sense) -> Linkage:
     """The linkage with masses, inertias, centres of mass and gravity."""
     gravity = _gravity(shape.gravity, sense)
     links = dict(linkage.links)
-    moving = {n: 0 for n in linkage.moving}
+    moving = dict.fromkeys(linkage.moving, 0)
     for name, given in shape.masses.items():
         path: Path = ("masses", name)
         sense.known(name, moving, path, "link", key=True)
@@ -65,7 +65,7 @@ def _gravity(given: Any, sense: Sense) -> complex:
 
 def build_loads(linkage: Linkage, shape: schema.File, sense: Sense) -> tuple[Load, ...]:
     """The loads of the task, in the order of the file."""
-    moving = {n: 0 for n in linkage.moving}
+    moving = dict.fromkeys(linkage.moving, 0)
     loads = []
     for name, given in shape.loads.items():
         path: Path = ("loads", name)
@@ -79,7 +79,7 @@ def build_loads(linkage: Linkage, shape: schema.File, sense: Sense) -> tuple[Loa
             raise ProblemError("a load has a force or a moment", path=path, found="neither", key=True)
         force, table = _force(given.force, linkage, sense, (*path, "force"))
         moment, moment_table = _moment(given.moment, linkage, sense, (*path, "moment"))
-        if table is not None and moment_table is not None or (table or moment_table) and force and moment:
+        if (table is not None and moment_table is not None) or ((table or moment_table) and force and moment):
             raise ProblemError(
                 "a tabulated load is a force or a moment", path=path, found="both", allowed="two loads", key=True
             )

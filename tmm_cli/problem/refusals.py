@@ -69,9 +69,7 @@ def _flat(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dic
             yield item["type"], (*prefix, *item["loc"]), {**item.get("ctx", {}), "msg": item["msg"]}
 
 
-def _meant(
-    errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree
-) -> list[tuple[str, Path, dict[str, Any]]]:
+def _meant(errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree) -> list[tuple[str, Path, dict[str, Any]]]:
     """Errors with paths into the data; a branch of a union that the data was not meant for is left out."""
     meant: list[tuple[str, Path, dict[str, Any]]] = []
     rest: list[tuple[str, Path, dict[str, Any]]] = []
@@ -81,9 +79,9 @@ def _meant(
         fits = True
         for number, step in enumerate(loc):
             last = number == len(loc) - 1
-            if isinstance(data, dict) and step in data or isinstance(data, list) and isinstance(step, int):
+            if (isinstance(data, dict) and step in data) or (isinstance(data, list) and isinstance(step, int)):
                 path.append(step)
-                data = data[step] if isinstance(data, dict) or step < len(data) else None
+                data = _at(data, (step,))
             elif last and kind in ("missing", "extra_forbidden"):
                 path.append(step)
             else:  # the name of a union's branch
@@ -93,9 +91,7 @@ def _meant(
 
 
 def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> ProblemError:
-    data: Any = tree.data
-    for step in path:
-        data = data[step] if isinstance(data, dict) and step in data or isinstance(data, list) else None
+    data = _at(tree.data, path)
     if kind == "extra_forbidden":
         names = _keys(path[:-1])
         key = str(path[-1])
@@ -113,6 +109,18 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
     hint = decimal_comma_hint(tree, path)
     message = WORDS.get(kind) or _limits(kind, context) or str(context["msg"])
     return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path))
+
+
+def _at(data: Any, path: Path) -> Any:
+    """The value at a path, None when it is not in the data."""
+    for step in path:
+        if isinstance(data, dict):
+            data = data.get(step)
+        elif isinstance(data, list) and isinstance(step, int) and step < len(data):
+            data = data[step]
+        else:
+            return None
+    return data
 
 
 def _limits(kind: str, context: dict[str, Any]) -> str | None:
@@ -171,17 +179,17 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             return _mobility(structure)
         case NotSolvable(group=group):
             return ProblemError(
-                f"links {', '.join(group.links)} make a group that this version cannot solve", path=("links", group.links[0]),
-                found=f"class {ROMAN[group.grade]}, {group.type}", allowed="groups of class II: RRR, RRP, RPR, PRP, RPP",
-                key=True,
+                f"links {', '.join(group.links)} make a group that this version cannot solve",
+                path=("links", group.links[0]), found=f"class {ROMAN[group.grade]}, {group.type}",
+                allowed="groups of class II: RRR, RRP, RPR, PRP, RPP", key=True,
             )  # fmt: skip
         case NoAssembly(group=group, gap=gap):
             short = f"{units.from_si(gap, LENGTH):.6g} {units.symbol(LENGTH)} short of closing"
             if group.type in ("PRP", "RPP"):
                 short = "their guides are parallel"
             return ProblemError(
-                f"links {' and '.join(group.links)} cannot be assembled with the driver at {place}", path=("sketch", "at"),
-                found=short, allowed="lengths that reach, or another place of the driver",
+                f"links {' and '.join(group.links)} cannot be assembled with the driver at {place}",
+                path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
             )  # fmt: skip
         case Undecided(group=group, choices=choices) if choices:
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())

@@ -156,9 +156,9 @@ class Load(Strict):
 
     on: Name = Field(description="the link")
     at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
-    force: Annotated[
-        Any, BeforeValidator(_force), WithJsonSchema({"anyOf": [{"type": "array"}, _TABLE]})
-    ] = Field(default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}")
+    force: Annotated[Any, BeforeValidator(_force), WithJsonSchema({"anyOf": [{"type": "array"}, _TABLE]})] = Field(
+        default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
+    )
     moment: Annotated[Any, BeforeValidator(_moment), WithJsonSchema({"anyOf": [_VALUE, _TABLE]})] = Field(
         default=None, description="positive counterclockwise; a value, or {against, table}"
     )

@@ -75,10 +75,9 @@ class Sense:
     def two_points(self, text: str, points: Mapping[str, complex], path: Path, link: str) -> tuple[str, str]:
         """Two points of a link written together, CD or C-D."""
         written = re.split(r"\s*[-–, ]\s*", text.strip())
+        ways = [(text[:k], text[k:]) for k in range(1, len(text))]
         if len(written) == 2:
             ways = [(written[0], written[1])]
-        else:
-            ways = [(text[:k], text[k:]) for k in range(1, len(text))]
         found = [(a, b) for a, b in ways if a in points and b in points and a != b]
         if len(found) == 1 and points[found[0][0]] != points[found[0][1]]:
             return found[0]
@@ -102,7 +101,9 @@ def check_name(name: str, path: Path, what: str) -> None:
     pattern = LINK_NAME if what == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         allowed = "letters and figures, at most 16" + ("" if what == "link" else ", a letter first")
-        raise ProblemError(f"this cannot be the name of a {what}", path=path, found=quote(name), allowed=allowed, key=True)
+        raise ProblemError(
+            f"this cannot be the name of a {what}", path=path, found=quote(name), allowed=allowed, key=True
+        )
 
 
 def direction(angle: float) -> complex:

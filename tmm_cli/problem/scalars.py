@@ -1,0 +1,69 @@
+"""Unquoted words of the file to values, by the YAML 1.2 core schema, and the decimal comma recognised."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+from tmm_cli.problem.errors import ProblemError, quote
+
+Scalar = str | int | float | bool | None
+
+MAX_DIGITS: Final = 25
+
+# Control characters, and invisible ones that reorder or hide text: an editor shows not what is read.
+HIDDEN: Final = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\xad\u200b-\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff"
+    "\ufff9-\ufffb\ufffe\uffff]"
+)
+_NULL = re.compile(r"null|Null|NULL|~|")
+_BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+_INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_NOT_FINITE = re.compile(r"[-+]?\.?(nan|inf|infinity)", re.IGNORECASE)
+_WHOLE = re.compile(r"[-+]?[0-9]+")
+_PART = re.compile(r"[0-9]+(\s*[^\W\d]\S*|\s*[°%])?")
+
+
+def plain_value(text: str) -> Scalar:
+    """The value of an unquoted word. Raises ProblemError, without a place, on a bad number."""
+    if _NULL.fullmatch(text):
+        return None
+    if text in _BOOL:
+        return _BOOL[text]
+    if _INT.fullmatch(text):
+        if len(text) > MAX_DIGITS:
+            raise ProblemError("the number is too long", found=quote(text), allowed=f"at most {MAX_DIGITS} digits")
+        return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+    if _FLOAT.fullmatch(text):
+        return finite_float(text)
+    if _NOT_FINITE.fullmatch(text):
+        raise ProblemError("not a finite number", found=quote(text), allowed="a finite number")
+    whole, comma, part = text.partition(",")
+    if comma and split_number(whole, part):
+        raise comma_error(whole, part)
+    return text
+
+
+def finite_float(text: str) -> float:
+    """The number, from decimal digits. Raises ProblemError when float64 has no place for it."""
+    number = float(text)
+    if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
+        size = "large" if number else "small"
+        raise ProblemError(f"the number is too {size}", found=quote(text), allowed="sizes from 1e-300 to 1e300")
+    return number
+
+
+def split_number(whole: str, part: str) -> bool:
+    """Whether the words on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
+    return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(part))
+
+
+def comma_error(whole: str, part: str) -> ProblemError:
+    """The refusal of `whole,part`, naming what to write instead."""
+    return ProblemError(
+        f"decimal comma: write {whole}.{part}",
+        found=quote(f"{whole},{part}"),
+        allowed=f"a decimal point; a list is written [{whole}, {part}]",
+    )

@@ -1,0 +1,263 @@
+"""Units as people write them, in Latin and Cyrillic, to SI and radians; and what bare numbers mean in a file."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+from tmm_cli.problem.dimensions import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    KINDS,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    STIFFNESS,
+    TIME,
+    Dimension,
+    product_text,
+)
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
+
+
+class UnitError(ProblemError):
+    """A unit that is not known, or that measures something else."""
+
+
+__all__ = [
+    "ACCELERATION",
+    "ANGLE",
+    "ANGULAR_ACCELERATION",
+    "ANGULAR_SPEED",
+    "FORCE",
+    "INERTIA",
+    "KINDS",
+    "LENGTH",
+    "MASS",
+    "MOMENT",
+    "NUMBER",
+    "SPEED",
+    "STIFFNESS",
+    "TIME",
+    "Dimension",
+    "Quantity",
+    "Unit",
+    "UnitError",
+    "UnitSystem",
+    "parse_unit",
+]
+
+_SHORT: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """One unit in SI and radians: scale * pi**pi. The scale is exact, so 110 mm is 0.11 m to the last bit."""
+
+    dimension: Dimension
+    scale: Fraction = Fraction(1)
+    pi: int = 0
+
+    def times(self, other: Unit, power: int = 1) -> Unit:
+        return Unit(
+            self.dimension.times(other.dimension, power),
+            self.scale * other.scale**power,
+            self.pi + power * other.pi,
+        )
+
+    def si(self, number: float) -> float:
+        """The number of these units in SI and radians."""
+        return number * math.pi**self.pi * self.scale.numerator / self.scale.denominator
+
+    def from_si(self, value: float) -> float:
+        """A value in SI and radians in these units."""
+        return value / math.pi**self.pi * self.scale.denominator / self.scale.numerator
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value in SI and radians; without a dimension a bare number, in the file's unit where it is used."""
+
+    value: float
+    dimension: Dimension | None = None
+
+
+def _symbols() -> dict[str, Unit]:
+    milli, kilo = Fraction(1, 1000), Fraction(1000)
+    rows: list[tuple[str, Dimension, Fraction | int]] = [
+        ("m м", LENGTH, 1),
+        ("mm мм", LENGTH, milli),
+        ("cm см", LENGTH, Fraction(1, 100)),
+        ("dm дм", LENGTH, Fraction(1, 10)),
+        ("um μm мкм", LENGTH, milli**2),
+        ("km км", LENGTH, kilo),
+        ("in", LENGTH, Fraction(127, 5000)),
+        ("rad рад", ANGLE, 1),
+        ("s sec с сек", TIME, 1),
+        ("ms мс", TIME, milli),
+        ("min мин", TIME, 60),
+        ("h ч", TIME, 3600),
+        ("kg кг", MASS, 1),
+        ("g г", MASS, milli),
+        ("t т", MASS, 1000),
+        ("N Н", FORCE, 1),
+        ("kN кН", FORCE, 1000),
+        ("MN МН", FORCE, 1_000_000),
+        ("Nm Нм", MOMENT, 1),
+        ("kNm кНм", MOMENT, 1000),
+        ("Nmm Нмм", MOMENT, milli),
+        ("%", NUMBER, Fraction(1, 100)),
+    ]
+    table = {name: Unit(kind, Fraction(scale)) for names, kind, scale in rows for name in names.split()}
+    table |= dict.fromkeys(("deg", "°", "град"), Unit(ANGLE, Fraction(1, 180), 1))
+    table |= dict.fromkeys(("rev", "turn", "об"), Unit(ANGLE, Fraction(2), 1))
+    table |= dict.fromkeys(("rpm",), _PER_MINUTE)
+    table |= dict.fromkeys(("Hz", "Гц"), Unit(ANGULAR_SPEED, Fraction(2), 1))
+    return table
+
+
+# A bare "per minute" counts turns in machine theory; a bare "per second" counts radians.
+_PER_MINUTE: Final = Unit(ANGULAR_SPEED, Fraction(1, 30), 1)
+SYMBOLS: Final[Mapping[str, Unit]] = _symbols()
+_LOOKALIKES: Final = {latin(name): unit for name, unit in SYMBOLS.items()}
+
+_SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
+_FROM_SUPERSCRIPT = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
+_TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2009\u202f\t\r\n", "···*--μ°      ")
+_FACTOR = re.compile(r"\s*([·*/]?)\s*([^\W\d_]+|°|%|1(?=\s*/))(?:\^\s*\(?([+-]?\d+)\)?|(\d))?")
+
+
+def plain_text(text: str) -> str:
+    """The text with superscripts as ^n, ** as ^, and typographic signs and spaces as their keyboard ones."""
+    text = _SUPERSCRIPT.sub(lambda found: "^" + found[0].translate(_FROM_SUPERSCRIPT), text)
+    return text.translate(_TYPOGRAPHY).replace("**", "^")
+
+
+def symbol(name: str) -> Unit | None:
+    """The unit of one symbol, also when Cyrillic letters stand for their Latin look-alikes or the reverse."""
+    return SYMBOLS.get(name) or _LOOKALIKES.get(latin(name))
+
+
+def parse_unit(text: str) -> Unit:
+    """The unit written as products, quotients and powers of symbols: `kg·m²`, `об/мин`, `N*m`, `1/s`.
+
+    Raises UnitError naming the nearest known symbol.
+    """
+    source, unit, position, factors = plain_text(text).strip(), Unit(NUMBER), 0, 0
+    minutes = 0
+    while position < len(source):
+        match = _FACTOR.match(source, position)
+        if not match or (match[1] and not position) or factors >= 8:
+            raise UnitError("not a unit", found=quote(text), allowed="e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2")
+        sign, name, power, digit = match.groups()
+        exponent = int((power or digit or "1")[:6]) * (-1 if sign == "/" else 1)
+        if abs(exponent) > 4:
+            raise UnitError("not a unit: the power is too large", found=quote(text), allowed="powers up to 4")
+        if name != "1":
+            found = symbol(name)
+            if found is None:
+                raise unknown_unit(name)
+            unit = unit.times(found, exponent)
+            minutes += exponent if found == SYMBOLS["min"] else 0
+        position, factors = match.end(), factors + 1
+    if not factors:
+        raise UnitError("a unit is missing", found=quote(text), allowed="e.g. mm, deg, rpm, kN")
+    return _PER_MINUTE if minutes == -1 and unit.dimension == Dimension(time=-1) and factors <= 2 else unit
+
+
+def unknown_unit(name: str) -> UnitError:
+    """The refusal of a symbol, with the nearest known one."""
+    near = nearest(name, SYMBOLS)
+    return UnitError("unknown unit", found=quote(name), allowed="e.g. mm, deg, rpm, kg, N, N*m", near=near)
+
+
+class UnitSystem:
+    """What bare numbers mean in one file, and in which units its tables are printed."""
+
+    def __init__(self, names: Mapping[str, str] | None = None) -> None:
+        """names: unit by kind as in the file, `{length: mm, angular speed: rpm}`; the rest by default.
+
+        Raises ProblemError, its path the key, on an unknown kind, an unknown unit or a unit of another kind.
+        """
+        self._names = {kind.dimension: kind.default for kind in KINDS.values()}
+        for key, name in (names or {}).items():
+            full = key.replace("_", " ")
+            full = _SHORT.get(full, full)
+            if full not in KINDS or full == "number":
+                allowed = [_key(kind) for kind in KINDS if kind != "number"]
+                near = nearest(key, allowed)
+                raise ProblemError(
+                    "unknown key",
+                    path=(key,),
+                    found=quote(key),
+                    allowed=", ".join(allowed),
+                    near=near,
+                    key=True,
+                )
+            kind = KINDS[full]
+            try:
+                found = parse_unit(name).dimension
+            except UnitError as error:
+                raise error.at(key) from None
+            if not found.fits(kind.dimension):
+                raise UnitError(
+                    "wrong unit",
+                    path=(key,),
+                    found=f"{quote(name)}, {found}",
+                    allowed=f"a unit of {full}, e.g. {kind.default}",
+                )
+            self._names[kind.dimension] = name
+        self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
+
+    def unit(self, dimension: Dimension) -> Unit:
+        """The file's unit; without a name of its own, the product of those of length, mass, time and angle."""
+        if dimension in self._units:
+            return self._units[dimension]
+        unit = Unit(NUMBER)
+        for base, power in _bases(dimension):
+            unit = unit.times(self._units[base], power)
+        return unit
+
+    def si(self, number: float, dimension: Dimension) -> float:
+        """A bare number of the file in SI and radians."""
+        return self.unit(dimension).si(number)
+
+    def from_si(self, value: float, dimension: Dimension) -> float:
+        """A value in SI and radians as a bare number of the file."""
+        return self.unit(dimension).from_si(value)
+
+    def factor(self, dimension: Dimension) -> float:
+        """The file's unit in SI and radians."""
+        return self.si(1.0, dimension)
+
+    def symbol(self, dimension: Dimension) -> str:
+        """The file's unit as it is written; empty for a number."""
+        if dimension in self._names:
+            return self._names[dimension]
+        return product_text({self._names[base]: power for base, power in _bases(dimension)})
+
+    def show(self, quantity: Quantity) -> str:
+        """For messages: `a length (110 mm)`, `a bare number (5)`."""
+        if quantity.dimension is None:
+            return f"a bare number ({quantity.value:.6g})"
+        number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
+        return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
+
+
+def _key(kind: str) -> str:
+    return next((short for short, full in _SHORT.items() if full == kind), kind)
+
+
+def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:
+    powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
+    return [(base, power) for base, power in zip((LENGTH, MASS, TIME, ANGLE), powers, strict=True) if power]
