@@ -17,9 +17,7 @@ TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer
 FITS = 0.25  # a sketched point may lie this share of the linkage's size from its place, a link 0.5 rad from its angle
 
 
-def assemble(
-    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None
-) -> tuple[Dyad, ...]:
+def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Dyad, ...]:
     """The groups with their signs, in solving order.
 
     Raises NotSolvable, NoAssembly, Undecided, Misfit.

@@ -39,7 +39,7 @@ class Turning:
 
 @dataclass(frozen=True)
 class Sliding:
-    """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (m/s2, a vector)."""
+    """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (vector, m/s2)."""
 
     run: Real
     v: Real
@@ -102,9 +102,7 @@ class Motion:
         pose, first, second = self.poses[link], self.first[link], self.second[link]
         arm = local * pose.z
         v1, a1 = first.at(arm), second.at(arm, first.w)
-        return Point(
-            pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1
-        )
+        return Point(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
 
     def named(self, point: str) -> Point:
         """Motion of a named point."""
@@ -130,7 +128,7 @@ class Motion:
         here = runner.at(slide.at)
         run = dot(u, here - carrier.at(slide.through))
         point = self.point(slide.runner, slide.at)
-        w, e = self.first[slide.carrier].w, self.second[slide.carrier].e
+        w = self.first[slide.carrier].w
         arm = here - carrier.x
         first = dot(u, point.first - self.first[slide.carrier].at(arm))
         # along the guide the Coriolis part vanishes, so the rest of the difference is the relative acceleration
@@ -188,10 +186,8 @@ def move(linkage: Linkage, dyads: Iterable[Dyad], q: Real, law: Law) -> Motion:
             dead[dyad.group.title] = placed & sound & at.dead
             placed = placed & sound
             moving = moving & placed & ~at.dead
-            at = Placement(
-                *(Pose(np.where(placed, p.x, np.nan), np.where(placed, p.z, np.nan)) for p in (at.a, at.b)),
-                np.where(at.dead, np.nan, at.det), at.margin, at.gap, at.slack,
-            )  # fmt: skip
+            lost, det = ~placed, np.where(at.dead, np.nan, at.det)
+            at = Placement(_without(at.a, lost), _without(at.b, lost), det, at.margin, at.gap, at.slack)
             a, b = dyad.group.links
             poses[a], poses[b] = at.a, at.b
             first[a], first[b] = dyad.rates(at, poses, first)
@@ -204,3 +200,8 @@ def move(linkage: Linkage, dyads: Iterable[Dyad], q: Real, law: Law) -> Motion:
         linkage, dyads, q, law.time(q), rate, acceleration, poses, first, second,
         tuple(placements), placed, moving, dead, missing,
     )  # fmt: skip
+
+
+def _without(pose: Pose, lost: Real) -> Pose:
+    """A pose that is nothing where it is lost."""
+    return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z))

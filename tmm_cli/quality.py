@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -157,9 +158,7 @@ def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
     return Range(start, end, False, tuple(x for x in (first, last) if x))
 
 
-def limit_from(
-    known: Limit, blocked: Real, steps: Real, at: float, limit: Callable[[int, int], Limit]
-) -> Limit:
+def limit_from(known: Limit, blocked: Real, steps: Real, at: float, limit: Callable[[int, int], Limit]) -> Limit:
     """The other limit when all blocked places lie on one side of the sketch: a turn away."""
     if known.place > at:
         other = limit(int(blocked[-1]), -1)
@@ -183,15 +182,13 @@ def find_dead(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> tuple[De
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
         for place in places:
-            best, least = _least(
-                lambda x, n=number: _margin(linkage, dyads, x, n), place - steps, place + steps
-            )
+            best, least = _least(partial(_margin, linkage, dyads, number), place - steps, place + steps)
             if least < DEAD and (way.full or way.start + steps < best < way.end - steps):
                 found.append(DeadPosition(best, dyad.group.title, least))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
-def _margin(linkage: Linkage, dyads: tuple[Dyad, ...], q: Real, number: int) -> Real:
+def _margin(linkage: Linkage, dyads: tuple[Dyad, ...], number: int, q: Real) -> Real:
     motion = move(linkage, dyads[: number + 1], q, Law(0.0, 1.0, 0.0, 1))
     return np.where(motion.placed, motion.placements[number].margin, 0.0)
 
@@ -206,9 +203,7 @@ def _least(function: Callable[[Real], Real], low: float, high: float) -> tuple[f
     return float(middle[0]), float(function(middle)[0])
 
 
-def find_strokes(
-    linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0
-) -> Strokes | None:
+def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0) -> Strokes | None:
     """Strokes of the output over the driver's way; None when there is no output joined to the frame.
 
     resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
@@ -224,12 +219,20 @@ def find_strokes(
     slope = output_run(move(linkage, dyads, q, law), link)[1]
     signs = np.sign(slope)
     change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
-    if not change.size:
+    if not change.size or not way.full:
         return Strokes(link, kind, (), "")
-    turns = _roots(lambda x: output_run(move(linkage, dyads, x, law), link)[1], q[change], q[change + 1])
-    if not way.full:
+
+    def slope_at(x: Real) -> Real:
+        return output_run(move(linkage, dyads, x, law), link)[1]
+
+    turns = _roots(slope_at, q[change], q[change + 1])
+    # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
+    turns = turns[np.abs(slope_at(turns)) < 1e-6 * np.nanmax(np.abs(slope))]
+    turns = np.sort(np.mod(turns, 2 * np.pi))
+    again = np.diff(turns, append=turns[:1] + 2 * np.pi) < 1e-9  # found at both ends of the scan
+    turns = turns[~again][::sense]
+    if turns.size < 2:
         return Strokes(link, kind, (), "")
-    turns = np.unique(np.round(np.mod(turns, 2 * np.pi), 14))[::sense]
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), 2 * np.pi)
     runs = _runs(linkage, dyads, turns, lengths, link, kind)
     lows = output_run(move(linkage, dyads, turns, law), link)[0]
@@ -239,9 +242,7 @@ def find_strokes(
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
         for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
     ]
-    first = max(
-        (i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i)
-    )
+    first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
 
 
@@ -256,9 +257,7 @@ def _working(linkage: Linkage, forward: float, back: float, resists: float) -> t
     return 1, "the forward one"
 
 
-def _runs(
-    linkage: Linkage, dyads: tuple[Dyad, ...], turns: Real, lengths: Real, link: str, kind: str
-) -> Real:
+def _runs(linkage: Linkage, dyads: tuple[Dyad, ...], turns: Real, lengths: Real, link: str, kind: str) -> Real:
     """How far the output goes in each stroke (an angle is followed through, so that it may pass 180 degrees)."""
     law = Law(0.0, 1.0, 0.0, 1)
     places = turns[:, None] + linkage.driver.sense * lengths[:, None] * np.linspace(0, 1, 65)

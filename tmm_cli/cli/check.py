@@ -18,9 +18,7 @@ Outcome = tuple[str, str, "list[Difference]"]  # problem, what is wrong as a who
 
 
 def check(
-    paths: Annotated[
-        list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)
-    ],
+    paths: Annotated[list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)],
     update: Annotated[bool, typer.Option("--update", help="Rewrite the expected values.")] = False,
     junit: Annotated[
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)

@@ -42,9 +42,7 @@ def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
     for name in linkage.moving:
         link = linkage.links[name]
         if np.any(link.mass != 0):
-            found.append(
-                Applied(f"G{name}", "weight", name, link.centre, link.mass * linkage.gravity + still, still)
-            )
+            found.append(Applied(f"G{name}", "weight", name, link.centre, link.mass * linkage.gravity + still, still))
         if np.any(link.mass != 0) or np.any(link.inertia != 0):
             inertia = -link.mass * motion.centre(name).a
             moment = -link.inertia * motion.link(name).epsilon
@@ -74,10 +72,11 @@ def _argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
         start = first.start if first else motion.linkage.sketch.at
         return np.mod(driver.sense * (motion.q - start) + 1e-12, 2 * np.pi) - 1e-12
     assert strokes is not None and first is not None
-    run = output_run(motion, strokes.link)[0] - first.low
+    run: Real = output_run(motion, strokes.link)[0] - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
-    return run * np.sign(first.run)
+    way: Real = run * np.sign(first.run)
+    return way
 
 
 def resisted(linkage: Linkage, link: str | None) -> float:

@@ -1,6 +1,7 @@
 """Stage: the force plan. Groups are walked backward, each under its loads and the reactions found before it.
 
-Kinetostatics by d'Alembert: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever mechanisms, MATI, 2006, section 2.
+Kinetostatics by d'Alembert: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever mechanisms, MATI 2006,
+section 2.
 """
 
 from __future__ import annotations
@@ -104,12 +105,8 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
                 _reaction(motion, pair, own, part)
                 for pair, own, part in zip(dyad.group.outer, (a, b), (held.a, held.b), strict=True)
             )
-            groups.append(
-                GroupForces(
-                    dyad.group, (outer[0], outer[1]), _reaction(motion, dyad.group.inner[0], b, held.inner),
-                    (*borne[a], *borne[b]),
-                )  # fmt: skip
-            )
+            inner = _reaction(motion, dyad.group.inner[0], b, held.inner)
+            groups.append(GroupForces(dyad.group, (outer[0], outer[1]), inner, (*borne[a], *borne[b])))
             for reaction in outer:
                 on[reaction.by] += _opposite(reaction, motion)
                 borne[reaction.by].append(reaction)
@@ -127,9 +124,7 @@ def _reaction(motion: Motion, pair: Pair, own: str, held: Held) -> Reaction:
     u = motion.poses[slide.carrier].z * unit(slide.direction)
     signed = dot(1j * u, held.force)
     # on the carrier both force and couple change sign, and the arm stays
-    return Reaction(
-        pair, own, pair.other(own), at, held.force, held.couple, signed=signed, arm=held.couple / signed
-    )
+    return Reaction(pair, own, pair.other(own), at, held.force, held.couple, signed=signed, arm=held.couple / signed)
 
 
 def _opposite(reaction: Reaction, motion: Motion) -> Wrench:

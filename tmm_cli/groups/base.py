@@ -31,7 +31,8 @@ class Pose:
 
     def at(self, local: Any) -> Vector:
         """A point of the link in the drawing's axes, m."""
-        return self.x + local * self.z
+        place: Vector = self.x + local * self.z
+        return place
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,8 @@ class Rate:
 
     def at(self, arm: Vector) -> Vector:
         """Velocity of the point of the link that lies `arm` (drawing's axes) from its origin, m/s."""
-        return self.v + 1j * self.w * arm
+        velocity: Vector = self.v + 1j * self.w * arm
+        return velocity
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,8 @@ class Accel:
 
     def at(self, arm: Vector, w: Real) -> Vector:
         """Acceleration of the point that lies `arm` from the origin when the link turns with w, m/s2."""
-        return self.a + (1j * self.e - w * w) * arm
+        acceleration: Vector = self.a + (1j * self.e - w * w) * arm
+        return acceleration
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,8 @@ class Wrench:
 
     def about(self, arm: Vector) -> Real:
         """Moment of the same forces about the point that lies `arm` from the link's origin, N m."""
-        return self.moment - cross(arm, self.force)
+        moment: Real = self.moment - cross(arm, self.force)
+        return moment
 
 
 @dataclass(frozen=True)

@@ -22,17 +22,17 @@ def parallel(det: Real) -> tuple[Real, Real]:
 
 def slide_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
     """Velocity of the common point when the two guides carry it with v1 and v2 and it runs along u1 and u2."""
-    return v1 + u1 * (cross(v2 - v1, u2) / det)
+    velocity: Vector = v1 + u1 * (cross(v2 - v1, u2) / det)
+    return velocity
 
 
-def slide_acceleration(
-    point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]
-) -> Vector:
-    """Acceleration that a guide gives a point running on it, its unknown part along the guide left out (Coriolis in)."""
+def slide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]) -> Vector:
+    """Acceleration that a guide gives a point running on it, without the unknown part along the guide (Coriolis in)."""
     origin, u, rate, accel = guide
     arm = point - origin
     sliding = dot(u, vP - rate.at(arm))
-    return accel.at(arm, rate.w) + 2j * rate.w * sliding * u
+    acceleration: Vector = accel.at(arm, rate.w) + 2j * rate.w * sliding * u
+    return acceleration
 
 
 def split(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:

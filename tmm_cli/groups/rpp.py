@@ -71,7 +71,7 @@ class RPP(Dyad):
         return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
-        """b's polygon gives both guides' forces, a's polygon the hinge, moments of a about A and then of b the couples."""
+        """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
         a, b, run = self._ends
         u, v = self._frame(at, poses)
         inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link

@@ -56,9 +56,7 @@ class RRP(Dyad):
         C = start + u * (run + half)
         gap = np.abs(y) - la
         slack = epsilon(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
-        return Placement(
-            Pose(A - a.here * za, za), Pose(C - c.here * zb, zb), half, np.abs(half) / la, gap, slack
-        )
+        return Placement(Pose(A - a.here * za, za), Pose(C - c.here * zb, zb), half, np.abs(half) / la, gap, slack)
 
     def _arms(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
         """ra, u, and C from the origin of the guide's link."""

@@ -50,10 +50,7 @@ class RRR(Dyad):
         la, lb = np.abs(arm_a), np.abs(arm_b)
         base = B - A
         d = np.abs(base)
-        if np.ndim(la) == np.ndim(lb) == 0:
-            flip = bool(lb < la)
-        else:
-            flip = np.asarray(lb < la)  # type: ignore[assignment]
+        flip = lb < la
         r, R = np.minimum(la, lb), np.maximum(la, lb)
         reach, spare = _slacks(d, r, R)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -107,9 +104,7 @@ class RRR(Dyad):
         n_a, n_b = ra * (-cross(rest, rb) / at.det), rb * (cross(rest, ra) / at.det)
         RA, RB = tau_a + n_a, tau_b + n_b
         inner = -(RB + on_b.force)
-        return Holding(
-            Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b), Held(inner)
-        )
+        return Holding(Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b), Held(inner))
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:

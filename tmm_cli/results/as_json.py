@@ -186,7 +186,7 @@ def _forces(reactions: Reactions, results: Results) -> dict[str, Any]:
 
 
 def _reaction(r: Reaction) -> dict[str, Any]:
-    found = {
+    found: dict[str, Any] = {
         "on": r.on, "by": r.by, "force": _xy(r.force), "size": np.abs(r.force), "angle": np.angle(r.force),
         "at": _xy(r.at),
     }  # fmt: skip
@@ -205,6 +205,6 @@ def _pins(reactions: Reactions, results: Results) -> dict[str, Any]:
             continue
         pairs = [r for r in reactions.all if r.pair.slide is None and r.pair.point == hinge.point]
         found[hinge.point] = {
-            link: _xy(sum(r.onto(link) for r in pairs if link in (r.on, r.by))) for link in hinge.links
-        }  # type: ignore[arg-type]
+            link: _xy(np.sum([r.onto(link) for r in pairs if link in (r.on, r.by)], axis=0)) for link in hinge.links
+        }
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -42,7 +42,7 @@ def _xy(problem: Problem, value: complex) -> str:
     return f"[{', '.join(f'{problem.units.from_si(float(v), LENGTH):.6g}' for v in (value.real, value.imag))}]"
 
 
-def _words(name: str, rows: list[tuple[str, ...]], headers: tuple[str, ...]) -> Table:
+def _words(name: str, rows: Sequence[tuple[str, ...]], headers: tuple[str, ...]) -> Table:
     columns = (Column(say(header), [row[k] for row in rows]) for k, header in enumerate(headers))
     return Table(name, say(f"explain.{name}"), tuple(columns))
 
@@ -137,7 +137,11 @@ def _way(results: Results) -> Table:
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)
         if group.title in signs:
-            which = say("explain.one") if COUNTS.get(group.type) == 1 else say("explain.two", sign=f"{signs[group.title]:+d}")
+            which = (
+                say("explain.one")
+                if COUNTS.get(group.type) == 1
+                else say("explain.two", sign=f"{signs[group.title]:+d}")
+            )
         else:
             which = say("explain.unsolved")
         rows.append((str(number), f"{group.title} {group.type}", hangs, which))

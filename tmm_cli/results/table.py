@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +13,7 @@ class Column:
     """A column: header, values in SI (None or nan where there is none) and what they measure; words have none."""
 
     header: str
-    values: Sequence[Any]
+    values: Any  # a list or an array, one entry a row
     dimension: Dimension | None = None
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from rich import box
 from rich.console import Console
@@ -15,16 +14,23 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 
 DIGITS = 6
+ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
 
 
-def shown(value: Any, column: Column, units: UnitSystem) -> str:
-    """One cell: words as they are, numbers to six digits, a dash where there is none."""
+def cells(column: Column, units: UnitSystem) -> list[str]:
+    """Words as they are, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
-        return str(value)
-    if value is None or not math.isfinite(value):
+        return [str(value) for value in column.values]
+    values = [math.nan if value is None else float(value) for value in column.values]
+    nothing = ROUNDING * max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in values]
+
+
+def _number(value: float, column: Column, units: UnitSystem) -> str:
+    if not math.isfinite(value):
         return "-"
-    number = float(value) if column.dimension == NUMBER else units.from_si(float(value), column.dimension)
-    return f"{number:.{DIGITS}g}" if number != 0 else "0"
+    number = value if column.dimension in (None, NUMBER) else units.from_si(value, column.dimension)
+    return f"{number:.{DIGITS}g}"
 
 
 def heading(column: Column, units: UnitSystem) -> str:
@@ -40,9 +46,10 @@ def show(table: Table, units: UnitSystem, console: Console, rows: set[int] | Non
     for column in table.columns:
         words = column.dimension is None
         rich_table.add_column(Text(heading(column, units)), justify="left" if words else "right", no_wrap=not words)
+    columns = [cells(column, units) for column in table.columns]
     for k in range(table.rows):
         if rows is None or k in rows:
-            rich_table.add_row(*(Text(shown(c.values[k], c, units)) for c in table.columns))
+            rich_table.add_row(*(Text(column[k]) for column in columns))
     console.print(rich_table)
     for note in table.notes:
         console.print(Text(note, style="dim"))

@@ -26,7 +26,9 @@ def warnings(results: Results) -> Iterable[str]:
 
     if not way.full and way.limits and results.linkage.driver.kind == "turn":
         groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits))
-        yield say("warning.range", link=results.linkage.driver.link, start=place(way.start), end=place(way.end), groups=groups)
+        yield say(
+            "warning.range", link=results.linkage.driver.link, start=place(way.start), end=place(way.end), groups=groups
+        )
     elif way.limits:
         for limit in way.limits:
             yield say("warning.limit", place=place(limit.place), group=limit.group)

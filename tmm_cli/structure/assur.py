@@ -117,7 +117,14 @@ def analyse(linkage: Linkage) -> Structure:
     groups = tuple(_group(part, pairs, rank) for part in solved if part != (driver.link,)) if sound else ()
     driving = next((p for p in pairs if {p.i, p.j} == {FRAME, driver.link}), None)
     return Structure(
-        linkage.moving, pairs, driver, driving, groups, mobility, undriven.free, *_faults(linkage, undriven, driven)
+        linkage.moving,
+        pairs,
+        driver,
+        driving,
+        groups,
+        mobility,
+        undriven.free,
+        *_faults(linkage, undriven, driven),
     )
 
 
@@ -144,7 +151,7 @@ def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
         links = sorted(hinge.links, key=lambda name: (rank[name], order[name]))
         joined = [(FRAME, b) for b in links[1:]] if links[0] == FRAME else list(pairwise(links))
         for number, (i, j) in enumerate(joined):
-            yield Pair(hinge.point + "'" * number, "R", i, j, hinge.point)
+            yield Pair(hinge.point + ("'" * (number + 1) if number else ""), "R", i, j, hinge.point)
     for slide in linkage.slides:
         yield Pair(slide.name, "P", slide.carrier, slide.runner, slide.point, slide)
 
@@ -172,7 +179,7 @@ def _largest_contour(links: tuple[str, ...], inner: tuple[Pair, ...]) -> int:
         joined[pair.i].append(pair.j)
         joined[pair.j].append(pair.i)
     best, budget = 0, 20_000
-    stack = [(link, (link,)) for link in links]
+    stack: list[tuple[str, tuple[str, ...]]] = [(link, (link,)) for link in links]
     while stack and budget:
         budget -= 1
         link, path = stack.pop()

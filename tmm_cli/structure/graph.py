@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 FREEDOMS = 3
 PIN_FREEDOMS = 2
@@ -56,7 +57,7 @@ class PebbleGame:
         stack = [(to, iter(self.out[to]))]
         path = [to]
         while stack:
-            body, targets = stack[-1]
+            targets = stack[-1][1]
             for target in targets:
                 if target in seen:
                     continue
@@ -65,7 +66,7 @@ class PebbleGame:
                 if self.pebbles[target] > reserved.get(target, 0):
                     self.pebbles[target] -= 1
                     self.pebbles[to] += 1
-                    for tail, head in zip(path, path[1:], strict=False):
+                    for tail, head in pairwise(path):
                         self.out[tail].remove(head)
                         self.out[head].append(tail)
                     return True

@@ -30,7 +30,9 @@ def driver_columns(results: Results) -> list[Column]:
     turns = results.linkage.driver.kind == "turn"
     return [
         Column(say("word.position"), [str(n) for n in results.numbers]),
-        Column(say("cycle.phi" if turns else "cycle.drive"), motion.q, ANGLE if turns else LENGTH),
+        Column(say("cycle.phi"), np.mod(motion.q, 2 * np.pi), ANGLE)
+        if turns
+        else Column(say("cycle.drive"), motion.q, LENGTH),
     ]
 
 
@@ -55,7 +57,7 @@ def tables(results: Results) -> Iterable[Table]:
         crank = balance.moment is not None
         plan = balance.moment if crank else balance.force
         size = MOMENT if crank else FORCE
-        columns.append(Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size))  # type: ignore[arg-type]
+        columns.append(Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size))
         columns.append(Column(say("cycle.lever" if crank else "cycle.lever_force"), results.lever.balancing, size))
         columns.append(Column(say("cycle.difference"), results.lever.difference * 100, NUMBER))
     if not bool(np.all(motion.moving)):

@@ -1,13 +1,12 @@
-"""Motion of every named point, centre of mass, link and sliding pair, with transfer functions. Long: a row a position."""
+"""Motion of named points, centres of mass, links and sliding pairs, with transfer functions; a row a position."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME
+from tmm_cli.linkage import FRAME, Slide
 from tmm_cli.motion import Motion, Point
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import (
@@ -18,11 +17,9 @@ from tmm_cli.problem.dimensions import (
     LENGTH,
     NUMBER,
     SPEED,
-    Dimension,
 )
-from tmm_cli.results.reports.cycle import driver_columns
-from tmm_cli.results.table import Column, Table
-from tmm_cli.words import say
+from tmm_cli.results.reports.long import Values, long_table
+from tmm_cli.results.table import Table
 
 
 def named_points(results: Results) -> dict[str, tuple[str, complex]]:
@@ -44,63 +41,58 @@ def mass_centres(results: Results) -> dict[str, tuple[str, complex]]:
 
 def tables(results: Results) -> Iterable[Table]:
     """points, links, slides."""
-    if results.motion is None:
+    motion = results.motion
+    if motion is None:
         return
     points = dict(sorted(named_points(results).items())) | mass_centres(results)
-    yield _long(results, "points", "word.point", points, lambda m, key: _point(m.point(*key)))
-    links = {name: name for name in results.linkage.moving}
-    yield _long(results, "link-motion", "word.link", links, _link)
-    slides = {s.name: s for s in results.linkage.slides}
+    yield long_table(
+        results, "points", {"word.point": list(points)}, [_point(motion.point(*key)) for key in points.values()]
+    )
+    links = results.linkage.moving
+    yield long_table(results, "link-motion", {"word.link": links}, [_link(motion, name) for name in links])
+    slides = results.linkage.slides
     if slides:
-        yield _long(results, "slides", "word.pair", slides, _slide)
-
-
-Values = list[tuple[str, Any, Dimension]]
+        words = {"word.pair": [s.name for s in slides]}
+        yield long_table(results, "slides", words, [_slide(motion, slide) for slide in slides])
 
 
 def _point(p: Point) -> Values:
     return [
-        ("x", p.x.real, LENGTH), ("y", p.x.imag, LENGTH),
-        ("vx", p.v.real, SPEED), ("vy", p.v.imag, SPEED), ("v", np.abs(p.v), SPEED),
-        ("ax", p.a.real, ACCELERATION), ("ay", p.a.imag, ACCELERATION), ("a", np.abs(p.a), ACCELERATION),
-        ("v1x", p.first.real, NUMBER), ("v1y", p.first.imag, NUMBER),
-        ("a1x", p.second.real, NUMBER), ("a1y", p.second.imag, NUMBER),
-    ]  # fmt: skip
+        ("kinematics.x", p.x.real, LENGTH),
+        ("kinematics.y", p.x.imag, LENGTH),
+        ("kinematics.vx", p.v.real, SPEED),
+        ("kinematics.vy", p.v.imag, SPEED),
+        ("kinematics.v", np.abs(p.v), SPEED),
+        ("kinematics.ax", p.a.real, ACCELERATION),
+        ("kinematics.ay", p.a.imag, ACCELERATION),
+        ("kinematics.a", np.abs(p.a), ACCELERATION),
+        ("kinematics.v1x", p.first.real, NUMBER),
+        ("kinematics.v1y", p.first.imag, NUMBER),
+        ("kinematics.a1x", p.second.real, NUMBER),
+        ("kinematics.a1y", p.second.imag, NUMBER),
+    ]
 
 
 def _link(motion: Motion, name: str) -> Values:
     t = motion.link(name)
     return [
-        ("angle", t.angle, ANGLE), ("omega", t.omega, ANGULAR_SPEED), ("epsilon", t.epsilon, ANGULAR_ACCELERATION),
-        ("first", t.first, NUMBER), ("second", t.second, NUMBER),
-    ]  # fmt: skip
+        ("kinematics.angle", t.angle, ANGLE),
+        ("kinematics.omega", t.omega, ANGULAR_SPEED),
+        ("kinematics.epsilon", t.epsilon, ANGULAR_ACCELERATION),
+        ("kinematics.first", t.first, NUMBER),
+        ("kinematics.second", t.second, NUMBER),
+    ]
 
 
-def _slide(motion: Motion, slide: Any) -> Values:
+def _slide(motion: Motion, slide: Slide) -> Values:
     s = motion.slide(slide)
     return [
-        ("run", s.run, LENGTH), ("vr", s.v, SPEED), ("ar", s.a, ACCELERATION),
-        ("kx", s.coriolis.real, ACCELERATION), ("ky", s.coriolis.imag, ACCELERATION),
-        ("k", np.abs(s.coriolis), ACCELERATION), ("first", s.first, NUMBER), ("second", s.second, NUMBER),
-    ]  # fmt: skip
-
-
-def _long(
-    results: Results, name: str, header: str, things: dict[str, Any], values: Callable[[Motion, Any], Values]
-) -> Table:
-    """Stack the things' values, position by position."""
-    motion = results.motion
-    assert motion is not None
-    per_thing = [values(motion, key) for key in things.values()]
-    count, number = len(results.numbers), len(things)
-
-    def stacked(parts: Sequence[Any]) -> Any:
-        return np.stack([np.broadcast_to(p, (count,)) for p in parts], axis=1).ravel()
-
-    columns = [
-        Column(c.header, np.repeat(np.asarray(c.values), number).tolist(), c.dimension) for c in driver_columns(results)
+        ("kinematics.run", s.run, LENGTH),
+        ("kinematics.vr", s.v, SPEED),
+        ("kinematics.ar", s.a, ACCELERATION),
+        ("kinematics.kx", s.coriolis.real, ACCELERATION),
+        ("kinematics.ky", s.coriolis.imag, ACCELERATION),
+        ("kinematics.k", np.abs(s.coriolis), ACCELERATION),
+        ("kinematics.first", s.first, NUMBER),
+        ("kinematics.second", s.second, NUMBER),
     ]
-    columns.append(Column(say(header), list(things) * count))
-    for k, (symbol, _, dimension) in enumerate(per_thing[0]):
-        columns.append(Column(say(f"kinematics.{symbol}"), stacked([p[k][1] for p in per_thing]), dimension))
-    return Table(name, say(f"{name}.title"), tuple(columns), long=True)

@@ -1,16 +1,14 @@
-"""The Zhukovsky lever: every force and couple with its arm and moment. Long: a row a position."""
+"""The Zhukovsky lever: every force and couple with its arm and moment, a row for each at every position."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-import numpy as np
-
+from tmm_cli.forces.lever import Item
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import FORCE, LENGTH, MOMENT, NUMBER
-from tmm_cli.results.reports.cycle import driver_columns
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.reports.long import Values, long_table
+from tmm_cli.results.table import Table
 from tmm_cli.words import say
 
 
@@ -19,27 +17,17 @@ def tables(results: Results) -> Iterable[Table]:
     lever = results.lever
     if lever is None or not lever.items:
         return
-    items, count = lever.items, len(results.numbers)
     crank = results.linkage.driver.kind == "turn"
+    words = {"forces.name": [i.name for i in lever.items], "word.link": [i.link for i in lever.items]}
+    yield long_table(results, "lever", words, [_values(i, crank) for i in lever.items], say("lever.note"))
 
-    def stacked(parts: list[Any]) -> Any:
-        return np.stack([np.broadcast_to(p, (count,)) for p in parts], axis=1).ravel()
 
-    forces = [item.end is not None for item in items]
-    nothing = np.full(count, np.nan)
-    head = [
-        Column(c.header, np.repeat(np.asarray(c.values), len(items)).tolist(), c.dimension)
-        for c in driver_columns(results)
+def _values(item: Item, crank: bool) -> Values:
+    force = item.end is not None
+    return [
+        ("lever.force", item.size if force else None, FORCE),
+        ("lever.arm", item.arm if force else None, LENGTH if crank else NUMBER),
+        ("lever.couple", None if force else item.size, MOMENT),
+        ("lever.ratio", None if force else item.arm, NUMBER),
+        ("lever.moment", item.moment, MOMENT if crank else FORCE),
     ]
-    columns = (
-        *head,
-        Column(say("forces.name"), [item.name for item in items] * count),
-        Column(say("word.link"), [item.link for item in items] * count),
-        Column(say("lever.force"), stacked([i.size if f else nothing for i, f in zip(items, forces, strict=True)]), FORCE),
-        Column(say("lever.arm"), stacked([i.arm if f else nothing for i, f in zip(items, forces, strict=True)]),
-               LENGTH if crank else NUMBER),
-        Column(say("lever.couple"), stacked([nothing if f else i.size for i, f in zip(items, forces, strict=True)]), MOMENT),
-        Column(say("lever.ratio"), stacked([nothing if f else i.arm for i, f in zip(items, forces, strict=True)]), NUMBER),
-        Column(say("lever.moment"), stacked([i.moment for i in items]), MOMENT if crank else FORCE),
-    )  # fmt: skip
-    yield Table("lever", say("lever.title"), columns, long=True, notes=(say("lever.note"),))

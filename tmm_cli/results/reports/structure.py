@@ -17,8 +17,14 @@ def tables(results: Results) -> Iterable[Table]:
     turning = sum(p.kind == "R" for p in structure.pairs)
     facts = (
         (say("structure.n"), str(len(structure.links))),
-        (say("structure.p1"), say("structure.kinds", all=len(structure.pairs), r=turning, p=len(structure.pairs) - turning)),
-        (say("structure.W"), say("structure.chebyshev", n=len(structure.links), p=len(structure.pairs), w=structure.mobility)),
+        (
+            say("structure.p1"),
+            say("structure.kinds", all=len(structure.pairs), r=turning, p=len(structure.pairs) - turning),
+        ),
+        (
+            say("structure.W"),
+            say("structure.chebyshev", n=len(structure.links), p=len(structure.pairs), w=structure.mobility),
+        ),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
         (say("structure.class"), ROMAN[structure.mechanism_class]),
