@@ -6,7 +6,7 @@ Only what is asked for is computed: the structure alone moves nothing, kinematic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -33,6 +33,7 @@ from tmm_cli.quality import (
 from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
 from tmm_cli.structure.assur import Structure, analyse
 from tmm_cli.structure.naming import roles
+from tmm_cli.vectors import Real
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -57,6 +58,12 @@ class Results:
     @property
     def linkage(self) -> Linkage:
         return self.problem.linkage
+
+    @property
+    def start(self) -> float:
+        """The driver's place at position 0, whether that was computed or not (rad or m)."""
+        assert self.way is not None
+        return float(places(self.problem.request, self.way, self.strokes, self.linkage.driver.sense)[0])
 
     @property
     def lever_holds(self) -> bool:
@@ -103,22 +110,20 @@ def with_forces(results: Results) -> Results:
     reactions = react(motion, results.structure, loads)
     balance = reactions.balance
     plan = balance.force if balance.moment is None else balance.moment
-    return Results(
-        results.problem, results.structure, results.roles, results.dyads, results.way, results.dead,
-        results.strokes, results.numbers, motion, loads, reactions, lever(motion, loads, plan),
-    )  # fmt: skip
+    return replace(results, loads=loads, reactions=reactions, lever=lever(motion, loads, plan))
 
 
-def at_positions(results: Results, q: Sequence[float]) -> Motion:
-    """The same linkage at other places of its driver (trajectories, diagrams)."""
+def at_positions(results: Results, q: Real) -> Motion:
+    """The same motion at other places of the driver (trajectories)."""
     driver = results.linkage.driver
-    start = float(results.motion.q[0]) if results.motion is not None else results.linkage.sketch.at
-    return move(
-        results.linkage,
-        results.dyads,
-        np.array(q),
-        Law(start, driver.rate, driver.acceleration, driver.sense),
-    )
+    law = Law(results.start, driver.rate, driver.acceleration, driver.sense)
+    return move(results.linkage, results.dyads, q, law)
+
+
+def at_places(results: Results, q: Real) -> Results:
+    """The same results at other places of the driver (diagrams); with forces if they have them."""
+    moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
+    return moved if results.reactions is None else with_forces(moved)
 
 
 def turning_links(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> dict[str, bool]:

@@ -204,6 +204,27 @@ ENGLISH: dict[str, str] = {
     "lever.moment": "moment",
     "lever.note": "Arms are those of the lever drawn for a crank that turns with 1 rad/s, 1 m for 1 m/s.",
     # drawings
+    "draw.scale": "μ{symbol} = {mu} {unit}",
+    "draw.mechanism": "Mechanism in {count} positions, trajectories of its points",
+    "draw.bold": "in full: position {number}",
+    "draw.at_crank": "Position {number}, crank at {place}",
+    "draw.at_slider": "Position {number}, driver at {place}",
+    "draw.loads": "loads without scale",
+    "draw.velocity": "Velocity plan. {caption}",
+    "draw.acceleration": "Acceleration plan. {caption}",
+    "draw.forces": "Force plan of links {links}. {caption}",
+    "draw.forces_driver": "Force plan of the driving link {links}. {caption}",
+    "draw.lever": "Zhukovsky lever: velocity plan for 1 rad/s, turned by 90°. {caption}",
+    "draw.balance": "Mb = {value} N·m",
+    "draw.balance_force": "Fb = {value} N",
+    "draw.vanish": "zero: {names}",
+    "draw.zero": "everything is at rest",
+    "draw.diagrams": "Diagrams over the cycle; dots: computed positions",
+    "draw.moment": "balancing moment Mb",
+    "draw.force": "balancing force Fb",
+    "draw.plan": "force plan",
+    "draw.turn": "turn of the crank from position 0",
+    "draw.reactions": "reactions",
 }
 
 

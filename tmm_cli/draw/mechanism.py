@@ -1,0 +1,149 @@
+"""The mechanism in all positions with trajectories; a position in detail with its loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from tmm_cli.draw.scheme import mechanism, moving_points, skeleton, trajectory
+from tmm_cli.draw.sheet import COLOURS, DARK, REACTION, Sheet, scale_text
+from tmm_cli.linkage import FRAME
+from tmm_cli.motion import Motion
+from tmm_cli.pipeline import Results, at_positions
+from tmm_cli.problem.dimensions import ANGLE, LENGTH
+from tmm_cli.words import say
+
+DENSE = 361  # places of a trajectory
+LOAD_MM = 18.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
+SHOWN = 48  # positions drawn thin, at most
+
+
+def caption(results: Results, k: int) -> str:
+    """Which position it is and where the driver stands."""
+    motion, units = results.motion, results.problem.units
+    assert motion is not None
+    crank = results.linkage.driver.kind == "turn"
+    q = float(np.mod(motion.q[k], 2 * np.pi) if crank else motion.q[k])
+    measure = ANGLE if crank else LENGTH
+    key = "draw.at_crank" if crank else "draw.at_slider"
+    return say(key, number=results.numbers[k], place=f"{units.from_si(q, measure):.6g} {units.symbol(measure)}")
+
+
+def dense(results: Results) -> Motion:
+    """The whole way of the driver, close together."""
+    way = results.way
+    assert way is not None
+    if results.linkage.driver.kind == "slide" and results.motion is not None:
+        q = np.linspace(np.min(results.motion.q), np.max(results.motion.q), DENSE)
+    else:
+        q = np.linspace(way.start, way.end, DENSE)
+    return at_positions(results, q)
+
+
+def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
+    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    whole = dense(results)
+    points = moving_points(linkage)
+    used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
+    sheet = Sheet(
+        results.problem.title, say("draw.mechanism", count=len(results.numbers)),
+        [*used, *(p for name in points for p in whole.named(name).x)],
+    )  # fmt: skip
+    for name in points:
+        trajectory(sheet, whole.named(name).x)
+    chosen = detailed(results)
+    k = chosen[0] if chosen else int(np.argmax(motion.placed))
+    for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
+        if other != k and motion.placed[other]:
+            skeleton(sheet, motion, other)
+    if motion.placed[k]:
+        mechanism(sheet, motion, k)
+    _numbers(sheet, results)
+    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(say("draw.bold", number=results.numbers[k]))
+    yield "mechanism", sheet.finish()
+
+
+def _numbers(sheet: Sheet, results: Results) -> None:
+    """Numbers of positions at the crank's end, outside its circle."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    driver = linkage.driver
+    if driver.kind != "turn" or len(results.numbers) > SHOWN // 2:
+        return
+    pivot = sheet.on(linkage.local(FRAME, driver.joint))
+    ends = [p for p in linkage.links[driver.link].points if p != driver.joint]
+    if not ends:
+        return
+    for k, number in enumerate(results.numbers):
+        at = sheet.on(complex(motion.named(ends[0]).x[k]))
+        out = (at - pivot) / abs(at - pivot)
+        sheet.circle(at, 0.5, DARK, DARK, 0.3, 5)
+        sheet.label(str(number), at + 1.5 * out, 8, "#404040")
+
+
+def detailed(results: Results) -> list[int]:
+    """Indices of the positions in detail that could be computed."""
+    motion = results.motion
+    assert motion is not None
+    wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
+    return [k for k, n in enumerate(results.numbers) if n in wanted and bool(motion.moving[k])]
+
+
+def stem(name: str, results: Results, k: int) -> str:
+    """velocity-03."""
+    return f"{name}-{results.numbers[k]:02d}"
+
+
+def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+    """The position with weights, inertia forces and couples, loads, and what balances the crank."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    places = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
+    places += [complex(motion.named(p).x[k]) for p in moving_points(linkage)]
+    places += [complex(motion.centre(n).x[k]) for n in linkage.moving]
+    sheet = Sheet(results.problem.title, caption(results, k), places, pad=30)
+    mechanism(sheet, motion, k)
+    if results.reactions is not None:
+        for load in results.reactions.applied:
+            at = sheet.on(complex(motion.point(load.link, load.at).x[k]))
+            force, moment = complex(load.force[k]), float(load.moment[k])
+            colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
+            if abs(force) > 0:
+                end = at + LOAD_MM * force / abs(force)
+                sheet.arrow(at, end, colour, 1.3)
+                sheet.label(load.name, end, 9, colour)
+            if moment != 0:
+                couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, 5.5)
+        _balance(sheet, results, k)
+        sheet.note(say("draw.loads"))
+    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    yield stem("position", results, k), sheet.finish()
+
+
+def _balance(sheet: Sheet, results: Results, k: int) -> None:
+    assert results.reactions is not None and results.motion is not None
+    balance = results.reactions.balance
+    if balance.kind == "moment" and balance.moment is not None:
+        pivot = sheet.on(complex(results.reactions.frame.at[k]))
+        couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 9)
+    elif abs(balance.vector[k]) > 0:
+        at = sheet.on(complex(balance.at[k]))
+        end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
+        sheet.arrow(at, end, REACTION, 1.5)
+        sheet.label("Fb", end, 9, REACTION)
+
+
+def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:
+    """A couple as an open circle with an arrow head in its sense."""
+    if sense == 0:
+        return
+    angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
+    arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
+    sheet.line(arc[:-4], colour, 1.2, z=5)
+    sheet.arrow(arc[-9], arc[-1], colour, 1.2)
+    sheet.label(name, arc[20], 9, colour)

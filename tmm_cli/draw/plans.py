@@ -1,0 +1,134 @@
+"""Sheets of the velocity plan, the acceleration plan, the force plans and the lever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from matplotlib.figure import Figure
+
+from tmm_cli.draw.mechanism import caption, stem
+from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, scale_text
+from tmm_cli.pipeline import Results
+from tmm_cli.plans.acceleration import POLE, acceleration_plan
+from tmm_cli.plans.forces import force_plans
+from tmm_cli.plans.lever import lever_plan
+from tmm_cli.plans.record import NamedVector, Plan
+from tmm_cli.plans.velocity import velocity_plan
+from tmm_cli.words import say
+
+FORCE_MM = 22.0
+
+
+def velocity(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+    """Velocity plan of a position."""
+    assert results.motion is not None
+    plan = velocity_plan(results.motion, k)
+    title = say("draw.velocity", caption=caption(results, k))
+    yield stem("velocity", results, k), _plan(results, plan, title, "p", scale_text("v", 1, "m/s/mm"))
+
+
+def acceleration(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+    """Acceleration plan of a position, with the parts of each link."""
+    assert results.motion is not None
+    plan = acceleration_plan(results.motion, k)
+    title = say("draw.acceleration", caption=caption(results, k))
+    yield stem("acceleration", results, k), _plan(results, plan, title, POLE, scale_text("a", 1, "m/s²/mm"))
+
+
+def _plan(results: Results, plan: Plan, title: str, pole: str, scale: str) -> Figure:
+    sheet = Sheet(results.problem.title, title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
+    sheet.note(scale.replace("= 1 ", f"= {sheet.mu:.10g} "))
+    drawn = plan.drawn()
+    named: dict[tuple[float, float], list[str]] = {}
+    for name, end in plan.ends.items():
+        at = sheet.on(end)
+        named.setdefault((round(at.real, 1), round(at.imag, 1)), []).append(name)
+    for vector in drawn:
+        start, end = sheet.on(vector.start), sheet.on(vector.end)
+        # of points of mass a thin ray is enough: the letters say the rest
+        mass = vector.kind == "absolute" and vector.name[len(pole) :].startswith("s")
+        width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
+        sheet.arrow(start, end, THIN if mass else COLOURS[vector.kind], width)
+    for vector in drawn:
+        if vector.kind not in ("absolute", "relative") and sheet.mu > 0 and abs(vector.value) / sheet.mu > 2.5:
+            sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
+    for (x, y), names in named.items():
+        at = complex(x, y)
+        sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
+        sheet.label(", ".join(names), at, 11 if pole in names else 10)
+    if plan.size == 0:
+        sheet.note(say("draw.zero"))
+    return sheet.finish()
+
+
+def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+    """A sheet for the polygon of each group and of the driving link."""
+    if results.reactions is None:
+        return
+    for plan in force_plans(results.reactions, k):
+        links = ", ".join(plan.links)
+        key = "draw.forces" if len(plan.links) > 1 else "draw.forces_driver"
+        sheet = Sheet(
+            results.problem.title, say(key, links=links, caption=caption(results, k)),
+            [p for v in plan.plan.vectors for p in (v.start, v.end)],
+        )  # fmt: skip
+        sheet.note(scale_text("F", sheet.mu, "N/mm"))
+        for vector in plan.plan.drawn():
+            _force(sheet, vector)
+        small = [v.name for v in plan.plan.vectors if v not in plan.plan.drawn()]
+        if small:
+            sheet.note(say("draw.vanish", names=", ".join(small)))
+        sheet.text(complex(12, 8), plan.equation[:130], 9, colour="#404040")
+        name = "-".join(
+            ["forces", f"{results.numbers[k]:02d}", "links" if len(plan.links) > 1 else "link", *plan.links]
+        )
+        yield _safe(name), sheet.finish()
+
+
+def _force(sheet: Sheet, vector: NamedVector) -> None:
+    start, end = sheet.on(vector.start), sheet.on(vector.end)
+    colour = COLOURS[vector.kind]
+    if vector.kind == "inner":
+        sheet.line([start, end], colour, 1.0, "--", 4)
+        sheet.arrow(start + (end - start) * 0.92, end, colour, 1.0)
+    else:
+        sheet.arrow(start, end, colour, 1.6)
+        sheet.circle(end, 0.45, DARK, DARK, 0.3, 6)
+    sheet.label(vector.name, (start + end) / 2, 10, colour)
+
+
+def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+    """The turned velocity plan with its forces; arms are thin lines from the pole."""
+    if results.lever is None or results.motion is None:
+        return
+    plan = lever_plan(results.motion, results.lever, k)
+    places = [*plan.ends.values(), *(f.at for f in plan.forces), *(f.foot for f in plan.forces)]
+    sheet = Sheet(results.problem.title, say("draw.lever", caption=caption(results, k)), places, pad=36)
+    for bar in plan.bars:
+        sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
+    size = max((abs(e) for e in plan.ends.values()), default=0.0)
+    pole = sheet.on(0j)
+    for force in plan.forces:
+        at, foot = sheet.on(force.at), sheet.on(force.foot)
+        end = at + FORCE_MM * force.force / abs(force.force)
+        inertia = force.name.startswith("U")
+        colour = COLOURS["inertia" if inertia else "load"]
+        if abs(force.foot) > 1e-9 * size:
+            sheet.line([pole, foot], THIN, 0.6, ":", 2)
+            sheet.line([foot, at], THIN, 0.5, "--", 2)
+        sheet.arrow(at, end, colour, 1.3)
+        sheet.label(force.name, end, 9, colour)
+    for name, end in plan.ends.items():
+        sheet.circle(sheet.on(end), 1.1 if name == "p" else 0.7, "white" if name == "p" else DARK)
+        sheet.label(name, sheet.on(end), 10)
+    crank = results.linkage.driver.kind == "turn"
+    sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("", sheet.mu, "1/mm"))
+    for name, moment in plan.couples:
+        if moment != 0:
+            sheet.note(f"{name}: {moment:.4g} N·m")
+    sheet.note(say("draw.balance" if crank else "draw.balance_force", value=f"{plan.balancing:.6g}"))
+    yield stem("lever", results, k), sheet.finish()
+
+
+def _safe(name: str) -> str:
+    return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

@@ -1,0 +1,156 @@
+"""Symbols of a kinematic scheme: links, hinges, supports, sliders, guides, centres of mass."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tmm_cli.draw.sheet import DARK, GREY, THIN, Sheet
+from tmm_cli.linkage import FRAME, Linkage, Slide
+from tmm_cli.motion import Motion
+from tmm_cli.vectors import unit
+
+HINGE, BOX = 1.3, (9.0, 5.0)  # mm: radius of a hinge, length and width of a slider
+
+
+def skeleton(sheet: Sheet, motion: Motion, k: int, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
+    """One position as thin lines."""
+    for link in motion.linkage.moving:
+        places = link_places(sheet, motion, link, k)
+        if len(places) > 1:
+            closed = [*places, places[0]] if len(places) > 2 else places
+            sheet.line(closed, colour, width, z=z, blocks=False)
+
+
+def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> None:
+    """One position with all its symbols: supports, guides, links, hinges, names and numbers."""
+    linkage = motion.linkage
+    for slide in linkage.slides:
+        if FRAME in (slide.carrier, slide.runner):
+            frame_guide(sheet, motion, slide, k)
+    for link in linkage.moving:
+        body(sheet, motion, link, k)
+    for slide in linkage.slides:
+        box(sheet, motion, slide, k)
+    for hinge in linkage.hinges:
+        at = sheet.on(complex(motion.named(hinge.point).x[k]))
+        if FRAME in hinge.links:
+            support(sheet, at)
+        sheet.circle(at, HINGE)
+        if len(hinge.links) > 2:
+            sheet.circle(at, HINGE / 2.5, face=DARK, z=6.5)
+    for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
+        at = sheet.on(complex(motion.named(name).x[k]))
+        if sum(name in link.points for link in linkage.links.values()) == 1:
+            sheet.circle(at, 0.6, face=DARK)
+        sheet.label(name, at, 10)
+    for link in linkage.moving:
+        if np.any(linkage.links[link].mass != 0):
+            centre(sheet, sheet.on(complex(motion.centre(link).x[k])), f"S{link}")
+    if numbers:
+        for link in linkage.moving:
+            places = link_places(sheet, motion, link, k)
+            middle = sum(places) / len(places)
+            sheet.label(link, complex(middle), 10, "#7a3d99", "italic")
+
+
+def link_places(sheet: Sheet, motion: Motion, link: str, k: int) -> list[complex]:
+    """The points that give a link its shape, on paper: its named points, and the stone on its guide."""
+    linkage = motion.linkage
+    pose = motion.poses[link]
+    local = list(linkage.links[link].points.values())
+    for slide in linkage.slides:
+        if slide.carrier == link and slide.runner != FRAME:
+            run = float(motion.slide(slide).run[k])
+            local += [slide.through, slide.through + run * complex(unit(slide.direction))]
+    places = [sheet.on(complex(pose.x[k] + z * pose.z[k])) for z in local]
+    return outline(places)
+
+
+def outline(places: list[complex]) -> list[complex]:
+    """The convex hull; the two ends when all lie on a line."""
+    places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
+    if len(places) < 3:
+        return places or [complex(np.nan, np.nan)]
+    ordered = sorted(places, key=lambda p: (p.real, p.imag))
+
+    def half(points: list[complex]) -> list[complex]:
+        chain: list[complex] = []
+        for p in points:
+            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (p - chain[-1])).imag <= 1e-3:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return half(ordered) + half(ordered[::-1])
+
+
+def body(sheet: Sheet, motion: Motion, link: str, k: int) -> None:
+    """A bar, or a plate for links with three corners and more; the way of a stone on it as a slot."""
+    places = link_places(sheet, motion, link, k)
+    if len(places) > 2:
+        sheet.area(places, "#eceff3", DARK, 1.4, 2.2)
+    elif len(places) == 2:
+        sheet.line(places, DARK, 2.4, z=3)
+
+
+def box(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
+    """The sliding link as a box along its guide; arms to its other points."""
+    pose = motion.poses[slide.runner]
+    at = sheet.on(complex(pose.x[k] + slide.at * pose.z[k]))
+    if not np.isfinite(at):
+        return
+    along = complex(motion.poses[slide.carrier].z[k] * unit(slide.direction))
+    length, width = BOX if FRAME in (slide.carrier, slide.runner) else (7.5, 4.2)
+    corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    sheet.area(corners, "white", DARK, 1.3, 4)
+
+
+def frame_guide(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
+    """Two hatched rails along the whole way of the runner."""
+    along = complex(unit(slide.direction) * (1 if slide.carrier == FRAME else motion.poses[slide.carrier].z[k]))
+    here = motion.poses[slide.runner]
+    reach = [sheet.on(complex(p)) for p in here.x + slide.at * here.z if np.isfinite(p)]
+    if not reach:
+        return
+    start = reach[0]
+    runs = [((p - start) * along.conjugate()).real for p in reach]
+    low, high = start + along * (min(runs) - 10), start + along * (max(runs) + 10)
+    for side in (1, -1):
+        shift = side * 1j * along * (BOX[1] / 2 + 0.5)
+        sheet.line([low + shift, high + shift], DARK, 1.0, z=2.5)
+        hatch(sheet, low + shift, high + shift, side * 1j * along)
+
+
+def support(sheet: Sheet, at: complex) -> None:
+    """The frame under a hinge: a triangle on hatched ground."""
+    left, right = at + complex(-3.4, -5.6), at + complex(3.4, -5.6)
+    sheet.area([at, left, right], "white", DARK, 1.0, 2.6)
+    sheet.line([left - 1.6, right + 1.6], DARK, 1.2, z=2.7)
+    hatch(sheet, left - 1.6, right + 1.6, -1j)
+
+
+def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
+    """Short slanted strokes on the side where the frame is."""
+    along = (end - start) / abs(end - start)
+    number = int(abs(end - start) / 2.0)
+    for k in range(number):
+        foot = start + along * (k + 0.5) * abs(end - start) / number
+        sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=k % 2 == 0)
+
+
+def centre(sheet: Sheet, at: complex, name: str) -> None:
+    """A centre of mass: a small circle with a dot."""
+    sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
+    sheet.circle(at, 0.25, face=DARK, z=6.3)
+    sheet.label(name, at, 8, "#6b5310")
+
+
+def trajectory(sheet: Sheet, places: np.ndarray, colour: str = THIN) -> None:
+    """The path of a point, from its places (SI)."""
+    sheet.line([sheet.on(complex(p)) for p in places], colour, 0.7, "--", 1.5, blocks=False)
+
+
+def moving_points(linkage: Linkage) -> list[str]:
+    """Named points that move, once each."""
+    fixed = linkage.links[FRAME].points
+    return list(dict.fromkeys(p for n in linkage.moving for p in linkage.links[n].points if p not in fixed))

@@ -1,0 +1,214 @@
+"""A sheet of paper: A4, millimetres, true scales; lines, arrows, labels, a title strip. Matplotlib without pyplot."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon
+
+from tmm_cli.draw.labels import Ground, Label
+from tmm_cli.plans.record import extent, round_scale
+from tmm_cli.words import say
+
+MM = 1 / 25.4  # inches
+LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)
+MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
+DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
+COLOURS = {
+    "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
+    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
+}  # fmt: skip
+
+# Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
+mpl.rcParams["svg.hashsalt"] = "tmm"
+mpl.rcParams["svg.fonttype"] = "path"
+mpl.rcParams["font.family"] = "DejaVu Sans"
+
+
+class Sheet:
+    """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
+
+    def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = 22.0) -> None:
+        found = [p for p in points if np.isfinite(p)] or [0j]
+        _, width, height, middle = extent(found)
+        self.paper = LANDSCAPE if width >= 0.9 * height else PORTRAIT
+        across, up = self.paper[0] - 2 * MARGIN, self.paper[1] - 2 * MARGIN - STRIP
+        self.mu = round_scale(width, height, across - 2 * pad, up - 2 * pad)
+        self.origin = complex(MARGIN + across / 2, MARGIN + up / 2) - middle / self.mu
+        self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
+        FigureCanvasAgg(self.figure)
+        self.axes = self.figure.add_axes((0, 0, 1, 1))
+        self.axes.set_xlim(0, self.paper[0])
+        self.axes.set_ylim(0, self.paper[1])
+        self.axes.axis("off")
+        self.ground = Ground(complex(MARGIN, MARGIN), complex(self.paper[0] - MARGIN, self.paper[1] - MARGIN - STRIP))
+        self.labels: list[Label] = []
+        self.notes: list[str] = []
+        self._strip(title, caption)
+
+    def on(self, value: complex) -> complex:
+        """A value (SI) as a place on paper (mm)."""
+        return self.origin + value / self.mu
+
+    def _strip(self, title: str, caption: str) -> None:
+        width, height = self.paper
+        self.axes.plot([MARGIN, width - MARGIN], [height - MARGIN - STRIP + 5] * 2, color=DARK, lw=0.6)
+        self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
+        self.text(complex(MARGIN, height - MARGIN - 8), caption[:120], 9, colour="#404040")
+
+    def text(
+        self,
+        at: complex,
+        text: str,
+        size: float,
+        *,
+        colour: str = DARK,
+        weight: str = "normal",
+        ha: str = "left",
+        style: str = "normal",
+    ) -> None:
+        """A text at a place (mm); never read as mathematics."""
+        self.axes.text(
+            at.real,
+            at.imag,
+            text,
+            fontsize=size,
+            color=colour,
+            weight=weight,
+            ha=ha,
+            va="center",
+            style=style,
+            parse_math=False,
+            zorder=9,
+        )
+
+    def label(self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal") -> None:
+        """A text beside a place (mm); where exactly is decided when all is drawn."""
+        if np.isfinite(anchor):
+            self.labels.append(Label(text, anchor, size, colour, style))
+
+    def line(
+        self,
+        places: Sequence[complex],
+        colour: str = DARK,
+        width: float = 1.0,
+        style: str = "-",
+        z: float = 3,
+        *,
+        blocks: bool = True,
+    ) -> None:
+        """A polyline through places (mm)."""
+        array = np.array(places)
+        self.axes.plot(array.real, array.imag, color=colour, lw=width, ls=style, zorder=z, solid_capstyle="round")
+        if blocks:
+            for start, end in zip(places, places[1:], strict=False):
+                if np.isfinite(start) and np.isfinite(end):
+                    self.ground.line(complex(start), complex(end))
+
+    def area(
+        self,
+        corners: Sequence[complex],
+        face: str,
+        edge: str = DARK,
+        width: float = 1.0,
+        z: float = 2.0,
+        alpha: float = 1.0,
+    ) -> None:
+        """A filled polygon."""
+        self.axes.add_patch(
+            Polygon(
+                [(c.real, c.imag) for c in corners], facecolor=face, edgecolor=edge, lw=width, zorder=z, alpha=alpha
+            )
+        )
+        for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+            self.ground.line(start, end)
+
+    def circle(
+        self, at: complex, radius: float, face: str = "white", edge: str = DARK, width: float = 1.0, z: float = 6
+    ) -> None:
+        """A circle about a place (mm)."""
+        if np.isfinite(at):
+            self.axes.add_patch(Circle((at.real, at.imag), radius, facecolor=face, edgecolor=edge, lw=width, zorder=z))
+            self.ground.spot(at, radius)
+
+    def arrow(self, start: complex, end: complex, colour: str = DARK, width: float = 1.2, z: float = 5) -> None:
+        """An arrow; its head shrinks with a short shaft so that it stays an arrow."""
+        length = abs(end - start)
+        if not np.isfinite(length) or length < 0.15:
+            self.circle(end, 0.5, colour, colour, 0.3, z)
+            return
+        along = (end - start) / length
+        head = min(3.4, 0.6 * length)
+        neck = end - head * along
+        side = 1j * along * head * 0.27
+        self.line([start, neck + 0.3 * head * along], colour, width, z=z)
+        self.axes.add_patch(
+            Polygon(
+                [(c.real, c.imag) for c in (end, neck + side, neck - side)],
+                facecolor=colour,
+                edgecolor="none",
+                zorder=z,
+            )
+        )
+        self.ground.line(neck, end)
+
+    def note(self, text: str) -> None:
+        """A line of the corner box: scale factors and remarks."""
+        self.notes.append(text)
+
+    def finish(self) -> Figure:
+        """Put the notes into the emptiest corner, place the labels."""
+        if self.notes:
+            self._corner()
+        for label in self.labels:
+            at = self.ground.place(label)
+            self.text(at, label.text, label.size, colour=label.colour, ha="center", style=label.style)
+        return self.figure
+
+    def _corner(self) -> None:
+        width = max(len(t) for t in self.notes) * 1.72 + 4
+        height = 5.0 * len(self.notes) + 2
+        low, high = self.ground.low, self.ground.high
+        corners = [complex(x, y) for y in (low.imag, high.imag - height) for x in (high.real - width, low.real)]
+        crowd = np.concatenate(self.ground.points) if self.ground.points else np.zeros(0, complex)
+
+        def covered(c: complex) -> int:
+            inside = (crowd.real > c.real - 2) & (crowd.real < c.real + width + 2)
+            return int(np.count_nonzero(inside & (crowd.imag > c.imag - 2) & (crowd.imag < c.imag + height + 2)))
+
+        at = min(corners, key=covered)
+        self.axes.add_patch(
+            Polygon(
+                [
+                    (at.real, at.imag),
+                    (at.real + width, at.imag),
+                    (at.real + width, at.imag + height),
+                    (at.real, at.imag + height),
+                ],
+                facecolor="white",
+                edgecolor=THIN,
+                lw=0.6,
+                zorder=8,
+            )
+        )
+        for k, text in enumerate(self.notes):
+            self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
+        self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))
+
+
+def scale_text(symbol: str, mu: float, unit: str) -> str:
+    """μ_l = 0.005 m/mm."""
+    return say("draw.scale", symbol=symbol, mu=f"{mu:.10g}", unit=unit)
+
+
+def picture(figure: Figure, kind: str) -> bytes:
+    """The figure as PNG or SVG; the same figure gives the same bytes."""
+    stream = io.BytesIO()
+    metadata = {"Software": None} if kind == "png" else {"Date": None, "Creator": None}
+    figure.savefig(stream, format=kind, dpi=110, metadata=metadata)
+    return stream.getvalue()

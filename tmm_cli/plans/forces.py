@@ -1,0 +1,90 @@
+"""Force plans of a position: the closed polygon of each group in course order, and that of the driving link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tmm_cli.forces.loads import Applied
+from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
+from tmm_cli.plans.record import Kind, NamedVector, Plan, reaction_name
+
+Part = tuple[str, complex, Kind]
+
+
+@dataclass(frozen=True)
+class ForcePlan:
+    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation."""
+
+    links: tuple[str, ...]
+    plan: Plan
+    equation: str
+
+
+def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
+    """Last group first, as they are drawn, and the driving link at the end."""
+    groups = [_group(group, reactions, k) for group in reversed(reactions.groups)]
+    return (*groups, _driver(reactions, k))
+
+
+def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
+    """Tangential parts, what the links bear, then normal parts and guides; the inner reaction joins two corners.
+
+    Link a's forces stand together and so do link b's: the inner reaction on b is the vector that closes b's part.
+    """
+    first, last = group.outer
+    a, b = group.group.links
+    parts_a = [*_part(first, "ᵗ", k), *_borne(group.borne, reactions.applied, a, k)]
+    parts_b = [*_borne(group.borne, reactions.applied, b, k), *_part(last, "ᵗ", k)]
+    closing_b, closing_a = list(_rest(last, k)), list(_rest(first, k))
+    plan = _polygon([*closing_a, *parts_a, *parts_b, *closing_b])
+    corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
+    inner = group.inner
+    force = complex(inner.onto(b)[k])
+    # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
+    joined = NamedVector(reaction_name(inner.pair.other(b), b), corner - force, corner, "inner")
+    order = " + ".join(v.name for v in plan.vectors)
+    return ForcePlan((a, b), Plan((*plan.vectors, joined)), f"{order} = 0")
+
+
+def _driver(reactions: Reactions, k: int) -> ForcePlan:
+    link = reactions.frame.on
+    parts = list(_borne(reactions.borne, reactions.applied, link, k))
+    balance = reactions.balance
+    if balance.kind == "force":
+        parts.append(("Fb", complex(balance.vector[k]), "load"))
+    parts += _rest(reactions.frame, k)
+    plan = _polygon(parts)
+    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0")
+
+
+def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:
+    if reaction.tangential is not None:
+        yield reaction_name(reaction.by, reaction.on, mark), complex(reaction.tangential[k]), "tangential"
+
+
+def _rest(reaction: Reaction, k: int) -> Iterable[Part]:
+    """What closes the polygon: the normal part of a hinge's reaction, or all of a guide's."""
+    if reaction.normal is not None:
+        yield reaction_name(reaction.by, reaction.on, "ⁿ"), complex(reaction.normal[k]), "normal"
+    else:
+        yield reaction_name(reaction.by, reaction.on), complex(reaction.force[k]), "reaction"
+
+
+def _borne(borne: tuple[Reaction, ...], loads: tuple[Applied, ...], link: str, k: int) -> Iterable[Part]:
+    """What a link bears besides its group's reactions: later groups first, then loads."""
+    for reaction in borne:
+        if reaction.by == link:
+            yield reaction_name(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
+    for load in loads:
+        if load.link == link and load.has_force:
+            kind: Kind = "inertia" if load.kind == "inertia" else "load"
+            yield load.name, complex(load.force[k]), kind
+
+
+def _polygon(parts: Iterable[Part]) -> Plan:
+    at, vectors = 0j, []
+    for name, value, kind in parts:
+        vectors.append(NamedVector(name, at, at + value, kind))
+        at += value
+    return Plan(tuple(vectors))

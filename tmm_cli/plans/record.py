@@ -1,0 +1,80 @@
+"""A plan: named vectors in one plane, and the scale at which it goes on paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors of course drawings, times a power of ten
+NOTHING = 1e-9  # of the plan's size: shorter vectors are points
+
+Kind = Literal[
+    "absolute", "relative", "normal", "tangential", "coriolis", "sliding", "load", "inertia", "reaction", "inner"
+]
+
+
+@dataclass(frozen=True)
+class NamedVector:
+    """A vector from start to end (SI), and what a student calls it."""
+
+    name: str
+    start: complex
+    end: complex
+    kind: Kind
+
+    @property
+    def value(self) -> complex:
+        return self.end - self.start
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Vectors of a plan; `ends` are its lettered points (the pole among them)."""
+
+    vectors: tuple[NamedVector, ...]
+    ends: Mapping[str, complex] = field(default_factory=dict)
+
+    @property
+    def size(self) -> float:
+        """The largest extent, SI."""
+        points = [*self.ends.values(), *(p for v in self.vectors for p in (v.start, v.end))]
+        return extent(points)[0] if points else 0.0
+
+    def drawn(self) -> tuple[NamedVector, ...]:
+        """Vectors that are more than a point."""
+        least = NOTHING * self.size
+        return tuple(v for v in self.vectors if abs(v.value) > least)
+
+
+def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
+    """Larger side, width, height and middle of the box about the points."""
+    points = list(points)
+    xs, ys = [p.real for p in points], [p.imag for p in points]
+    width, height = max(xs) - min(xs), max(ys) - min(ys)
+    return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+
+
+def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
+    """The smallest round scale factor (SI a millimetre) at which a box fits on paper (mm)."""
+    least = max(width / paper_width, height / paper_height)
+    if not least > 0 or not math.isfinite(least):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(least))
+    # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
+    return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
+
+
+def subscript(text: str) -> str:
+    """Figures below the line where the name is a number, else in brackets."""
+    return text.translate(_BELOW) if text.isdecimal() and text.isascii() else f"({text})"
+
+
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def reaction_name(by: str, on: str, part: str = "") -> str:
+    """R₃₄: from link 3 on link 4; part: ᵗ tangential, ⁿ normal."""
+    both = by + on if len(by) == len(on) == 1 else f"{by},{on}"
+    return f"R{subscript(both)}{part}"

@@ -1,0 +1,58 @@
+"""The velocity plan of a position: pole p, ends of the absolute velocities, relative velocities between them."""
+
+from __future__ import annotations
+
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.motion import Motion
+from tmm_cli.plans.record import NamedVector, Plan
+from tmm_cli.vectors import unit
+
+
+def hinge_points(linkage: Linkage, link: str) -> list[str]:
+    """Points of a link that tell its motion: those it shares with others, or all when it shares fewer than two."""
+    points = list(linkage.links[link].points)
+    shared = {h.point for h in linkage.hinges if link in h.links}
+    running = {s.at for s in linkage.slides if s.runner == link}
+    told = [p for p in points if p in shared or linkage.local(link, p) in running]
+    return told if len(told) > 1 else points
+
+
+def velocity_plan(motion: Motion, k: int) -> Plan:
+    """Vectors pa, ab, ... in m/s at position k."""
+    linkage = motion.linkage
+    ends: dict[str, complex] = {"p": 0j}
+    vectors: list[NamedVector] = []
+    fixed = set(linkage.links[FRAME].points)
+    for link in linkage.moving:
+        for point in linkage.links[link].points:
+            letter = point.lower()
+            if point not in fixed and letter not in ends:
+                ends[letter] = complex(motion.named(point).v[k])
+                vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
+    for link in linkage.moving:
+        told = [p for p in hinge_points(linkage, link) if p not in fixed]
+        for one, other in zip(told, told[1:], strict=False):
+            a, b = one.lower(), other.lower()
+            vectors.append(NamedVector(a + b, ends[a], ends[b], "relative"))
+    for slide in linkage.slides:
+        if FRAME in (slide.carrier, slide.runner):
+            continue
+        runner = motion.point(slide.runner, slide.at)
+        letter = slide.point.lower()
+        under = f"{letter}{slide.carrier}"
+        carrier = motion.poses[slide.carrier]
+        below = motion.point(slide.carrier, (runner.x[k] - carrier.x[k]) / carrier.z[k])
+        ends[under] = complex(below.v[k])
+        vectors.append(NamedVector(f"p{under}", 0j, ends[under], "absolute"))
+        vectors.append(NamedVector(under + letter, ends[under], complex(runner.v[k]), "sliding"))
+    for link in linkage.moving:
+        if linkage.links[link].mass:
+            letter = f"s{link}"
+            ends[letter] = complex(motion.centre(link).v[k])
+            vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
+    return Plan(tuple(vectors), ends)
+
+
+def guide_direction(motion: Motion, carrier: str, direction: float, k: int) -> complex:
+    """The guide's direction in the drawing at position k."""
+    return complex(motion.poses[carrier].z[k] * unit(direction))
