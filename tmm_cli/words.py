@@ -204,7 +204,7 @@ ENGLISH: dict[str, str] = {
     "lever.moment": "moment",
     "lever.note": "Arms are those of the lever drawn for a crank that turns with 1 rad/s, 1 m for 1 m/s.",
     # drawings
-    "draw.scale": "μ{symbol} = {mu} {unit}",
+    "draw.scale": "μ_{symbol} = {mu} {unit}",
     "draw.mechanism": "Mechanism in {count} positions, trajectories of its points",
     "draw.bold": "in full: position {number}",
     "draw.at_crank": "Position {number}, crank at {place}",
@@ -224,7 +224,9 @@ ENGLISH: dict[str, str] = {
     "draw.force": "balancing force Fb",
     "draw.plan": "force plan",
     "draw.turn": "turn of the crank from position 0",
-    "draw.reactions": "reactions",
+    "draw.reactions": "Reactions over the cycle; dots: computed positions",
+    "draw.outer": "reactions of the frame",
+    "draw.inner": "between moving links",
 }
 
 

@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tmm_cli.draw.sheet import DARK, LANDSCAPE, MM, PORTRAIT
+from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_places
 from tmm_cli.plans.record import reaction_name
@@ -49,18 +50,20 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
         name = "draw.moment" if crank else "draw.force"
         panels.append(
             (say(name), MOMENT if crank else FORCE,
-             [(say("draw.plan"), plan.moment if crank else plan.force, given.moment if crank else given.force)])
+             [("", plan.moment if crank else plan.force, given.moment if crank else given.force)])
         )  # fmt: skip
     if panels:
         yield "diagrams", _figure(results, say("draw.diagrams"), q, marks, panels)
     if whole.reactions is not None and results.reactions is not None:
         here = {r.pair.name: r for r in results.reactions.all}
-        lines = [
-            (f"{reaction_name(r.by, r.on)} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
-            for r in whole.reactions.all
-        ]
-        half = [lines[i : i + 6] for i in range(0, len(lines), 6)]
-        parts = [(say("draw.reactions"), FORCE, part) for part in half]
+        parts: list[tuple[str, Dimension, list[tuple[str, Any, Any]]]] = []
+        for word, on_frame in (("draw.outer", True), ("draw.inner", False)):
+            lines = [
+                (f"{reaction_name(r.by, r.on)} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
+                for r in whole.reactions.all
+                if (FRAME in (r.on, r.by)) == on_frame
+            ]
+            parts += [(say(word), FORCE, lines[i : i + 6]) for i in range(0, len(lines), 6)]
         yield "reactions", _figure(results, say("draw.reactions"), q, marks, parts)
 
 
@@ -120,7 +123,11 @@ def _figure(
     for number, (name, dimension, lines) in enumerate(panels, 1):
         axes = figure.add_subplot(len(panels), 1, number)
         for k, (label, values, given) in enumerate(lines):
-            style = {"color": LINES[k % len(LINES)], "ls": STYLES[(k // len(LINES) + k) % len(STYLES)], "lw": 1.4}
+            style: dict[str, Any] = {
+                "color": LINES[k % len(LINES)],
+                "ls": STYLES[(k // len(LINES) + k) % len(STYLES)],
+                "lw": 1.4,
+            }
             axes.plot(q, _in_units(values, dimension, units), label=label or None, **style)
             axes.plot(marks, _in_units(given, dimension, units), "o", ms=3, color=style["color"])
         axes.set_ylabel(f"{name}, {units.symbol(dimension)}", parse_math=False, fontsize=9)
@@ -131,8 +138,8 @@ def _figure(
         if results.linkage.driver.kind == "turn" and results.way is not None and results.way.full:
             axes.set_xticks(np.arange(0, 361, 30))
             axes.set_xlim(0, 360)
-        if len(lines) > 1:
-            legend = axes.legend(fontsize=8, ncol=3, loc="upper center", framealpha=0.9)
+        if any(label for label, _, _ in lines):
+            legend = axes.legend(fontsize=8, ncol=3, loc="best", framealpha=0.9)
             for text in legend.get_texts():
                 text.set_parse_math(False)
         if number == len(panels):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ DIRECTIONS = 16
 
 @dataclass(frozen=True)
 class Label:
-    """A text asked for at an anchor (mm on paper), `size` points high; `colour` as drawn; `near`: how close it must be."""
+    """A text asked for at an anchor (mm on paper), `size` points high."""
 
     text: str
     anchor: complex
@@ -30,7 +31,7 @@ class Ground:
 
     low: complex
     high: complex
-    points: list[NDArray[np.complex128]] = field(default_factory=list)
+    points: list[NDArray[Any]] = field(default_factory=list)
     boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
 
     def line(self, start: complex, end: complex) -> None:
@@ -65,7 +66,7 @@ class Ground:
         )
         return best
 
-    def _cost(self, middle: complex, width: float, height: float, near: NDArray[np.complex128]) -> float:
+    def _cost(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
         left, right = middle.real - width / 2 - 0.4, middle.real + width / 2 + 0.4
         low, high = middle.imag - height / 2 - 0.3, middle.imag + height / 2 + 0.3
         inside = (near.real > left) & (near.real < right) & (near.imag > low) & (near.imag < high)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.draw.scheme import mechanism, moving_points, skeleton, trajectory
+from tmm_cli.draw.scheme import mechanism, moving_points, reach, skeleton, trajectory
 from tmm_cli.draw.sheet import COLOURS, DARK, REACTION, Sheet, scale_text
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
@@ -109,12 +109,15 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     sheet = Sheet(results.problem.title, caption(results, k), places, pad=30)
     mechanism(sheet, motion, k)
     if results.reactions is not None:
+        taken: list[tuple[complex, complex]] = []
         for load in results.reactions.applied:
             at = sheet.on(complex(motion.point(load.link, load.at).x[k]))
             force, moment = complex(load.force[k]), float(load.moment[k])
             colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
             if abs(force) > 0:
-                end = at + LOAD_MM * force / abs(force)
+                end = at + (LOAD_MM + stacked(taken, at, force)) * force / abs(force)
+                if load.kind == "load" and len(linkage.links[load.link].points) == 1:
+                    reach(sheet, motion, load.link, at, k)
                 sheet.arrow(at, end, colour, 1.3)
                 sheet.label(load.name, end, 9, colour)
             if moment != 0:
@@ -130,12 +133,20 @@ def _balance(sheet: Sheet, results: Results, k: int) -> None:
     balance = results.reactions.balance
     if balance.kind == "moment" and balance.moment is not None:
         pivot = sheet.on(complex(results.reactions.frame.at[k]))
-        couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 9)
+        couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 7.5)
     elif abs(balance.vector[k]) > 0:
         at = sheet.on(complex(balance.at[k]))
         end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
         sheet.arrow(at, end, REACTION, 1.5)
         sheet.label("Fb", end, 9, REACTION)
+
+
+def stacked(taken: list[tuple[complex, complex]], at: complex, force: complex) -> float:
+    """How much longer (mm) an arrow is drawn so that it shows beside others from the same place and direction."""
+    along = force / abs(force)
+    alike = sum(abs(at - place) < 1 and abs(along - other) < 0.05 for place, other in taken)
+    taken.append((at, along))
+    return 9.0 * alike
 
 
 def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from matplotlib.figure import Figure
 
-from tmm_cli.draw.mechanism import caption, stem
+from tmm_cli.draw.mechanism import caption, stacked, stem
 from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, scale_text
 from tmm_cli.pipeline import Results
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
@@ -108,9 +108,10 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
         sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
     size = max((abs(e) for e in plan.ends.values()), default=0.0)
     pole = sheet.on(0j)
+    taken: list[tuple[complex, complex]] = []
     for force in plan.forces:
         at, foot = sheet.on(force.at), sheet.on(force.foot)
-        end = at + FORCE_MM * force.force / abs(force.force)
+        end = at + (FORCE_MM + stacked(taken, at, force.force)) * force.force / abs(force.force)
         inertia = force.name.startswith("U")
         colour = COLOURS["inertia" if inertia else "load"]
         if abs(force.foot) > 1e-9 * size:

@@ -45,7 +45,13 @@ def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> 
         sheet.label(name, at, 10)
     for link in linkage.moving:
         if np.any(linkage.links[link].mass != 0):
-            centre(sheet, sheet.on(complex(motion.centre(link).x[k])), f"S{link}")
+            at = sheet.on(complex(motion.centre(link).x[k]))
+            on_point = any(
+                abs(at - sheet.on(complex(motion.named(p).x[k]))) < HINGE for p in linkage.links[link].points
+            )
+            centre(sheet, at, f"S{link}", marked=not on_point)
+            if not on_point and len(linkage.links[link].points) == 1:
+                reach(sheet, motion, link, at, k)
     if numbers:
         for link in linkage.moving:
             places = link_places(sheet, motion, link, k)
@@ -138,10 +144,17 @@ def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
         sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=k % 2 == 0)
 
 
-def centre(sheet: Sheet, at: complex, name: str) -> None:
-    """A centre of mass: a small circle with a dot."""
-    sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
-    sheet.circle(at, 0.25, face=DARK, z=6.3)
+def reach(sheet: Sheet, motion: Motion, link: str, at: complex, k: int) -> None:
+    """A thin line from a link of one point to a place that belongs to it too."""
+    point = next(iter(motion.linkage.links[link].points))
+    sheet.line([sheet.on(complex(motion.named(point).x[k])), at], THIN, 0.9, z=2.1)
+
+
+def centre(sheet: Sheet, at: complex, name: str, *, marked: bool = True) -> None:
+    """A centre of mass: a small circle with a dot, or its name alone where a hinge is drawn."""
+    if marked:
+        sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
+        sheet.circle(at, 0.25, face=DARK, z=6.3)
     sheet.label(name, at, 8, "#6b5310")
 
 

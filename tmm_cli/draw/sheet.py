@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 
 import matplotlib as mpl
 import numpy as np
@@ -36,9 +37,13 @@ class Sheet:
     def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = 22.0) -> None:
         found = [p for p in points if np.isfinite(p)] or [0j]
         _, width, height, middle = extent(found)
-        self.paper = LANDSCAPE if width >= 0.9 * height else PORTRAIT
+        scales = {
+            paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
+            for paper in (LANDSCAPE, PORTRAIT)
+        }
+        self.paper = min(scales, key=lambda paper: (scales[paper], paper[1]))
+        self.mu = scales[self.paper]
         across, up = self.paper[0] - 2 * MARGIN, self.paper[1] - 2 * MARGIN - STRIP
-        self.mu = round_scale(width, height, across - 2 * pad, up - 2 * pad)
         self.origin = complex(MARGIN + across / 2, MARGIN + up / 2) - middle / self.mu
         self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
         FigureCanvasAgg(self.figure)
@@ -106,7 +111,7 @@ class Sheet:
         array = np.array(places)
         self.axes.plot(array.real, array.imag, color=colour, lw=width, ls=style, zorder=z, solid_capstyle="round")
         if blocks:
-            for start, end in zip(places, places[1:], strict=False):
+            for start, end in pairwise(places):
                 if np.isfinite(start) and np.isfinite(end):
                     self.ground.line(complex(start), complex(end))
 
@@ -171,7 +176,7 @@ class Sheet:
         return self.figure
 
     def _corner(self) -> None:
-        width = max(len(t) for t in self.notes) * 1.72 + 4
+        width = max(len(t) for t in self.notes) * 2.0 + 5
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
         corners = [complex(x, y) for y in (low.imag, high.imag - height) for x in (high.real - width, low.real)]

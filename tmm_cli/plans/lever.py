@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from tmm_cli.forces.lever import Lever
 from tmm_cli.motion import Motion
@@ -43,7 +44,7 @@ def lever_plan(motion: Motion, lever: Lever, k: int) -> LeverPlan:
     bars = [NamedVector(f"p{name}", 0j, end, "absolute") for name, end in ends.items() if name != "p"]
     for link in linkage.moving:
         told = [p.lower() for p in hinge_points(linkage, link) if p not in fixed]
-        bars += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in zip(told, told[1:], strict=False)]
+        bars += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in pairwise(told)]
     forces, couples = [], []
     for item in lever.items:
         if item.end is None or item.force is None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors of course drawings, times a power of ten
+ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
 NOTHING = 1e-9  # of the plan's size: shorter vectors are points
 
 Kind = Literal[

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Motion
 from tmm_cli.plans.record import NamedVector, Plan
@@ -31,7 +33,7 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
                 vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
     for link in linkage.moving:
         told = [p for p in hinge_points(linkage, link) if p not in fixed]
-        for one, other in zip(told, told[1:], strict=False):
+        for one, other in pairwise(told):
             a, b = one.lower(), other.lower()
             vectors.append(NamedVector(a + b, ends[a], ends[b], "relative"))
     for slide in linkage.slides:
