@@ -131,20 +131,20 @@ def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
     half = np.pi if turns else 4 * max((d.size for d in dyads), default=1.0)
     steps = np.linspace(-half, half, SCAN + 1)
     law = Law(at, 1.0, 0.0, 1)
-    reached = move(linkage, dyads, at + steps, law)
-    if bool(np.all(reached.placed)):
+    side = [np.sign(p.det[0]) for p in move(linkage, dyads, np.array([at]), law).placements]
+    lost = _lost(move(linkage, dyads, at + steps, law), side)
+    if not bool(np.any(lost)):
         return Range(at - half, at + half, turns)
-    blocked = np.flatnonzero(~reached.placed)
+    blocked = np.flatnonzero(np.any(lost, axis=0))
     middle = SCAN // 2
 
     def limit(index: int, towards: int) -> Limit:
         good, bad = at + steps[index - towards], at + steps[index]
         for _ in range(HALVINGS):
             half_way = (good + bad) / 2
-            there = move(linkage, dyads, np.array([half_way]), law)
-            good, bad = (half_way, bad) if there.placed[0] else (good, half_way)
-        beyond = move(linkage, dyads, np.array([at + steps[index]]), law)
-        return Limit(good, next(title for title, lost in beyond.missing.items() if lost[0]))
+            there = bool(np.any(_lost(move(linkage, dyads, np.array([half_way]), law), side)))
+            good, bad = (good, half_way) if there else (half_way, bad)
+        return Limit(good, dyads[int(np.argmax(lost[:, index]))].group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
@@ -156,6 +156,17 @@ def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
     start = first.place if first else at - half
     end = last.place if last else at + half
     return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _lost(motion: Motion, side: list[float]) -> Real:
+    """For each group and place whether the linkage cannot be there: no assembly, or only past a dead position.
+
+    The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
+    went to infinity.
+    """
+    held = [motion.placed & ~(np.sign(p.det) == -s) for p, s in zip(motion.placements, side, strict=True)]
+    found: Real = ~np.array(held) if held else np.zeros((0, len(motion.q)), dtype=bool)
+    return found
 
 
 def limit_from(known: Limit, blocked: Real, steps: Real, at: float, limit: Callable[[int, int], Limit]) -> Limit:

@@ -17,8 +17,8 @@ ENGLISH: dict[str, str] = {
     "role.rocking slider": "rocking slider",
     # warnings
     "warning.range": "crank {link} cannot turn fully: it can go from {start} to {end}; there {groups} comes to its "
-    "dead position. Results are given for that range.",
-    "warning.limit": "the driver cannot go beyond {place}: there {group} comes to its dead position",
+    "dead position",
+    "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
     "grow without bound there, and the group may leave it either way",
     "warning.missing": "position {number} ({place}): {group} cannot be assembled, {gap} short",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
@@ -128,10 +127,8 @@ def clean(text: str, limit: int = 60) -> str:
 
 
 def _escape(char: str) -> str:
-    # Cf holds the bidirectional overrides, which reorder what a terminal shows; Zl and Zp break lines.
-    if unicodedata.category(char) in {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}:
-        return char.encode("unicode_escape").decode("ascii")
-    return char
+    # Not printable are controls, bidirectional overrides, line separators and spaces that only look like one.
+    return char if char.isprintable() else char.encode("unicode_escape").decode("ascii")
 
 
 def quote(value: object) -> str:

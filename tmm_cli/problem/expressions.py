@@ -1,60 +1,42 @@
-"""Arithmetic on parameters in a problem file: parsed here, never run as Python.
+"""Values of a problem file that may be arithmetic on parameters: parsed (arithmetic), never run as Python.
 
 A bare number is flexible: beside a quantity with a dimension it is taken in the file's unit of that dimension, and so
-is a bare result where a dimension is wanted. Bounded in length and depth.
+is a bare result where a dimension is wanted.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
-from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.scalars import comma_error
-from tmm_cli.problem.units import (
-    ANGLE,
-    NUMBER,
-    SYMBOLS,
-    Dimension,
-    Quantity,
-    UnitError,
-    UnitSystem,
-    parse_unit,
-    plain_text,
-    symbol,
-    unknown_unit,
-)
+from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
+from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.units import ANGLE, Dimension, Quantity, UnitError, UnitSystem, plain_text
 
 MAX_LENGTH: Final = 200
-MAX_DEPTH: Final = 30
-
-_NUMBER = re.compile(r"\s*(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)")
-_COMMA = re.compile(r"\s*([+-]?\d+),(\d+)\s*(.*)")
-_NAME = re.compile(r"\s*([^\W\d]\w*)")
-_SIGN = re.compile(r"\s*(\*\*|[-+*/^(),])")
-# A unit right after a number: symbols with powers, joined by * · / or a space.
-_FACTOR = r"(?:[^\W\d_]+|°|%)(?:\^\s*-?\d+|[²³]|\d)?"
-_UNIT = re.compile(rf"\s*((?:1\s*/\s*)?{_FACTOR}(?:(?:\s*[*·/]\s*|\s+){_FACTOR})*)")
-_SYMBOL = re.compile(r"[^\W\d_]+|°|%")
-_JOINT = re.compile(r"\s*[*·/]|\s+")
-
-_ANGLE_IN: Final[Mapping[str, Callable[[float], float]]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
-_ANGLE_OUT: Final[Mapping[str, Callable[[float], float]]] = {"asin": math.asin, "acos": math.acos, "atan": math.atan}
-FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, "atan2", "sqrt", "abs", "min", "max", "hypot")
 
 
 def evaluate(source: object, parameters: Mapping[str, Quantity], units: UnitSystem, want: Dimension) -> float:
     """A value in SI and radians. Raises ProblemError (without a path) for what is not arithmetic or does not fit."""
-    found = evaluate_quantity(source, parameters, units)
-    value = _taken(found, want, units)
-    if value is None and isinstance(source, str) and "pi" in source:
-        value = _taken(evaluate_quantity(source, parameters, units, pi=None), want, units)
+    try:
+        return _fitting(source, evaluate_quantity(source, parameters, units), units, want)
+    except ProblemError as error:
+        if not isinstance(source, str) or "pi" not in source:
+            raise
+        first = error
+    try:  # pi is perhaps a ratio, as in pi * OA
+        return _fitting(source, evaluate_quantity(source, parameters, units, pi=None), units, want)
+    except ProblemError:
+        raise first from None
+
+
+def _fitting(source: object, found: Quantity, units: UnitSystem, want: Dimension) -> float:
+    value = taken(found, want, units)
     if value is None:
-        raise UnitError(
-            f"{want} is wanted here", found=f"{quote(source)}, {units.show(found)}", allowed=want.example
-        )  # fmt: skip
+        raise UnitError(f"{want} is wanted here", found=f"{quote(source)}, {units.show(found)}", allowed=want.example)
     return value
 
 
@@ -68,14 +50,12 @@ def evaluate_quantity(
     if isinstance(source, bool) or not isinstance(source, int | float | str):
         raise ProblemError("a number is wanted here", found=quote(source), allowed="a number, a unit, arithmetic")
     if isinstance(source, int | float):
-        if abs(source) > 1e300 or source != source:
-            raise ProblemError("this number is too large", found=quote(source))
+        if not -1e300 < source < 1e300:
+            raise ProblemError("not a number from -1e300 to 1e300", found=quote(source))
         return Quantity(float(source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError("this is too long", found=quote(source), allowed=f"at most {MAX_LENGTH} characters")
-    if comma := _COMMA.fullmatch(source):
-        raise comma_error(comma[1], f"{comma[2]} {comma[3]}".strip())
-    found = _Parser(plain_text(source), parameters, units, pi).whole()
+    found = Parser(plain_text(source), parameters, units, pi).whole()
     if not math.isfinite(found.value):
         raise ProblemError("this number is too large", found=quote(source))
     return found
@@ -92,230 +72,19 @@ def resolve_parameters(raw: Mapping[str, object], units: UnitSystem) -> dict[str
             )  # fmt: skip
         if name in FUNCTIONS or name == "pi":
             raise ProblemError("this name is taken by arithmetic", path=(name,), found=quote(name), key=True)
-        _resolve(name, raw, found, [], units)
-    return {name: found[name] for name in raw}
-
-
-def _resolve(
-    name: str, raw: Mapping[str, object], found: dict[str, Quantity], way: list[str], units: UnitSystem
-) -> None:
-    if name in found:
-        return
-    if name in way:
-        cycle = " -> ".join([*way[way.index(name) :], name])
-        raise ProblemError("parameters go round in a circle", path=(name,), found=cycle)
-    if len(way) > MAX_DEPTH:
-        raise ProblemError("parameters refer to each other too deeply", path=(name,), allowed=f"{MAX_DEPTH} levels")
-    source = raw[name]
-    if isinstance(source, str):
-        for other in _NAME.findall(source):
-            if other in raw and not (other == name and other in SYMBOLS):
-                _resolve(other, raw, found, [*way, name], units)
+    known = dict.fromkeys(raw, Quantity(0.0))
+    needs = {
+        name: Parser(plain_text(source[:MAX_LENGTH]), known, units).names() if isinstance(source, str) else []
+        for name, source in raw.items()
+    }
     try:
-        found[name] = evaluate_quantity(source, found, units)
-    except ProblemError as error:
-        raise error.at(name) from None
-
-
-def _taken(found: Quantity, want: Dimension, units: UnitSystem) -> float | None:
-    if found.dimension is None:
-        return units.si(found.value, want)
-    return found.value if found.dimension.fits(want) else None
-
-
-class _Parser:
-    """Precedence climbing over the text: sums, products, powers, signs, calls."""
-
-    def __init__(self, text: str, parameters: Mapping[str, Quantity], units: UnitSystem, pi: Dimension | None) -> None:
-        self.text, self.parameters, self.units, self.pi = text, parameters, units, pi
-        self.at = 0
-        self.depth = 0
-
-    def whole(self) -> Quantity:
-        found = self.sum()
-        if self.text[self.at :].strip():
-            raise self.fault("this is not arithmetic")
-        return found
-
-    def fault(self, message: str) -> ProblemError:
-        rest = self.text[self.at :].strip()
-        found = quote(self.text) + (f", at {quote(rest)}" if rest and rest != self.text.strip() else "")
-        return ProblemError(message, found=found, allowed="numbers, units, parameters, + - * / ^ ( )")
-
-    def sign(self, *signs: str) -> str | None:
-        match = _SIGN.match(self.text, self.at)
-        if match and match[1] in signs:
-            self.at = match.end()
-            return match[1]
-        return None
-
-    def sum(self) -> Quantity:
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
-        left = self.product()
-        while sign := self.sign("+", "-"):
-            right = self.product()
-            a, b, dimension = self.alike(left, right)
-            left = Quantity(a + b if sign == "+" else a - b, dimension)
-        self.depth -= 1
-        return left
-
-    def product(self) -> Quantity:
-        left = self.signed()
-        while sign := self.sign("*", "/"):
-            right = self.signed()
-            if sign == "/" and right.value == 0:
-                raise self.fault("division by zero")
-            value = left.value * right.value if sign == "*" else left.value / right.value
-            left = Quantity(value, self.joined(left, right, 1 if sign == "*" else -1))
-        return left
-
-    def signed(self) -> Quantity:
-        minus = False
-        while sign := self.sign("+", "-"):
-            minus ^= sign == "-"
-        found = self.power()
-        return Quantity(-found.value, found.dimension) if minus else found
-
-    def power(self) -> Quantity:
-        base = self.atom()
-        if not self.sign("^", "**"):
-            return base
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
-        exponent = self.signed()
-        self.depth -= 1
-        if exponent.dimension not in (None, NUMBER) or abs(exponent.value) > 20:
-            raise self.fault("an exponent is a small bare number")
-        dimension = base.dimension
-        if dimension is not None:
-            if exponent.value != int(exponent.value):
-                raise self.fault("a quantity has whole powers; see sqrt")
-            dimension = dimension.power(int(exponent.value))
-        return Quantity(self.real(lambda: base.value**exponent.value), dimension)
-
-    def atom(self) -> Quantity:
-        if number := _NUMBER.match(self.text, self.at):
-            self.at = number.end()
-            return self.with_unit(float(number[1]))
-        if self.sign("("):
-            inside = self.sum()
-            if not self.sign(")"):
-                raise self.fault("a bracket is not closed")
-            return inside
-        if name := _NAME.match(self.text, self.at):
-            return self.named(name)
-        raise self.fault("a number is wanted here" if self.text[self.at :].strip() else "a number is missing")
-
-    def with_unit(self, number: float) -> Quantity:
-        """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
-        found = _UNIT.match(self.text, self.at)
-        if found is None:
-            return Quantity(number, None)
-        text = found[1]
-        for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
-            head = text[:end]
-            if head.endswith(("*", "·", "/")):
-                continue
-            free = {factor[1] for factor in re.finditer(r"\s[*·/]?\s*([^\W\d_]+)", head)}  # set apart by spaces
-            if all(symbol(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
-                self.at = found.start(1) + end
-                unit = parse_unit(head)
-                return Quantity(unit.si(number), unit.dimension)
-        raise unknown_unit(_SYMBOL.findall(text)[0])
-
-    def named(self, match: re.Match[str]) -> Quantity:
-        name = match[1]
-        self.at = match.end()
-        if name in self.parameters:
-            return self.parameters[name]
-        if (
-            name == "pi"
-        ):  # of radians, so that pi/2 is a right angle whatever the file's unit; radians drop out elsewhere
-            return Quantity(math.pi, ANGLE)
-        if name in FUNCTIONS:
-            return self.call(name)
-        names = [*self.parameters, *FUNCTIONS, "pi"]
-        raise ProblemError(
-            "there is no such parameter", found=quote(name), allowed=", ".join(self.parameters) or "none is given",
-            near=nearest(name, names),
-        )  # fmt: skip
-
-    def call(self, name: str) -> Quantity:
-        if not self.sign("("):
-            raise self.fault(f"{name} wants its argument in brackets")
-        given = [self.sum()]
-        while self.sign(","):
-            given.append(self.sum())
-        if not self.sign(")"):
-            raise self.fault("a bracket is not closed")
-        few, many = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
-        if not few <= len(given) <= many:
-            raise self.fault(f"{name} has {few} argument{'s' if few > 1 else ''}")
-        first = given[0]
-        if name in _ANGLE_IN:
-            angle = _taken(first, ANGLE, self.units)
-            if angle is None:
-                raise self.fault(f"{name} wants an angle, not {first.dimension}")
-            return Quantity(_ANGLE_IN[name](angle), None)
-        if name in _ANGLE_OUT:
-            if first.dimension not in (None, NUMBER):
-                raise self.fault(f"{name} wants a number, not {first.dimension}")
-            return Quantity(self.real(lambda: _ANGLE_OUT[name](first.value)), ANGLE)
-        if name == "sqrt":
-            dimension = first.dimension and _half(first.dimension)
-            if first.dimension is not None and dimension is None:
-                raise self.fault(f"{first.dimension} has no square root")
-            return Quantity(self.real(lambda: math.sqrt(first.value)), dimension)
-        if name == "abs":
-            return Quantity(abs(first.value), first.dimension)
-        return self.of_many(name, given)
-
-    def of_many(self, name: str, given: list[Quantity]) -> Quantity:
-        values, dimension = [given[0].value], given[0].dimension
-        for other in given[1:]:
-            _, b, dimension = self.alike(Quantity(values[0], dimension), other)
-            values = [self.alike(Quantity(v, g.dimension), Quantity(b, dimension))[0]
-                      for v, g in zip(values, given, strict=False)] + [b]  # fmt: skip
-        if name == "atan2":
-            return Quantity(math.atan2(*values), ANGLE)
-        if name == "hypot":
-            return Quantity(math.hypot(*values), dimension)
-        return Quantity(min(values) if name == "min" else max(values), dimension)
-
-    def alike(self, left: Quantity, right: Quantity) -> tuple[float, float, Dimension | None]:
-        """Both values in one dimension, a bare one taken in the file's unit of the other's."""
-        a, b = left.dimension, right.dimension
-        if a is None and b is not None:
-            return self.units.si(left.value, b), right.value, b
-        if b is None and a is not None:
-            return left.value, self.units.si(right.value, a), a
-        if a is not None and b is not None and not (a.fits(b) or b.fits(a)):
-            raise self.fault(f"{a} and {b} cannot be added or compared")
-        return left.value, right.value, a
-
-    @staticmethod
-    def joined(left: Quantity, right: Quantity, power: int) -> Dimension | None:
-        """Dimension of a product or quotient; a bare number is a pure factor."""
-        if left.dimension is None and right.dimension is None:
-            return None
-        joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
-        return None if joined == NUMBER else joined
-
-    def real(self, compute: Callable[[], float | complex]) -> float:
+        order = list(TopologicalSorter(needs).static_order())
+    except CycleError as error:
+        cycle: list[str] = error.args[1][::-1]
+        raise ProblemError("parameters go round in a circle", path=(cycle[0],), found=" -> ".join(cycle)) from None
+    for name in order:
         try:
-            value = compute()
-        except (ValueError, OverflowError, ZeroDivisionError):
-            value = math.nan
-        if isinstance(value, complex) or not math.isfinite(value):
-            raise self.fault("this has no value")
-        return float(value)
-
-
-def _half(dimension: Dimension) -> Dimension | None:
-    powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
-    if any(p % 2 for p in powers):
-        return None
-    return Dimension(*(p // 2 for p in powers))
+            found[name] = evaluate_quantity(raw[name], found, units)
+        except ProblemError as error:
+            raise error.at(name) from None
+    return {name: found[name] for name in raw}

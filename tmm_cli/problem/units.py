@@ -154,7 +154,7 @@ def parse_unit(text: str) -> Unit:
     Raises UnitError naming the nearest known symbol.
     """
     source, unit, position, factors = plain_text(text).strip(), Unit(NUMBER), 0, 0
-    minutes = 0
+    names: list[str] = []
     while position < len(source):
         match = _FACTOR.match(source, position)
         if not match or (match[1] and not position) or factors >= 8:
@@ -168,11 +168,12 @@ def parse_unit(text: str) -> Unit:
             if found is None:
                 raise unknown_unit(name)
             unit = unit.times(found, exponent)
-            minutes += exponent if found == SYMBOLS["min"] else 0
+            names.append(name)
         position, factors = match.end(), factors + 1
     if not factors:
         raise UnitError("a unit is missing", found=quote(text), allowed="e.g. mm, deg, rpm, kN")
-    return _PER_MINUTE if minutes == -1 and unit.dimension == Dimension(time=-1) and factors <= 2 else unit
+    alone = len(names) == 1 and symbol(names[0]) == SYMBOLS["min"]
+    return _PER_MINUTE if alone and unit.dimension == Dimension(time=-1) else unit
 
 
 def unknown_unit(name: str) -> UnitError:

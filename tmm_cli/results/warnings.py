@@ -24,14 +24,11 @@ def warnings(results: Results) -> Iterable[str]:
     def place(q: float) -> str:
         return f"{units.from_si(q, measure):.6g} {units.symbol(measure)}"
 
-    if not way.full and way.limits and results.linkage.driver.kind == "turn":
+    if way.limits and results.linkage.driver.kind == "turn":
         groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits))
-        yield say(
-            "warning.range", link=results.linkage.driver.link, start=place(way.start), end=place(way.end), groups=groups
-        )
-    elif way.limits:
-        for limit in way.limits:
-            yield say("warning.limit", place=place(limit.place), group=limit.group)
+        given = "" if results.problem.request.places else say("warning.given")
+        ends = {"start": place(way.start), "end": place(way.end)}
+        yield say("warning.range", link=results.linkage.driver.link, groups=groups, **ends) + given
     for dead in results.dead:
         yield say("warning.dead", place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
     for k, number in enumerate(results.numbers):

@@ -1,0 +1,272 @@
+"""Arithmetic on quantities with units and parameters: precedence climbing over the text, bounded in depth."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.scalars import comma_error, finite_float
+from tmm_cli.problem.units import (
+    ANGLE,
+    NUMBER,
+    Dimension,
+    Quantity,
+    UnitSystem,
+    parse_unit,
+    symbol,
+    unknown_unit,
+)
+
+MAX_DEPTH: Final = 30
+
+_NUMBER = re.compile(r"\s*([0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?)")
+_COMMA = re.compile(r",([0-9]+(?:\s*(?:[^\W\d]\S*|[°%]))?)")
+_NAME = re.compile(r"\s*([^\W\d]\w*)")
+_SIGN = re.compile(r"\s*(\*\*|[-+*/^(),])")
+# A unit right after a number: symbols with powers, joined by * · / or a space.
+_FACTOR = r"(?:[^\W\d_]+|°|%)(?:\^\s*-?\d+|[²³]|\d)?"
+_UNIT = re.compile(rf"\s*((?:1\s*/\s*)?{_FACTOR}(?:(?:\s*[*·/]\s*|\s+){_FACTOR})*)")
+_SYMBOL = re.compile(r"[^\W\d_]+|°|%")
+_JOINT = re.compile(r"\s*[*·/]|\s+")
+
+_ANGLE_IN: Final[Mapping[str, Callable[[float], float]]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
+_ANGLE_OUT: Final[Mapping[str, Callable[[float], float]]] = {"asin": math.asin, "acos": math.acos, "atan": math.atan}
+FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, "atan2", "sqrt", "abs", "min", "max", "hypot")
+
+
+def taken(found: Quantity, want: Dimension, units: UnitSystem) -> float | None:
+    """The value in SI, a bare number taken in the file's unit of `want`; None when the dimension does not fit."""
+    if found.dimension is None:
+        return units.si(found.value, want)
+    return found.value if found.dimension.fits(want) else None
+
+
+class Parser:
+    """Precedence climbing over the text: sums, products, powers, signs, calls."""
+
+    def __init__(
+        self, text: str, parameters: Mapping[str, Quantity], units: UnitSystem, pi: Dimension | None = ANGLE
+    ) -> None:
+        self.text, self.parameters, self.units, self.pi = text, parameters, units, pi
+        self.at = 0
+        self.depth = 0
+
+    def names(self) -> list[str]:
+        """The parameters the text uses. A unit is none, whatever parameters are called: `L: 5 m, m: 2*L`."""
+        found = []
+        while self.at < len(self.text):
+            if number := _NUMBER.match(self.text, self.at):
+                self.at = number.end()
+                try:
+                    self.with_unit(0.0)
+                except ProblemError:
+                    break  # evaluating says what is wrong
+            elif name := _NAME.match(self.text, self.at):
+                self.at = name.end()
+                found.append(name[1])
+            else:
+                self.at += 1
+        return [name for name in found if name in self.parameters]
+
+    def whole(self) -> Quantity:
+        found = self.sum()
+        if self.text[self.at :].strip():
+            raise self.fault("this is not arithmetic")
+        return found
+
+    def fault(self, message: str) -> ProblemError:
+        rest = self.text[self.at :].strip()
+        whole = re.search(r"[0-9]+$", self.text[: self.at])
+        if whole and (comma := _COMMA.match(rest)):
+            return comma_error(whole[0], comma[1])
+        found = quote(self.text) + (f", at {quote(rest)}" if rest and rest != self.text.strip() else "")
+        return ProblemError(message, found=found, allowed="numbers, units, parameters, + - * / ^ ( )")
+
+    def sign(self, *signs: str) -> str | None:
+        match = _SIGN.match(self.text, self.at)
+        if match and match[1] in signs:
+            self.at = match.end()
+            return match[1]
+        return None
+
+    def sum(self) -> Quantity:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
+        left = self.product()
+        while sign := self.sign("+", "-"):
+            right = self.product()
+            a, b, dimension = self.alike(left, right)
+            left = Quantity(a + b if sign == "+" else a - b, dimension)
+        self.depth -= 1
+        return left
+
+    def product(self) -> Quantity:
+        left = self.signed()
+        while sign := self.sign("*", "/"):
+            right = self.signed()
+            if sign == "/" and right.value == 0:
+                raise self.fault("division by zero")
+            value = left.value * right.value if sign == "*" else left.value / right.value
+            left = Quantity(value, self.joined(left, right, 1 if sign == "*" else -1))
+        return left
+
+    def signed(self) -> Quantity:
+        minus = False
+        while sign := self.sign("+", "-"):
+            minus ^= sign == "-"
+        found = self.power()
+        return Quantity(-found.value, found.dimension) if minus else found
+
+    def power(self) -> Quantity:
+        base = self.atom()
+        if not self.sign("^", "**"):
+            return base
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
+        exponent = self.signed()
+        self.depth -= 1
+        if exponent.dimension not in (None, NUMBER) or abs(exponent.value) > 20:
+            raise self.fault("an exponent is a small bare number")
+        dimension = base.dimension
+        if dimension is not None:
+            if exponent.value != int(exponent.value):
+                raise self.fault("a quantity has whole powers; see sqrt")
+            dimension = dimension.power(int(exponent.value))
+        return Quantity(self.real("this power", lambda: base.value**exponent.value), dimension)
+
+    def atom(self) -> Quantity:
+        if number := _NUMBER.match(self.text, self.at):
+            self.at = number.end()
+            return self.with_unit(finite_float(number[1]))
+        if self.sign("("):
+            inside = self.sum()
+            if not self.sign(")"):
+                raise self.fault("a bracket is not closed")
+            return inside
+        if name := _NAME.match(self.text, self.at):
+            return self.named(name)
+        raise self.fault("a number is wanted here" if self.text[self.at :].strip() else "a number is missing")
+
+    def with_unit(self, number: float) -> Quantity:
+        """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
+        found = _UNIT.match(self.text, self.at)
+        if found is None:
+            return Quantity(number, None)
+        name = _NAME.match(self.text, self.at)
+        if name and symbol(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
+            raise self.fault(f"a * is missing before {name[1]}")
+        text = found[1]
+        for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
+            head = text[:end]
+            if head.endswith(("*", "·", "/")):
+                continue
+            free = {factor[1] for factor in re.finditer(r"\s[*·/]?\s*([^\W\d_]+)", head)}  # set apart by spaces
+            if all(symbol(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
+                self.at = found.start(1) + end
+                unit = parse_unit(head)
+                return Quantity(unit.si(number), unit.dimension)
+        raise unknown_unit(_SYMBOL.findall(text)[0])
+
+    def named(self, match: re.Match[str]) -> Quantity:
+        name = match[1]
+        self.at = match.end()
+        if name in self.parameters:
+            return self.parameters[name]
+        if name == "pi":
+            return Quantity(math.pi, self.pi)
+        if name in FUNCTIONS:
+            return self.call(name)
+        if symbol(name):
+            raise ProblemError("a unit without a number before it", found=quote(name), allowed=f"e.g. 1 {name}")
+        names = [*self.parameters, *FUNCTIONS, "pi"]
+        raise ProblemError(
+            "there is no such parameter", found=quote(name), allowed=", ".join(self.parameters) or "none is given",
+            near=nearest(name, names),
+        )  # fmt: skip
+
+    def call(self, name: str) -> Quantity:
+        if not self.sign("("):
+            raise self.fault(f"{name} wants its argument in brackets")
+        given = [self.sum()]
+        while self.sign(","):
+            given.append(self.sum())
+        if not self.sign(")"):
+            raise self.fault("a bracket is not closed")
+        few, many = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
+        if not few <= len(given) <= many:
+            raise self.fault(f"{name} has {few} argument{'s' if few > 1 else ''}")
+        first = given[0]
+        if name in _ANGLE_IN:
+            angle = taken(first, ANGLE, self.units)
+            if angle is None:
+                raise self.fault(f"{name} wants an angle, not {first.dimension}")
+            if name == "tan" and abs(math.cos(angle)) < 1e-15:
+                raise self.fault("tan of a right angle has no value")
+            return Quantity(_ANGLE_IN[name](angle), None)
+        if name in _ANGLE_OUT:
+            if first.dimension not in (None, NUMBER):
+                raise self.fault(f"{name} wants a number, not {first.dimension}")
+            return Quantity(self.real(f"{name} of {first.value:.6g}", lambda: _ANGLE_OUT[name](first.value)), ANGLE)
+        if name == "sqrt":
+            dimension = first.dimension and _half(first.dimension)
+            if first.dimension is not None and dimension is None:
+                raise self.fault(f"{first.dimension} has no square root")
+            return Quantity(self.real(f"sqrt of {first.value:.6g}", lambda: math.sqrt(first.value)), dimension)
+        if name == "abs":
+            return Quantity(abs(first.value), first.dimension)
+        return self.of_many(name, given)
+
+    def of_many(self, name: str, given: list[Quantity]) -> Quantity:
+        total = given[0]
+        for other in given[1:]:  # the sum has the dimension of all, or they do not fit
+            a, b, dimension = self.alike(total, other)
+            total = Quantity(a + b, dimension)
+        values = [self.alike(one, Quantity(0.0, total.dimension))[0] for one in given]
+        dimension = total.dimension
+        if name == "atan2":
+            return Quantity(math.atan2(*values), ANGLE)
+        if name == "hypot":
+            return Quantity(math.hypot(*values), dimension)
+        return Quantity(min(values) if name == "min" else max(values), dimension)
+
+    def alike(self, left: Quantity, right: Quantity) -> tuple[float, float, Dimension | None]:
+        """Both values in one dimension, a bare one taken in the file's unit of the other's."""
+        a, b = left.dimension, right.dimension
+        if a is None and b is not None:
+            return self.units.si(left.value, b), right.value, b
+        if b is None and a is not None:
+            return left.value, self.units.si(right.value, a), a
+        if a is not None and b is not None and not (a.fits(b) or b.fits(a)):
+            raise self.fault(f"{a} and {b} cannot be added or compared")
+        return left.value, right.value, a
+
+    @staticmethod
+    def joined(left: Quantity, right: Quantity, power: int) -> Dimension | None:
+        """Dimension of a product or quotient.
+
+        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
+        that it cannot pass for degrees or millimetres.
+        """
+        joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
+        return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
+
+    def real(self, what: str, compute: Callable[[], float | complex]) -> float:
+        try:
+            value = compute()
+        except (ValueError, OverflowError, ZeroDivisionError):
+            value = math.nan
+        if isinstance(value, complex) or not math.isfinite(value):
+            raise self.fault(f"{what} has no value")
+        return float(value)
+
+
+def _half(dimension: Dimension) -> Dimension | None:
+    powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
+    if any(p % 2 for p in powers):
+        return None
+    return Dimension(*(p // 2 for p in powers))
