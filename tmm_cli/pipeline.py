@@ -7,14 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tmm_cli.assembly import assemble
-from tmm_cli.forces.lever import Lever, lever
-from tmm_cli.forces.loads import Applied, applied, resisted
-from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
@@ -29,11 +26,17 @@ from tmm_cli.quality import (
     hinged_to_frame,
     output_link,
     places,
+    resisted,
 )
 from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
 from tmm_cli.structure.assur import Structure, analyse
 from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:  # what only forces need is imported when they are asked for
+    from tmm_cli.forces.lever import Lever
+    from tmm_cli.forces.loads import Applied
+    from tmm_cli.forces.plan import Reactions
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -104,6 +107,10 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
 
 def with_forces(results: Results) -> Results:
     """Add loads, the force plan and the lever to kinematics."""
+    from tmm_cli.forces.lever import lever
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import react
+
     motion = results.motion
     assert motion is not None
     loads = applied(motion, results.strokes)

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from tmm_cli.groups.base import Dyad
-from tmm_cli.linkage import FRAME, Linkage, Request
+from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
@@ -305,3 +305,21 @@ def places(request: Request, way: Range, strokes: Strokes | None, sense: int) ->
     if sense < 0:
         share = 1 - share
     return way.start + (way.end - way.start) * share
+
+
+def resisted(linkage: Linkage, link: str | None) -> float:
+    """The sign of the output's run that the loads of the working stroke resist; 0 when they tell nothing."""
+    for slide in linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            along = np.exp(1j * slide.direction)
+            if slide.runner == FRAME:
+                along = -along
+            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
+                       if x.link == link and x.working_stroke_only)  # fmt: skip
+            return -float(np.sign(push))
+    turn = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
+    return -float(np.sign(turn))
+
+
+def _mean(load: Load) -> float:
+    return float(np.mean(load.table.values)) if load.table else 1.0

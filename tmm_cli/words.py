@@ -20,7 +20,7 @@ ENGLISH: dict[str, str] = {
     "dead position",
     "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
-    "grow without bound there, and the group may leave it either way",
+    "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
     "warning.missing": "position {number} ({place}): {group} cannot be assembled, {gap} short",
     "warning.dead_here": "position {number} ({place}): {group} is in its dead position; no velocities and forces",
     "warning.near": "position {number} is near a dead position of {group}: sine of the transmission angle {margin}",

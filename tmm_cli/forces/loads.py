@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Linkage, Load
+from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
 from tmm_cli.quality import Strokes, output_run
 from tmm_cli.vectors import Real, Vector
@@ -77,21 +77,3 @@ def _argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
     way: Real = run * np.sign(first.run)
     return way
-
-
-def resisted(linkage: Linkage, link: str | None) -> float:
-    """The sign of the output's run that the loads of the working stroke resist; 0 when they tell nothing."""
-    for slide in linkage.slides:
-        if {slide.carrier, slide.runner} == {FRAME, link}:
-            along = np.exp(1j * slide.direction)
-            if slide.runner == FRAME:
-                along = -along
-            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
-                       if x.link == link and x.working_stroke_only)  # fmt: skip
-            return -float(np.sign(push))
-    turn = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
-    return -float(np.sign(turn))
-
-
-def _mean(load: Load) -> float:
-    return float(np.mean(load.table.values)) if load.table else 1.0

@@ -154,6 +154,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     """
     wanted = _folded(name[:60])
     best: tuple[float, str] | None = None
+    names = list(names)
     for candidate in names:
         if candidate == name:
             return candidate
@@ -167,7 +168,10 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
             continue
         if best is None or cost < best[0]:
             best = (cost, candidate)
-    return best and best[1]
+    if best is None:  # a letter too many in a short name: EE for E
+        part = [n for n in names if n and len(wanted) <= 3 and (_folded(n) in wanted or wanted in _folded(n))]
+        return part[0] if len(part) == 1 else None
+    return best[1]
 
 
 def latin(text: str) -> str:

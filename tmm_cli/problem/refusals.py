@@ -224,7 +224,7 @@ def _mobility(structure: Structure) -> ProblemError:
         links = structure.loose
         return ProblemError(
             f"mobility is not 1: {_listed(links)} loose", path=("links", links[0]), found=count,
-            allowed="W = 1, the one driver; one pair more takes two freedoms", key=True,
+            allowed="W = 1, as one link is driven", key=True,
         )  # fmt: skip
     name, bodies = structure.idle[0] if structure.idle else ("driver", structure.links)
     if name == "driver":

@@ -22,7 +22,7 @@ def warnings(results: Results) -> Iterable[str]:
     measure = ANGLE if results.linkage.driver.kind == "turn" else LENGTH
 
     def place(q: float) -> str:
-        return f"{units.from_si(q, measure):.6g} {units.symbol(measure)}"
+        return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
 
     if way.limits and results.linkage.driver.kind == "turn":
         groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits))

@@ -28,11 +28,11 @@ def driver_columns(results: Results) -> list[Column]:
     motion = results.motion
     assert motion is not None
     turns = results.linkage.driver.kind == "turn"
+    round_and_round = turns and results.way is not None and results.way.full
+    q = np.mod(motion.q, 2 * np.pi) if round_and_round else motion.q
     return [
         Column(say("word.position"), [str(n) for n in results.numbers]),
-        Column(say("cycle.phi"), np.mod(motion.q, 2 * np.pi), ANGLE)
-        if turns
-        else Column(say("cycle.drive"), motion.q, LENGTH),
+        Column(say("cycle.phi" if turns else "cycle.drive"), q, ANGLE if turns else LENGTH),
     ]
 
 
