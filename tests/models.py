@@ -96,7 +96,7 @@ def published_problem(case: dict[str, Any], samples: list[dict[str, Any]], gravi
     problem: dict[str, Any] = {
         "tmm": 1, "units": SI, "links": links, "gravity": [0, -gravity], "guides": {},
         "points": {j: d["at"] for j, d in joints.items() if "ground" in d["links"] and d["kind"] == "R"},
-        "driver": {"link": case["input"]["link"], "speed": case["input"]["speed"], "turns": "ccw" if sense > 0 else "cw"},
+        "driver": {k: case["input"][k] for k in ("link", "speed")} | {"turns": "ccw" if sense > 0 else "cw"},
         "sketch": {"at": 0, **{j: d["at"] for j, d in joints.items() if "ground" not in d["links"]}},
         "positions": {"at": [s["turn"] for s in samples]},
     }  # fmt: skip

@@ -90,7 +90,7 @@ def linkage(seed: int, kinds: tuple[str, ...]) -> Linkage:
     random = maker.random
     links = {
         name: Link(
-            name, points, *(random.uniform(0.1, 2, 2) if name != FRAME else (0.0, 0.0)), complex(*random.uniform(-1, 1, 2))
+            name, points, *(random.uniform(0.1, 2, 2) if name != FRAME else (0, 0)), complex(*random.uniform(-1, 1, 2))
         )
         for name, points in maker.points.items()
     }  # fmt: skip

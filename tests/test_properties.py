@@ -41,7 +41,7 @@ def generic(it):
     """Leave out linkages that happen to be near a dead position or a change of assembly."""
     try:
         found = solved(it)
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         if type(error).__name__ in ("Undecided", "Misfit"):
             assume(False)
         raise
@@ -151,7 +151,9 @@ def test_power_of_the_loads_is_the_rate_of_kinetic_energy(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, loads, reactions = generic(it)
     power = sum(
-        dot(x.force, motion.point(x.link, x.at).v) + x.moment * motion.link(x.link).omega for x in loads if x.kind != "inertia"
+        dot(x.force, motion.point(x.link, x.at).v) + x.moment * motion.link(x.link).omega
+        for x in loads
+        if x.kind != "inertia"
     )
     rate = sum(
         it.links[n].mass * dot(motion.centre(n).v, motion.centre(n).a)

@@ -63,7 +63,7 @@ def test_stephenson_iii_torque_and_joint_forces_are_the_printed_ones(gravity, ke
 def test_homework_eight_link_of_three_dyads():
     sin, cos, deg = math.sin, math.cos, math.pi / 180
     o2, o4, o6, g, crank, tilt = 12.5 + 0j, 0j, 12.5 + 10.5j, 12.5 + 11.7j, 52.92024014972946 * deg, 150 * deg
-    o2a, ba, ce, o6e, df, k = (
+    o2a, ba, ce, _, df, k = (
         2.1799804307105649, 0.25342828166292991, 1.2982110114925343, 2.6287023468511764, 1.946962812654658,
         6.8670173910301826,
     )  # fmt: skip
@@ -101,8 +101,20 @@ def test_homework_eight_link_of_three_dyads():
     omega = [motion.link(n).omega[0] for n in "32456"]
     epsilon = [motion.link(n).epsilon[0] for n in "32456"]
     slide = motion.slide(results.linkage.slides[0])
-    printed_omega = [-9.9395709690725889, 9.0579555719578372, 4.2381214248760856, -6.2932505326853357, 4.6475757321967748]
-    printed_epsilon = [559.97479285660867, -4.840364192043732, -83.804691566345929, 803.06630000648725, -531.58923495020701]
+    printed_omega = [
+        -9.9395709690725889,
+        9.0579555719578372,
+        4.2381214248760856,
+        -6.2932505326853357,
+        4.6475757321967748,
+    ]
+    printed_epsilon = [
+        559.97479285660867,
+        -4.840364192043732,
+        -83.804691566345929,
+        803.06630000648725,
+        -531.58923495020701,
+    ]
     assert omega == pytest.approx(printed_omega, rel=1e-12)
     assert epsilon == pytest.approx(printed_epsilon, rel=1e-12)
     assert abs(slide.v[0]) == pytest.approx(6.39467, abs=5e-6)  # as asserted by the source
@@ -172,5 +184,10 @@ def test_change_point_four_bar_statics_at_90_degrees():
     still = {**problem, "driver": {"link": "1", "speed": 0}}  # their statics: weights without inertia
     reactions = results_of(still).reactions
     assert abs(reactions.balance.moment[0]) == pytest.approx(13.664357145334336, rel=2e-8)
-    for joint, printed in {"O": 39.94445523955355, "A": 22.531020960348382, "B": 17.869513345698586, "D": 34.0018956580814}.items():
+    for joint, printed in {
+        "O": 39.94445523955355,
+        "A": 22.531020960348382,
+        "B": 17.869513345698586,
+        "D": 34.0018956580814,
+    }.items():
         assert abs(reactions.of(joint).force[0]) == pytest.approx(printed, rel=2e-8), joint

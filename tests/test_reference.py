@@ -11,7 +11,7 @@ TOLERANCE = 1e-12
 
 
 def deviation(found, expected):
-    """The largest error over the cycle, against the largest expected value (or itself where that is exactly nothing)."""
+    """The largest error over the cycle, against the largest expected value (itself where that is exactly nothing)."""
     largest = np.max(np.abs(expected))
     return np.max(np.abs(found - expected)) / (largest if largest > 1e-30 else 1.0)
 
@@ -41,7 +41,10 @@ def test_every_point_and_centre_of_mass_moves_as_the_reference(case):
         else:
             found = results.motion.point(body, complex(*model["bodies"][body]["points"][point]))
         for quantity in "xva":
-            assert deviation(getattr(found, quantity), series(rows, "points", key, quantity)) < TOLERANCE, (key, quantity)
+            assert deviation(getattr(found, quantity), series(rows, "points", key, quantity)) < TOLERANCE, (
+                key,
+                quantity,
+            )
 
 
 def test_every_link_turns_as_the_reference(case):

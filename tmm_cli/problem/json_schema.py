@@ -8,9 +8,18 @@ from tmm_cli.problem.schema import File, OnLine, Tabulated
 
 
 def file_schema() -> dict[str, Any]:
-    """Made by pydantic from the shape; the parts that are read by their own validators are added by name."""
+    """Made by pydantic from the shape; models that have validators of their own around them are put in by name."""
     schema = File.model_json_schema(by_alias=True)
     definitions = schema.setdefault("$defs", {})
     for model in (OnLine, Tabulated):
         definitions.setdefault(model.__name__, model.model_json_schema(by_alias=True))
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_referred(schema)}
+
+
+def _referred(part: Any) -> Any:
+    """The same schema with {"$comment": NAME} as a reference to the model NAME."""
+    if isinstance(part, dict):
+        if set(part) == {"$comment"}:
+            return {"$ref": f"#/$defs/{part['$comment']}"}
+        return {key: _referred(value) for key, value in part.items()}
+    return [_referred(value) for value in part] if isinstance(part, list) else part

@@ -71,7 +71,7 @@ class OnLine(Strict):
 Place = Annotated[
     Any,
     BeforeValidator(_place),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$ref": "#/$defs/OnLine"}]}),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$comment": "OnLine"}]}),
 ]
 
 
@@ -148,7 +148,7 @@ def _moment(found: Any) -> Any:
     return Tabulated.model_validate(found) if isinstance(found, dict) else _value(found)
 
 
-_TABLE = {"$ref": "#/$defs/Tabulated"}
+_TABLE = {"$comment": "Tabulated"}
 
 
 class Load(Strict):

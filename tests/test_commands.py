@@ -1,0 +1,241 @@
+"""The commands as a user runs them: processes, their output, exit codes and files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PROBLEMS = sorted((ROOT / "problems").glob("*.yaml"))
+SHAPER = ROOT / "problems" / "shaper.yaml"
+
+
+def tmm(*arguments, cwd=None):
+    """Run `tmm`."""
+    return subprocess.run(
+        [sys.executable, "-m", "tmm_cli", *map(str, arguments)],
+        capture_output=True, encoding="utf-8", cwd=cwd or ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8"},
+    )  # fmt: skip
+
+
+def leaves(value):
+    if isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from leaves(part)
+    else:
+        yield value
+
+
+@pytest.fixture(scope="module")
+def shaper(tmp_path_factory):
+    out = tmp_path_factory.mktemp("out")
+    done = tmm("run", SHAPER, "-o", out)
+    assert done.returncode == 0, done.stderr
+    return done, out / "shaper"
+
+
+def test_run_writes_tables_drawings_and_results(shaper):
+    done, folder = shaper
+    names = {path.name for path in folder.iterdir()}
+    assert {"result.json", "structure.csv", "points.csv", "reactions.csv", "lever.csv", "cycle.csv"} <= names
+    drawings = (
+        "mechanism", "position-03", "velocity-03", "acceleration-03", "forces-03-links-4-5", "forces-03-links-2-3",
+        "forces-03-link-1", "lever-03", "diagrams", "reactions",
+    )  # fmt: skip
+    for name in drawings:
+        assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+        assert (folder / f"{name}.svg").read_text(encoding="utf-8").rstrip().endswith("</svg>")
+    assert "I(0,1) -> II(2,3) -> II(4,5)" in done.stdout
+    assert not [n for n in names if n.startswith(".")]
+
+
+def test_result_json_is_plain_and_follows_its_schema(shaper):
+    result = json.loads((shaper[1] / "result.json").read_text(encoding="utf-8"))
+    schema = json.loads(tmm("schema", "--result").stdout)
+    assert set(result) <= set(schema["properties"])
+    described(result, schema, "")
+    assert result["lever"]["holds"] is True
+    assert max(result["lever"]["difference"]) < 1e-10
+    assert result["output"]["k"] == pytest.approx(1.51108, abs=1e-5)
+
+
+def described(value, schema, path):
+    """Every key of the result is documented, and is of the documented type."""
+    kinds = schema.get("type")
+    kinds = [kinds] if isinstance(kinds, str) else kinds
+    names = {dict: "object", list: "array", str: "string", bool: "boolean", int: "number", float: "number"}
+    if kinds and value is not None:
+        kind = names[type(value)]
+        assert kind in kinds or (kind == "number" and "integer" in kinds), (path, kind, kinds)
+    if isinstance(value, dict):
+        for key, part in value.items():
+            inner = schema.get("properties", {}).get(key) or schema.get("additionalProperties")
+            assert inner, f"{path}.{key} is not documented"
+            described(part, inner, f"{path}.{key}")
+    elif isinstance(value, list):
+        for part in value[:3]:
+            described(part, schema["items"], f"{path}[]")
+
+
+def test_csv_tables_have_a_row_a_position_and_units_of_the_file(shaper):
+    rows = list(csv.reader((shaper[1] / "cycle.csv").open(encoding="utf-8")))
+    assert rows[0][:3] == ["position", "phi, deg", "s of 5, mm"]
+    assert len(rows) == 13
+
+
+def test_a_second_run_is_the_same_to_the_byte(shaper, tmp_path):
+    assert tmm("run", SHAPER, "-o", tmp_path).returncode == 0
+    for path in shaper[1].iterdir():
+        assert path.read_bytes() == (tmp_path / "shaper" / path.name).read_bytes(), path.name
+
+
+def test_a_run_takes_away_what_an_earlier_one_left_and_nothing_else(tmp_path):
+    text = SHAPER.read_text(encoding="utf-8")
+    problem = tmp_path / "mine.yaml"
+    problem.write_text(text, encoding="utf-8")
+    assert tmm("run", problem, "-o", tmp_path / "out").returncode == 0
+    (tmp_path / "out" / "mine" / "notes.txt").write_text("keep", encoding="utf-8")
+    problem.write_text(text.replace("detail: [3]", "detail: [4]"), encoding="utf-8")
+    assert tmm("run", problem, "-o", tmp_path / "out").returncode == 0
+    names = {path.name for path in (tmp_path / "out" / "mine").iterdir()}
+    assert "lever-04.png" in names and "lever-03.png" not in names and "notes.txt" in names
+
+
+@pytest.mark.parametrize("command", ["structure", "kinematics", "forces"])
+def test_json_is_pure_and_each_stage_computes_no_more_than_it_says(command):
+    result = json.loads(tmm(command, SHAPER, "--json").stdout)
+    assert ("kinematics" in result) == (command != "structure")
+    assert ("forces" in result) == ("lever" in result) == (command == "forces")
+
+
+def test_position_7_alone_is_position_7_of_the_cycle():
+    cycle = json.loads(tmm("forces", SHAPER, "--json").stdout)
+    alone = json.loads(tmm("forces", SHAPER, "--json", "--position", "7").stdout)
+    assert alone["positions"]["number"] == [7]
+
+    def compare(one, many, path=()):
+        if isinstance(one, dict):
+            for key in one:
+                compare(one[key], many[key], (*path, key))
+        elif isinstance(one, list) and one and isinstance(one[0], dict):
+            for a, b in zip(one, many, strict=True):
+                compare(a, b, path)
+        elif isinstance(one, list) and len(one) == 1 and len(many) == 12 and isinstance(one[0], float):
+            largest = max(abs(v) for v in many if v is not None)
+            assert abs(one[0] - many[7]) <= 1e-15 * largest, path
+
+    for part in ("kinematics", "forces"):
+        compare(alone[part], cycle[part])
+
+
+def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heavy():
+    code = (
+        "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
+        "from tmm_cli.cli.app import app\n"
+        "try: app()\n"
+        "except SystemExit: pass\n"
+        "print([m for m in ('numpy', 'pydantic', 'matplotlib', 'scipy', 'yaml') if m in sys.modules], file=sys.stderr)"
+    )
+
+    def imported(*arguments):
+        done = subprocess.run(
+            [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT
+        )
+        return done.stderr.strip().splitlines()[-1]
+
+    assert imported("structure", SHAPER) == "['numpy', 'pydantic', 'yaml']"
+    assert imported("forces", SHAPER) == "['numpy', 'pydantic', 'yaml']"
+    assert imported("--version") == "[]"
+
+
+def test_several_files_at_once_and_one_bad_among_them(tmp_path):
+    bad = tmp_path / "bad.yaml"
+    bad.write_text("tmm: 1\n", encoding="utf-8")
+    good = [ROOT / "problems" / f"{name}.yaml" for name in ("sine", "slotted-lever")]
+    done = tmm("run", good[0], bad, good[1], "-o", tmp_path / "out", "--no-drawings")
+    assert done.returncode == 2
+    assert "links: the key `links` is missing" in done.stderr
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {"sine", "slotted-lever"}
+
+
+def test_above_the_limit_of_the_lever_the_run_says_so_and_exits_1(tmp_path):
+    problem = tmp_path / "strict.yaml"
+    text = SHAPER.read_text(encoding="utf-8").replace("lever: 5 %", "lever: 1e-20 %")
+    problem.write_text(text, encoding="utf-8")
+    done = tmm("run", problem, "-o", tmp_path, "--no-drawings")
+    assert done.returncode == 1
+    assert re.search(
+        r"the lever differs from the force plan by .* % at position \d+, more than the limit of 1e-20 %", done.stderr
+    )
+
+
+@pytest.mark.parametrize("file", PROBLEMS, ids=lambda p: p.stem)
+def test_every_problem_runs_and_its_lever_agrees(file, tmp_path):
+    done = tmm("run", file, "-o", tmp_path, "--no-drawings", "--json")
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert max(d for d in result["lever"]["difference"] if d is not None) < 1e-10
+    assert "Property to see:" in file.read_text(encoding="utf-8")
+    assert all(v == v for v in leaves(result) if isinstance(v, float))
+
+
+def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
+    text = SHAPER.read_text(encoding="utf-8")
+    (tmp_path / "one.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "two.yaml").write_text(text, encoding="utf-8")
+    assert tmm("check", tmp_path).returncode == 1  # nothing to compare with
+    assert tmm("check", tmp_path, "--update").returncode == 0
+    assert tmm("check", tmp_path).returncode == 0
+    (tmp_path / "two.yaml").write_text(text.replace("DE: 210", "DE: 210.001"), encoding="utf-8")
+    report = tmp_path / "report.xml"
+    done = tmm("check", tmp_path, "--junit", report)
+    assert done.returncode == 1
+    assert "kinematics.points.E.x.x" in done.stdout
+    assert "2 problems, 1 differ" in done.stderr
+    suite = ElementTree.parse(report).getroot()
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
+    assert [len(case) for case in suite] == [0, 1]
+
+
+def test_templates_run_as_they_are(tmp_path):
+    listed = tmm("new").stdout.split("\n")
+    names = [line.split()[0] for line in listed if line]
+    assert names == ["crank-slider", "four-bar", "shaper", "sine", "slotted-lever", "tangent"]
+    for name in names:
+        assert tmm("new", name, cwd=tmp_path).returncode == 0
+    done = tmm("run", *(f"{name}.yaml" for name in names), "--no-drawings", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "warning" not in done.stderr and "error" not in done.stderr
+    again = tmm("new", "sine", cwd=tmp_path)
+    assert again.returncode == 2
+    assert "error: sine.yaml is there already" in again.stderr
+    assert "did you mean 'sine'?" in tmm("new", "sin").stderr
+
+
+def test_schema_knows_every_key_of_the_problems():
+    schema = json.loads(tmm("schema").stdout)
+    assert {"tmm", "links", "driver"} <= set(schema["properties"])
+    assert schema["additionalProperties"] is False
+
+
+def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
+    told = tmm("explain", ROOT / "problems" / "crank-slider.yaml").stdout
+    assert "II(2,3) RRP" in told
+    assert "sign +1 of two, from the sketch" in told
+    assert "inertia couples of links 3" in told
+
+
+@pytest.mark.parametrize("command", ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema"])
+def test_every_command_has_help_and_stands_in_the_readme(command):
+    done = tmm(command, "--help")
+    assert done.returncode == 0 and len(done.stdout) > 100
+    assert f"tmm {command}" in (ROOT / "README.md").read_text(encoding="utf-8")
