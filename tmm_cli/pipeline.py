@@ -63,10 +63,23 @@ class Results:
         return self.problem.linkage
 
     @property
-    def start(self) -> float:
-        """The driver's place at position 0, whether that was computed or not (rad or m)."""
+    def asked(self) -> Real:
+        """The driver's places of all positions of the file, whether they were computed or not (rad or m)."""
         assert self.way is not None
-        return float(places(self.problem.request, self.way, self.strokes, self.linkage.driver.sense)[0])
+        return places(self.problem.request, self.way, self.strokes, self.linkage.driver.sense)
+
+    @property
+    def start(self) -> float:
+        """The driver's place at position 0."""
+        return float(self.asked[0])
+
+    def closely(self, count: int) -> Real:
+        """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
+        driver = self.linkage.driver
+        if self.way is not None and self.way.full and driver.kind == "turn":
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi, count)
+        asked = self.asked
+        return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 
     @property
     def lever_holds(self) -> bool:

@@ -35,7 +35,7 @@ STYLES = ("-", "--", "-.", ":")
 
 def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
     """The output's run, speed and acceleration; the balancing moment; the reactions on a second sheet."""
-    whole = at_places(results, _way(results))
+    whole = at_places(results, results.closely(POINTS))
     motion = whole.motion
     assert motion is not None and results.motion is not None
     q = _turned(results, motion)
@@ -85,19 +85,6 @@ def _output(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, 
 def _law(motion: Motion, link: str) -> list[Any]:
     run, first, second = output_run(motion, link)
     return [run, first * motion.rate, second * motion.rate**2 + first * motion.acceleration]
-
-
-def _way(results: Results) -> Any:
-    """The driver's places: a turn from position 0 on, or the way that it has."""
-    assert results.motion is not None and results.way is not None
-    way, sense = results.way, results.linkage.driver.sense
-    if results.linkage.driver.kind == "slide":
-        return np.linspace(np.min(results.motion.q), np.max(results.motion.q), POINTS)
-    if not way.full:
-        inside = 1e-4 * (way.end - way.start)
-        return np.linspace(way.start + inside, way.end - inside, POINTS)[::sense]
-    start = results.start
-    return start + sense * np.linspace(0, 2 * np.pi, POINTS)
 
 
 def _turned(results: Results, motion: Motion) -> Any:

@@ -84,4 +84,4 @@ def extent(label: Label) -> tuple[float, float]:
     """Width and height of a text on paper, mm (a measure good enough to keep labels apart)."""
     point = 25.4 / 72
     narrow = sum(0.35 if c in "ᵗⁿ₀₁₂₃₄₅₆₇₈₉.,'il1|() " else 0.62 for c in label.text)
-    return max(narrow, 0.6) * label.size * point, 0.95 * label.size * point
+    return max(narrow, 0.6) * label.size * point + 0.6, label.size * point

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from tmm_cli.draw.scheme import mechanism, moving_points, reach, skeleton, trajectory
 from tmm_cli.draw.sheet import COLOURS, DARK, REACTION, Sheet, scale_text
 from tmm_cli.linkage import FRAME
-from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_positions
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.words import say
@@ -31,22 +30,11 @@ def caption(results: Results, k: int) -> str:
     return say(key, number=results.numbers[k], place=f"{units.from_si(q, measure):.6g} {units.symbol(measure)}")
 
 
-def dense(results: Results) -> Motion:
-    """The whole way of the driver, close together."""
-    way = results.way
-    assert way is not None
-    if results.linkage.driver.kind == "slide" and results.motion is not None:
-        q = np.linspace(np.min(results.motion.q), np.max(results.motion.q), DENSE)
-    else:
-        q = np.linspace(way.start, way.end, DENSE)
-    return at_positions(results, q)
-
-
 def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    whole = dense(results)
+    whole = at_positions(results, results.closely(DENSE))
     points = moving_points(linkage)
     used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
     sheet = Sheet(
@@ -106,6 +94,8 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     places = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
     places += [complex(motion.named(p).x[k]) for p in moving_points(linkage)]
     places += [complex(motion.centre(n).x[k]) for n in linkage.moving]
+    loads = results.reactions.applied if results.reactions is not None else ()
+    places += [complex(motion.point(load.link, load.at).x[k]) for load in loads]
     sheet = Sheet(results.problem.title, caption(results, k), places, pad=30)
     mechanism(sheet, motion, k)
     if results.reactions is not None:

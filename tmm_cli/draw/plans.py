@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from matplotlib.figure import Figure
 
@@ -39,10 +39,6 @@ def _plan(results: Results, plan: Plan, title: str, pole: str, scale: str) -> Fi
     sheet = Sheet(results.problem.title, title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
     sheet.note(scale.replace("= 1 ", f"= {sheet.mu:.10g} "))
     drawn = plan.drawn()
-    named: dict[tuple[float, float], list[str]] = {}
-    for name, end in plan.ends.items():
-        at = sheet.on(end)
-        named.setdefault((round(at.real, 1), round(at.imag, 1)), []).append(name)
     for vector in drawn:
         start, end = sheet.on(vector.start), sheet.on(vector.end)
         # of points of mass a thin ray is enough: the letters say the rest
@@ -52,13 +48,22 @@ def _plan(results: Results, plan: Plan, title: str, pole: str, scale: str) -> Fi
     for vector in drawn:
         if vector.kind not in ("absolute", "relative") and sheet.mu > 0 and abs(vector.value) / sheet.mu > 2.5:
             sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
+    _letters(sheet, plan.ends, pole)
+    if plan.size == 0:
+        sheet.note(say("draw.zero"))
+    return sheet.finish()
+
+
+def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
+    """The lettered points; those that coincide share a place and a label."""
+    named: dict[tuple[float, float], list[str]] = {}
+    for name, end in ends.items():
+        at = sheet.on(end)
+        named.setdefault((round(at.real, 1), round(at.imag, 1)), []).append(name)
     for (x, y), names in named.items():
         at = complex(x, y)
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
-    if plan.size == 0:
-        sheet.note(say("draw.zero"))
-    return sheet.finish()
 
 
 def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
@@ -119,9 +124,7 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
             sheet.line([foot, at], THIN, 0.5, "--", 2)
         sheet.arrow(at, end, colour, 1.3)
         sheet.label(force.name, end, 9, colour)
-    for name, end in plan.ends.items():
-        sheet.circle(sheet.on(end), 1.1 if name == "p" else 0.7, "white" if name == "p" else DARK)
-        sheet.label(name, sheet.on(end), 10)
+    _letters(sheet, plan.ends, "p")
     crank = results.linkage.driver.kind == "turn"
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("", sheet.mu, "1/mm"))
     for name, moment in plan.couples:

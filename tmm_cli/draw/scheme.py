@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_cli.draw.sheet import DARK, GREY, THIN, Sheet
-from tmm_cli.linkage import FRAME, Linkage, Slide
+from tmm_cli.linkage import FRAME, Hinge, Linkage, Slide
 from tmm_cli.motion import Motion
 from tmm_cli.vectors import unit
 
-HINGE, BOX = 1.3, (9.0, 5.0)  # mm: radius of a hinge, length and width of a slider
+HINGE, BOX, STONE = 1.3, (9.0, 5.0), (7.5, 4.2)  # mm: radius of a hinge; length and width of a slider, a stone
 
 
 def skeleton(sheet: Sheet, motion: Motion, k: int, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
@@ -27,6 +27,8 @@ def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> 
     for slide in linkage.slides:
         if FRAME in (slide.carrier, slide.runner):
             frame_guide(sheet, motion, slide, k)
+        elif len(linkage.links[slide.carrier].points) < 2:
+            slot(sheet, motion, slide, k)
     for link in linkage.moving:
         body(sheet, motion, link, k)
     for slide in linkage.slides:
@@ -34,7 +36,7 @@ def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> 
     for hinge in linkage.hinges:
         at = sheet.on(complex(motion.named(hinge.point).x[k]))
         if FRAME in hinge.links:
-            support(sheet, at)
+            support(sheet, at, _away(sheet, motion, hinge, k))
         sheet.circle(at, HINGE)
         if len(hinge.links) > 2:
             sheet.circle(at, HINGE / 2.5, face=DARK, z=6.5)
@@ -106,7 +108,7 @@ def box(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
     if not np.isfinite(at):
         return
     along = complex(motion.poses[slide.carrier].z[k] * unit(slide.direction))
-    length, width = BOX if FRAME in (slide.carrier, slide.runner) else (7.5, 4.2)
+    length, width = BOX if FRAME in (slide.carrier, slide.runner) else STONE
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
     sheet.area(corners, "white", DARK, 1.3, 4)
 
@@ -120,19 +122,54 @@ def frame_guide(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
         return
     start = reach[0]
     runs = [((p - start) * along.conjugate()).real for p in reach]
-    low, high = start + along * (min(runs) - 10), start + along * (max(runs) + 10)
+    low, high = inside(sheet, start + along * (min(runs) - 10), start + along * (max(runs) + 10))
     for side in (1, -1):
         shift = side * 1j * along * (BOX[1] / 2 + 0.5)
         sheet.line([low + shift, high + shift], DARK, 1.0, z=2.5)
         hatch(sheet, low + shift, high + shift, side * 1j * along)
 
 
-def support(sheet: Sheet, at: complex) -> None:
-    """The frame under a hinge: a triangle on hatched ground."""
-    left, right = at + complex(-3.4, -5.6), at + complex(3.4, -5.6)
+def _away(sheet: Sheet, motion: Motion, hinge: Hinge, k: int) -> complex:
+    """Down, or up where the links of a fixed hinge hang down from it."""
+    at = sheet.on(complex(motion.named(hinge.point).x[k]))
+    arms = [p - at for n in hinge.links if n != FRAME for p in link_places(sheet, motion, n, k)]
+    low = sum(arm.imag / abs(arm) for arm in arms if abs(arm) > HINGE)
+    return 1j if low < -0.8 else -1j
+
+
+def support(sheet: Sheet, at: complex, out: complex) -> None:
+    """The frame at a hinge: a triangle on hatched ground."""
+    left, right = at + 5.6 * out - 3.4, at + 5.6 * out + 3.4
     sheet.area([at, left, right], "white", DARK, 1.0, 2.6)
     sheet.line([left - 1.6, right + 1.6], DARK, 1.2, z=2.7)
-    hatch(sheet, left - 1.6, right + 1.6, -1j)
+    hatch(sheet, left - 1.6, right + 1.6, out)
+
+
+def slot(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
+    """The slot of a link that has no bar along its guide: two thin lines along the whole way of the stone."""
+    pose = motion.poses[slide.carrier]
+    along = complex(pose.z[k] * unit(slide.direction))
+    runs = motion.slide(slide).run
+    foot = complex(pose.x[k] + slide.through * pose.z[k])
+    first, last = (sheet.on(foot + along * float(r)) for r in (np.nanmin(runs), np.nanmax(runs)))
+    low, high = inside(sheet, first - 7 * along, last + 7 * along)
+    for side in (1, -1):
+        shift = side * 1j * along * (STONE[1] / 2 + 0.4)
+        sheet.line([low + shift, high + shift], DARK, 1.0, z=2.5)
+
+
+def inside(sheet: Sheet, start: complex, end: complex) -> tuple[complex, complex]:
+    """The part of a line that lies in the drawing's field."""
+    low, high = sheet.ground.low + 4 * (1 + 1j), sheet.ground.high - 4 * (1 + 1j)
+    way, first, last = end - start, 0.0, 1.0
+    for at, step, least, most in (
+        (start.real, way.real, low.real, high.real),
+        (start.imag, way.imag, low.imag, high.imag),
+    ):
+        if abs(step) > 1e-9:
+            enter, leave = sorted(((least - at) / step, (most - at) / step))
+            first, last = max(first, enter), min(last, leave)
+    return (start + first * way, start + last * way) if first < last else (start, end)
 
 
 def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
