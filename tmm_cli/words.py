@@ -23,6 +23,8 @@ ENGLISH: dict[str, str] = {
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
     "warning.missing": "position {number} ({place}): {group} cannot be assembled, {gap} short",
     "warning.dead_here": "position {number} ({place}): {group} is in its dead position; no velocities and forces",
+    "warning.stopped": "driver {link} slows down and stops before it comes to position {number}: no velocities and "
+    "forces from there on",
     "warning.near": "position {number} is near a dead position of {group}: sine of the transmission angle {margin}",
     "warning.lever": "the lever differs from the force plan by {difference} % at position {number}, "
     "more than the limit of {limit} %",
@@ -92,6 +94,7 @@ ENGLISH: dict[str, str] = {
     "word.group": "group",
     "word.position": "position",
     "word.state": "state",
+    "table.more": "... and {rows} rows more: -o DIR writes them all, --json too",
     "structure.title": "Structure",
     "structure.n": "moving links n",
     "structure.p1": "lower pairs p1",

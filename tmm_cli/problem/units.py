@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 from tmm_cli.problem.dimensions import (
     ACCELERATION,
@@ -79,8 +79,8 @@ class Unit:
         """The number of these units in SI and radians."""
         return number * math.pi**self.pi * self.scale.numerator / self.scale.denominator
 
-    def from_si(self, value: float) -> float:
-        """A value in SI and radians in these units."""
+    def from_si(self, value: Any) -> Any:
+        """A value, or an array of them, in SI and radians in these units."""
         return value / math.pi**self.pi * self.scale.denominator / self.scale.numerator
 
 
@@ -235,7 +235,8 @@ class UnitSystem:
 
     def from_si(self, value: float, dimension: Dimension) -> float:
         """A value in SI and radians as a bare number of the file."""
-        return self.unit(dimension).from_si(value)
+        number: float = self.unit(dimension).from_si(value)
+        return number
 
     def factor(self, dimension: Dimension) -> float:
         """The file's unit in SI and radians."""

@@ -27,7 +27,8 @@ FORMAT = 1
 def plain(value: Any) -> Any:
     """Numbers and arrays as JSON has them: no nan, no infinity."""
     if isinstance(value, np.ndarray):
-        return [plain(v) for v in value.tolist()]
+        sound = value.dtype.kind != "f" or bool(np.all(np.isfinite(value)))
+        return value.tolist() if sound else [plain(v) for v in value.tolist()]
     if isinstance(value, np.generic):
         return plain(value.item())
     if isinstance(value, float) and not math.isfinite(value):

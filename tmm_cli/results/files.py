@@ -5,12 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import os
 import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
@@ -52,11 +55,11 @@ def csv_bytes(table: Table, units: UnitSystem) -> bytes:
 def _cells(column: Column, units: UnitSystem) -> list[str]:
     if column.dimension is None:
         return [_safe(str(v)) for v in column.values]
-    dimension = column.dimension
-    numbers = (None if v is None else float(v) for v in column.values)
-    if dimension != NUMBER:
-        numbers = (None if v is None else units.from_si(v, dimension) for v in numbers)
-    return ["" if v is None or v != v or abs(v) == float("inf") else f"{v:.15g}" for v in numbers]
+    values = np.array([np.nan if v is None else v for v in column.values] if isinstance(column.values, list)
+                      else column.values, dtype=float)  # fmt: skip
+    if column.dimension != NUMBER:
+        values = units.unit(column.dimension).from_si(values)
+    return [f"{v:.15g}" if math.isfinite(v) else "" for v in values.tolist()]
 
 
 def _safe(text: str) -> str:

@@ -12,8 +12,10 @@ from rich.text import Text
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
+from tmm_cli.words import say
 
 DIGITS = 6
+MOST_ROWS = 120  # on a terminal; files have them all
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
 
 
@@ -47,9 +49,11 @@ def show(table: Table, units: UnitSystem, console: Console, rows: set[int] | Non
         words = column.dimension is None
         rich_table.add_column(Text(heading(column, units)), justify="left" if words else "right", no_wrap=not words)
     columns = [cells(column, units) for column in table.columns]
-    for k in range(table.rows):
-        if rows is None or k in rows:
-            rich_table.add_row(*(Text(column[k]) for column in columns))
+    chosen = [k for k in range(table.rows) if rows is None or k in rows]
+    for k in chosen[:MOST_ROWS]:
+        rich_table.add_row(*(Text(column[k]) for column in columns))
     console.print(rich_table)
+    if len(chosen) > MOST_ROWS:
+        console.print(Text(say("table.more", rows=len(chosen) - MOST_ROWS), style="dim"))
     for note in table.notes:
         console.print(Text(note, style="dim"))

@@ -40,6 +40,9 @@ def warnings(results: Results) -> Iterable[str]:
         for title, dead_here in motion.dead.items():
             if dead_here[k]:
                 yield say("warning.dead_here", number=number, place=place(float(motion.q[k])), group=title)
+    stopped = [n for k, n in enumerate(results.numbers) if not np.isfinite(motion.rate[k])]
+    if stopped:
+        yield say("warning.stopped", link=results.linkage.driver.link, number=stopped[0])
     for dyad, at in zip(motion.dyads, motion.placements, strict=True):
         margin = np.where(motion.moving, at.margin, np.inf)
         if margin.size and np.min(margin) < NEAR:
