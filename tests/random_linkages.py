@@ -48,10 +48,11 @@ class Maker:
         where, along = self.place(), self.angle()
         through = where + self.random.uniform(-1, 1) * cmath.exp(1j * along)
         zc, zr = self.poses[carrier][1], self.poses[runner][1]
+        self.points[runner][f"Z{name}"] = self.local(runner, where)
         self.slides.append(
             Slide(
                 name, carrier, runner, self.local(carrier, through), along - cmath.phase(zc), self.local(runner, where),
-                cmath.phase(zr / zc),
+                cmath.phase(zr / zc), f"Z{name}",
             )
         )  # fmt: skip
 

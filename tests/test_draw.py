@@ -1,0 +1,91 @@
+"""Drawings: every sheet is made, at its true scale, with labels apart, whatever the linkage."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from test_commands import ROOT, SHAPER
+
+from tmm_cli import load, solve
+from tmm_cli.draw import files, sheets
+from tmm_cli.draw.labels import Ground, Label, extent
+from tmm_cli.draw.sheet import Sheet
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+
+
+def shaper(*changes):
+    text = SHAPER.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return build(read_text(text, "shaper.yaml"))
+
+
+def test_a_plotted_length_measures_what_the_scale_says():
+    sheet = Sheet("title", "caption", [0j, 0.65 + 0.27j])
+    assert abs(sheet.on(0.5 + 0j) - sheet.on(0j)) * sheet.mu == pytest.approx(0.5)
+    assert sheet.figure.get_size_inches()[0] * 25.4 == pytest.approx(sheet.paper[0])
+    assert sheet.axes.get_xlim() == (0, sheet.paper[0])  # axes are millimetres of the sheet
+    assert all(10 < c < 290 for p in (0j, 0.65 + 0.27j) for c in (sheet.on(p).real, sheet.on(p).imag))
+
+
+def test_labels_do_not_cover_each_other_or_lines():
+    ground = Ground(0j, 200 + 200j)
+    ground.line(50 + 100j, 150 + 100j)
+    labels = [Label(f"A{k}", 100 + 100j, 10, "k") for k in range(8)]
+    places = [ground.place(label) for label in labels]
+    for k, (place, label) in enumerate(zip(places, labels, strict=True)):
+        width, height = extent(label)
+        assert abs(place.imag - 100) > height / 2  # off the line
+        for other in places[:k]:
+            assert abs(place.real - other.real) > 0.9 * width or abs(place.imag - other.imag) > 0.9 * height
+
+
+@pytest.mark.parametrize("unit", ["um", "mm", "km"])
+def test_any_size_is_drawn(unit):
+    results = solve(shaper(("length: mm", f"length: {unit}")))
+    assert len(list(sheets(results))) == 10
+
+
+def test_kinematics_alone_has_no_sheets_of_forces():
+    results = solve(shaper(), "kinematics")
+    stems = [stem for stem, _ in sheets(results)]
+    assert stems == ["mechanism", "diagrams", "position-03", "velocity-03", "acceleration-03"]
+
+
+def test_a_title_is_never_read_as_mathematics_and_is_cut():
+    results = solve(shaper(("Crank shaper, variant 7", "'$\\frac{1}{0}$ " + "x" * 150 + "'")))
+    for _, figure in sheets(results):
+        figure.savefig(io.BytesIO(), format="png", dpi=30)
+
+
+def test_nothing_moves_and_nothing_weighs_is_drawn_too():
+    text = SHAPER.read_text(encoding="utf-8")
+    text = text[: text.index("masses:")] + text[text.index("output:") :]
+    still = build(read_text(text.replace("speed: n1", "speed: 0"), "still.yaml"))
+    assert len(list(sheets(solve(still)))) == 10
+
+
+@pytest.mark.parametrize("name", ["six-bar", "course-2", "cylinder", "inclined-slider", "tangent"])
+def test_sheets_of_other_linkages(name):
+    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
+    written = dict(files(results))
+    assert {stem.split(".")[1] for stem in written} == {"png", "svg"}
+    assert all(len(data) > 5000 for data in written.values())
+
+
+def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
+    text = """tmm: 1
+points: {O: [0, 0], D: [300, 0]}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: [A, B], length: 300}
+  3: {points: [D, B], length: 100}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [350, 86]}
+positions: {count: 12, detail: [0, 1]}
+"""
+    stems = [stem for stem, _ in sheets(solve(build(read_text(text, "x.yaml"))))]
+    assert "velocity-01" in stems and "velocity-00" not in stems

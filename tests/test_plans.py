@@ -1,0 +1,99 @@
+"""Velocity, acceleration and force plans close, and their scales are round, on random linkages and the shaper."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_commands import SHAPER
+from test_properties import CHAINS, SEEDS, generic, solved
+
+from tmm_cli import load, solve
+from tmm_cli.forces.lever import lever
+from tmm_cli.plans.acceleration import acceleration_plan
+from tmm_cli.plans.forces import force_plans
+from tmm_cli.plans.lever import lever_plan
+from tmm_cli.plans.record import ROUND, reaction_name, round_scale
+from tmm_cli.plans.velocity import velocity_plan
+from tmm_cli.vectors import cross
+
+
+@given(SEEDS, CHAINS)
+@settings(max_examples=60, deadline=None)
+def test_every_force_polygon_closes_and_the_inner_reaction_joins_its_corners(seed, kinds):
+    from random_linkages import linkage
+
+    _, motion, _, reactions = generic(linkage(seed, kinds))
+    for k in range(len(motion.q)):
+        for plan in force_plans(reactions, k):
+            polygon = [v for v in plan.plan.vectors if v.kind != "inner"]
+            longest = max(abs(v.value) for v in polygon)
+            for one, after in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
+                assert abs(one.end - after.start) < 1e-11 * longest / 0.02
+            for inner in (v for v in plan.plan.vectors if v.kind == "inner"):
+                # it runs from a corner to a corner: from the start of the first vector to where link b's forces begin
+                assert abs(inner.start - polygon[0].start) < 1e-11 * longest / 0.02
+
+
+@given(SEEDS, CHAINS)
+@settings(max_examples=60, deadline=None)
+def test_parts_of_accelerations_lead_from_one_end_to_the_next(seed, kinds):
+    from random_linkages import linkage
+
+    _, motion, *_ = generic(linkage(seed, kinds))
+    plan = acceleration_plan(motion, 0)
+    size = plan.size
+    parts = [v for v in plan.vectors if v.kind != "absolute"]
+    ends = list(plan.ends.values())
+    for first, second in zip(parts[::2], parts[1::2], strict=True):
+        assert first.end == second.start
+        assert min(abs(first.start - e) for e in ends) < 1e-10 * size
+        assert min(abs(second.end - e) for e in ends) < 1e-10 * size / 0.02**2
+
+
+def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
+    results = solve(load(str(SHAPER)))
+    velocity = velocity_plan(results.motion, 3)
+    assert {"pa", "pd", "pe", "de", "pa3", "a3a"} <= {v.name for v in velocity.vectors}
+    acceleration = acceleration_plan(results.motion, 3)
+    names = [v.name for v in acceleration.vectors]
+    assert {"n(ao)", "n(dc)", "t(dc)", "n(ed)", "t(ed)", "k(a)", "r(a)"} <= set(names)
+    coriolis = next(v for v in acceleration.vectors if v.name == "k(a)")
+    omega = results.motion.link("3").omega[3]
+    sliding = results.motion.slide(results.linkage.slides[0]).v[3]
+    assert abs(coriolis.value) == pytest.approx(abs(2 * omega * sliding), rel=1e-14)
+    last, middle, driving = force_plans(results.reactions, 3)
+    assert (last.links, middle.links, driving.links) == (("4", "5"), ("2", "3"), ("1",))
+    assert last.equation == "R₃₄ⁿ + R₃₄ᵗ + G4 + U4 + G5 + U5 + F + R₀₅ = 0"
+
+
+def test_moments_about_the_pole_of_the_drawn_lever_give_the_balancing_moment():
+    results = solve(load(str(SHAPER)))
+    for k in range(12):
+        plan = lever_plan(results.motion, results.lever, k)
+        # the plan is turned by +90 degrees, so that force x arm is force . velocity
+        moments = sum(cross(force.force, force.at) for force in plan.forces) + sum(m for _, m in plan.couples)
+        assert abs(moments) == pytest.approx(abs(results.reactions.balance.moment[k]), rel=1e-9)
+        for force in plan.forces:  # the foot of the arm lies on the force's line, across the arm
+            assert abs(cross(force.foot - force.at, force.force)) < 1e-9 * abs(force.force)
+            assert abs((force.foot * force.force.conjugate()).real) < 1e-9 * abs(force.force)
+
+
+@given(st.floats(1e-9, 1e9), st.floats(1e-9, 1e9))
+def test_scale_factors_are_round_and_the_figure_fits(width, height):
+    mu = round_scale(width, height, 200, 150)
+    assert max(width / mu - 200, height / mu - 150) < 1e-6 * 200
+    assert any(mu / 10 ** np.floor(np.log10(mu * 1.0000001)) == pytest.approx(f) for f in (*ROUND, 1.0))
+
+
+def test_reactions_are_named_from_link_to_link():
+    assert reaction_name("3", "4", "ᵗ") == "R₃₄ᵗ"
+    assert reaction_name("arm", "12") == "R(arm,12)"
+
+
+def test_nothing_is_left_of_the_lever_when_nothing_acts():
+    from random_linkages import linkage
+
+    _, motion, *_ = solved(linkage(3, ("RRR",)))
+    assert lever(motion, (), np.zeros(3)).items == ()

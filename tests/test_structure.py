@@ -1,0 +1,172 @@
+"""Structure and names of links, strokes, and loads that depend on them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from models import SI, results_of
+from test_commands import ROOT, SHAPER
+
+from tmm_cli import load, solve
+from tmm_cli.pipeline import at_places
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+from tmm_cli.structure.assur import analyse
+
+SIX = "I(0,1) -> II(2,3) -> II(4,5)"
+
+
+def bank(name, stage="kinematics"):
+    return solve(load(str(ROOT / "problems" / f"{name}.yaml")), stage)
+
+
+@pytest.mark.parametrize(
+    "name, formula, types, roles",
+    [
+        ("shaper", SIX, ["RPR", "RRP"], ["crank", "stone", "slotted link", "coupler", "slider"]),
+        ("six-bar", SIX, ["RRR", "RRP"], ["crank", "coupler", "rocker", "coupler", "slider"]),
+        ("course-2", SIX, ["RPR", "RPP"], ["crank", "stone", "slotted link", "stone", "slider"]),
+        ("crank-rocker", "I(0,1) -> II(2,3)", ["RRR"], ["crank", "coupler", "rocker"]),
+        ("double-crank", "I(0,1) -> II(2,3)", ["RRR"], ["crank", "coupler", "crank"]),
+        ("sine", "I(0,1) -> II(2,3)", ["RPP"], ["crank", "stone", "slider"]),
+        ("tangent", "I(0,1) -> II(2,3)", ["PRP"], ["slotted link", "stone", "slider"]),
+        ("cylinder", "I(0,1) -> II(2,3)", ["RRR"], ["slider", "coupler", "rocker"]),
+    ],
+)  # fmt: skip
+def test_formula_of_structure_types_and_names(name, formula, types, roles):
+    results = bank(name, "structure")
+    assert results.structure.formula == formula
+    assert [g.type for g in results.structure.groups] == types
+    assert list(results.roles.values()) == roles
+    assert results.structure.mobility == 1
+    assert results.structure.contours == len(types)
+
+
+def test_a_compound_hinge_of_three_links_is_two_pairs():
+    structure = bank("six-bar", "structure").structure
+    assert (len(structure.links), len(structure.pairs)) == (5, 7)
+    assert [(p.name, p.i, p.j) for p in structure.pairs if p.point == "B"] == [("B", "2", "3"), ("B''", "3", "4")]
+
+
+@pytest.mark.parametrize("order", ["23456", "65432", "42635"])
+def test_groups_do_not_depend_on_the_order_in_which_links_are_written(order):
+    """Hinge B joins 2, 3 and 4, whichever is written first."""
+    links = {
+        "2": {"points": ["A", "B"], "length": 0.35}, "3": {"points": ["D", "B"], "length": 0.25},
+        "4": {"points": ["B", "F"], "length": 0.45}, "5": {"points": ["F"], "slides": {"on": "x"}},
+        "6": {"points": ["B"], "slides": {"on": "4", "through": "F", "angle": 0}},
+    }  # fmt: skip
+    links["6"] = {"points": ["B", "H"], "length": 0.3}
+    links["7"] = {"points": ["H"], "slides": {"on": "y"}}
+    problem = {
+        "tmm": 1, "units": SI, "points": {"O": [0, 0], "D": [0.4, 0]},
+        "guides": {"x": {"through": [0, 0.2], "angle": 0}, "y": {"through": [0.5, 0], "angle": 1.57}},
+        "links": {"1": {"points": ["O", "A"], "length": 0.1}, **{n: links[n] for n in (*order, "7")}},
+        "driver": {"link": "1", "speed": 1},
+        "sketch": {"at": 0.3, "B": [0.37, 0.25], "F": [0.81, 0.2], "H": [0.5, 0.52]},
+    }  # fmt: skip
+    structure = results_of(problem, "structure").structure
+    assert sorted(sorted(g.links) for g in structure.groups) == [["2", "3"], ["4", "5"], ["6", "7"]]
+    assert len([p for p in structure.pairs if p.point == "B"]) == 3
+
+
+def test_a_class_iii_group_is_named_and_not_solved():
+    text = """tmm: 1
+points: {O: [0, 0], D: [300, 0], G: [200, 300]}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: {A: [0, 0], B: [200, 0], E: [100, 120]}}
+  3: {points: [D, B], length: 150}
+  4: {points: [E, F], length: 120}
+  5: {points: [G, F], length: 90}
+driver: {link: 5, speed: 1 rad/s}
+"""
+    problem = build(read_text(text, "iii.yaml"))
+    structure = analyse(problem.linkage)
+    assert structure.formula == "I(0,5) -> III(1,2,3,4)"
+    assert structure.groups[0].order == 3
+    assert solve(problem, "structure").structure.mechanism_class == 3
+    with pytest.raises(Exception, match="make a group that this version cannot solve"):
+        solve(problem, "kinematics")
+
+
+def test_coefficient_of_change_of_mean_speed_follows_from_the_geometry():
+    theta = 2 * math.asin(100 / 300)
+    assert bank("slotted-lever").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+    assert bank("slotted-lever").strokes.travel == pytest.approx(theta, rel=1e-12)
+    theta = 2 * math.asin(60 / 150)
+    assert bank("whitworth").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+    assert bank("whitworth").strokes.travel == pytest.approx(0.24, rel=1e-12)
+    r, rod, e = 50, 190, 40
+    stroke = math.sqrt((rod + r) ** 2 - e * e) - math.sqrt((rod - r) ** 2 - e * e)
+    assert bank("crank-slider-offset").strokes.travel == pytest.approx(stroke / 1000, rel=1e-12)
+    theta = math.asin(e / (rod - r)) - math.asin(e / (rod + r))
+    assert bank("crank-slider-offset").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+
+
+def test_strokes_are_the_same_whichever_way_the_crank_turns_but_for_their_order():
+    text = SHAPER.read_text(encoding="utf-8")
+    one = solve(build(read_text(text, "x.yaml")), "kinematics").strokes
+    other = solve(build(read_text(text.replace("turns: ccw", "turns: cw"), "x.yaml")), "kinematics").strokes
+    assert other.travel == pytest.approx(one.travel, rel=1e-12)
+    assert other.strokes[0].length == pytest.approx(one.strokes[0].length, rel=1e-12)
+    assert other.strokes[0].run == pytest.approx(-one.strokes[0].run, rel=1e-12)  # the slow stroke runs back now
+
+
+def test_position_0_is_the_start_of_the_working_stroke_and_loads_of_it_act_in_it_only():
+    results = bank("shaper", "forces")
+    speed = results.motion.slide(results.linkage.slides[1]).v
+    assert abs(speed[0]) < 1e-12 * np.max(np.abs(speed))
+    close = at_places(results, results.closely(721)[1:-1])
+    load = next(x for x in close.loads if x.name == "F")
+    speed = close.motion.slide(results.linkage.slides[1]).v
+    moving = np.abs(speed) > 1e-9
+    assert np.array_equal((load.force.real > 0)[moving], (speed < 0)[moving])  # resists, and only then
+
+
+def test_a_load_by_table_against_the_stroke_is_interpolated_and_held_at_its_ends():
+    text = SHAPER.read_text(encoding="utf-8").replace(
+        "force: [1500, 0], when: working stroke",
+        "force: {angle: 0, against: stroke, table: [[50, 100], [150, 300]]}, when: working stroke",
+    )
+    results = solve(build(read_text(text, "x.yaml")))
+    load = next(x for x in results.loads if x.name == "F")
+    run = results.motion.slide(results.linkage.slides[1]).run
+    gone = np.abs(run - results.strokes.strokes[0].low) * 1000
+    working = results.strokes.share(results.motion.q, 1)
+    assert load.force.real[working] == pytest.approx(np.interp(gone[working], [50, 150], [100, 300]), rel=1e-12)
+    assert np.all(load.force[~working] == 0)
+
+
+def test_angular_acceleration_changes_speed_along_the_way_and_time_says_when():
+    text = SHAPER.read_text(encoding="utf-8").replace("turns: ccw", "turns: ccw, acceleration: 3 rad/s^2")
+    motion = solve(build(read_text(text, "x.yaml")), "kinematics").motion
+    turned = motion.q - motion.q[0]
+    start = 82 * math.pi / 30
+    assert motion.rate == pytest.approx(np.sqrt(start**2 + 2 * 3 * turned), rel=1e-14)
+    assert start * motion.time + 3 * motion.time**2 / 2 == pytest.approx(turned, abs=1e-13)
+    # v = s' omega, a = s'' omega^2 + s' epsilon
+    slide = motion.slide(motion.linkage.slides[1])
+    assert slide.a == pytest.approx(slide.second * motion.rate**2 + slide.first * 3, rel=1e-13)
+
+
+def test_a_balancing_force_at_the_crank_s_end_has_the_balancing_moment_and_changes_the_frame_s_reaction_only():
+    text = SHAPER.read_text(encoding="utf-8")
+    by_moment = solve(build(read_text(text, "x.yaml"))).reactions
+    by_force = solve(build(read_text(text.replace("turns: ccw", "turns: ccw, balance: force"), "x.yaml"))).reactions
+    assert by_force.balance.force * 0.110 == pytest.approx(by_moment.balance.moment, rel=1e-14)
+    for one, other in zip(by_moment.all[1:], by_force.all[1:], strict=True):
+        assert np.array_equal(one.force, other.force)
+    gap = by_moment.frame.force - by_force.frame.force
+    assert gap == pytest.approx(by_force.balance.vector, rel=1e-9, abs=1e-9)
+
+
+def test_a_driven_slider_is_balanced_along_its_guide():
+    results = bank("cylinder", "forces")
+    balance, frame = results.reactions.balance, results.reactions.frame
+    assert balance.moment is None
+    assert np.max(np.abs(balance.vector.imag)) == 0
+    assert np.max(np.abs(frame.force.real)) < 1e-12 * np.max(np.abs(frame.force))
+    assert np.max(results.lever.difference) < 1e-13
