@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Placement, Pose
+from tmm_cli.groups.base import Dyad, Placement, Pose, Turn
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import driven_state, frame_state
 from tmm_cli.refused import Misfit, NoAssembly, NotSolvable, Undecided
 from tmm_cli.structure.assur import Group, Structure
 
 TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
-FITS = 0.25  # a sketched point may lie this share of the linkage's size from its place, a link 0.5 rad from its angle
+FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
 
 
 def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Dyad, ...]:
@@ -47,7 +48,8 @@ def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad,
         raise Undecided(dyad.group, {})
     hints = [_hints(dyad, linkage, at) for _, at in ways]
     tells = [name for name in hints[0] if abs(hints[0][name] - hints[1][name]) > _scale(name, linkage, dyad)]
-    sketched = {**linkage.sketch.points, **linkage.sketch.angles}
+    shift = _shift(dyad, linkage, poses)
+    sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
     given = {name: sketched[name] for name in tells if name in sketched}
     errors = [_distance(given, hint, dyad) for hint in hints]
     best = int(np.argmin(errors))
@@ -56,20 +58,44 @@ def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad,
     return ways[best]
 
 
-def _check_fit(linkage: Linkage, poses: dict[str, Pose]) -> None:
-    """Every sketched point and angle, whether it decided something or not, lies about where it was drawn."""
+def _shift(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> complex:
+    """How far the sketch has the hinges that the group hangs on from where they are (m).
+
+    What a sketch tells is on which side of them the group lies, so a group is compared with them put in their places.
+    """
+    shifts = []
+    for pair, end in zip(dyad.group.outer, dyad.ends, strict=True):
+        if isinstance(end, Turn):
+            if end.known == FRAME:
+                shifts.append(0j)
+            elif pair.point in linkage.sketch.points:
+                shifts.append(linkage.sketch.points[pair.point] - complex(poses[end.known].at(end.there)[0]))
+    return sum(shifts) / len(shifts) if shifts else 0j
+
+
+def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
+    """How far every sketched point is from its place, as a share of the linkage's size."""
     places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
     size = max(abs(p - q) for p in places for q in places)
+    found = {}
     for point, sketched in linkage.sketch.points.items():
         owner = linkage.owner(point)
         if owner in poses:
+            found[point] = abs(complex(poses[owner].at(linkage.local(owner, point))[0]) - sketched) / size
+    return found
+
+
+def _check_fit(linkage: Linkage, poses: dict[str, Pose]) -> None:
+    """Every sketched point and angle, whether it decided something or not, lies about where it was drawn."""
+    for point, off in sketch_deviations(linkage, poses).items():
+        if off > FITS:
+            owner = linkage.owner(point)
             found = complex(poses[owner].at(linkage.local(owner, point))[0])
-            if abs(found - sketched) > FITS * size:
-                raise Misfit(point, sketched, found)
+            raise Misfit(point, linkage.sketch.points[point], found)
     for link, angle in linkage.sketch.angles.items():
         if link in poses:
             turned = float(np.angle(poses[link].z)[0])
-            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * FITS:
+            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * FITS:  # rad
                 raise Misfit(link, angle, turned)
 
 

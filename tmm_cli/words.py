@@ -23,6 +23,9 @@ ENGLISH: dict[str, str] = {
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
     "warning.missing": "position {number} ({place}): {group} cannot be assembled, {gap} short",
     "warning.dead_here": "position {number} ({place}): {group} is in its dead position; no velocities and forces",
+    "warning.sketch": "in the sketch {point} is {share} % of the mechanism's size from its place with the driver at "
+    "{place}: is sketch.at right?",
+    "warning.drives": "load {load} acts along the motion in the whole working stroke: it drives and does not resist",
     "warning.stopped": "driver {link} slows down and stops before it comes to position {number}: no velocities and "
     "forces from there on",
     "warning.near": "position {number} is near a dead position of {group}: sine of the transmission angle {margin}",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import re
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
@@ -19,6 +18,7 @@ from tmm_cli.problem.reader import Tree, read_file
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals import shape_error
 from tmm_cli.problem.sense import Sense, check_name, direction
+from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
     ACCELERATION,
     ANGLE,
@@ -71,7 +71,7 @@ class _Builder:
         links = self.links()
         slides = self.slides(links)
         hinges = self.hinges(links)
-        self.nothing_stray(links, hinges, slides)
+        nothing_stray(shape, self.tree.data, links, hinges, slides)
         driver = self.driver(links, hinges, slides)
         linkage = Linkage(links, hinges, slides, driver, self.sketch(links, driver), output=self.output(links))
         linkage = with_masses(linkage, shape, self.sense)
@@ -226,42 +226,6 @@ class _Builder:
                 owners.setdefault(point, []).append(name)
         return tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
 
-    def nothing_stray(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> None:
-        """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
-        joined = {name for h in hinges for name in h.links} | {n for s in slides for n in (s.carrier, s.runner)}
-        for name in links:
-            if name not in joined and name != FRAME:
-                raise ProblemError(
-                    "this link is joined to nothing", path=("links", name), found=", ".join(links[name].points),
-                    allowed="a point that another link or the frame has too, or slides", key=True,
-                )  # fmt: skip
-        used = {s.on for link in self.shape.links.values() for s in _slides(link)}
-        for guide in self.shape.guides:
-            if guide not in used:
-                raise ProblemError("nothing slides on this guide", path=("guides", guide), found=quote(guide), key=True)
-        self.named_twice(links, hinges, slides)
-
-    def named_twice(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> None:
-        shared = {h.point for h in hinges}
-        everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
-        pairs = {a + b: (a, b) for a in everything for b in everything}
-        elsewhere: set[str] = set()
-        for word in _words_outside_points(self.tree.data):
-            elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
-        for name, link in links.items():
-            given = list(link.points) if name == FRAME else self.shape.links[name].points
-            running = {s.at for s in slides if s.runner == name}
-            for number, point in enumerate(given if isinstance(given, list) else ()):
-                if point in shared or point in elsewhere or link.points[point] in running:
-                    continue
-                path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
-                raise ProblemError(
-                    "this point is named nowhere else", path=path, found=quote(point),
-                    allowed="a point of another link; a point that is only watched has coordinates (see also:)",
-                    near=nearest(point, [p for p in everything if p != point and p not in link.points]),
-                    key=name == FRAME,
-                )  # fmt: skip
-
     def driver(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> Driver:
         given = self.shape.driver
         link = self.sense.known(given.link, {n: 0 for n in links if n != FRAME}, ("driver", "link"), "link")
@@ -360,10 +324,6 @@ class _Builder:
         return Request(count, start, places, tuple(given.detail))
 
 
-def _slides(link: schema.Link) -> list[schema.Slide]:
-    return link.slides if isinstance(link.slides, list) else [link.slides] if link.slides else []
-
-
 def _two(value: list[Any], path: Path) -> list[Any]:
     if len(value) != 2:
         raise ProblemError("two coordinates [x, y] are wanted", path=path, found=quote(value))
@@ -374,19 +334,3 @@ def _value(value: Any, path: Path) -> Any:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ProblemError("an angle or `working stroke` is wanted", path=path, found=quote(value))
     return value
-
-
-def _words_outside_points(data: dict[str, Any]) -> list[str]:
-    """Every text of the file that may name a point, the links' own lists of points left out."""
-    words: list[str] = []
-    todo: list[Any] = [{**data, "points": {}, "parameters": {}, "title": "", "description": ""}]
-    while todo:
-        part = todo.pop()
-        if isinstance(part, dict):
-            words += [k for k in part if isinstance(k, str)]
-            todo += [v for k, v in part.items() if k != "points"]
-        elif isinstance(part, list):
-            todo += part
-        elif isinstance(part, str):
-            words.append(part)
-    return words

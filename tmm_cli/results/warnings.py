@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.assembly import sketch_deviations
+from tmm_cli.motion import Law, move
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
+from tmm_cli.vectors import dot
 from tmm_cli.words import say
 
+if TYPE_CHECKING:
+    from tmm_cli.forces.loads import Applied
+
+SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 NEAR = 0.05  # a margin (sine of the transmission angle) below which a position is said to be near a dead one
 
 
@@ -29,6 +37,10 @@ def warnings(results: Results) -> Iterable[str]:
         given = "" if results.problem.request.places else say("warning.given")
         ends = {"start": place(way.start), "end": place(way.end)}
         yield say("warning.range", link=results.linkage.driver.link, groups=groups, **ends) + given
+    there = move(results.linkage, results.dyads, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1))
+    for point, off in sketch_deviations(results.linkage, there.poses).items():
+        if off > SKETCH:
+            yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
     for dead in results.dead:
         yield say("warning.dead", place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
     for k, number in enumerate(results.numbers):
@@ -50,6 +62,9 @@ def warnings(results: Results) -> Iterable[str]:
             yield say(
                 "warning.near", number=results.numbers[k], group=dyad.group.title, margin=f"{float(margin[k]):.2g}"
             )
+    for load in results.loads:
+        if load.kind == "load" and _drives(results, load):
+            yield say("warning.drives", load=load.name)
     if results.lever is not None and not results.lever_holds:
         worst = np.where(motion.moving, results.lever.difference, 0.0)
         k = int(np.argmax(worst))
@@ -57,3 +72,14 @@ def warnings(results: Results) -> Iterable[str]:
             "warning.lever", number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
             limit=f"{100 * results.problem.lever_limit:.3g}",
         )  # fmt: skip
+
+
+def _drives(results: Results, load: Applied) -> bool:
+    """Whether a load of the working stroke helps the motion at every position where it acts: it should resist."""
+    given = {x.name: x for x in results.linkage.loads}[load.name]
+    motion = results.motion
+    if not given.working_stroke_only or motion is None:
+        return False
+    power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
+    acting = motion.moving & (np.abs(power) > 1e-9 * np.max(np.abs(power), initial=0.0, where=motion.moving))
+    return bool(np.any(acting)) and bool(np.all(power[acting] > 0))

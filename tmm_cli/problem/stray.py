@@ -1,0 +1,80 @@
+"""Slips that leave something of a file without use: links joined to nothing, idle guides, points named once only."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from tmm_cli.linkage import FRAME, Hinge, Link, Slide
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
+
+
+def nothing_stray(
+    shape: schema.File,
+    data: dict[str, Any],
+    links: dict[str, Link],
+    hinges: tuple[Hinge, ...],
+    slides: tuple[Slide, ...],
+) -> None:
+    """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
+    joined = {name for h in hinges for name in h.links} | {n for s in slides for n in (s.carrier, s.runner)}
+    for name in links:
+        if name not in joined and name != FRAME:
+            raise ProblemError(
+                "this link is joined to nothing", path=("links", name), found=", ".join(links[name].points),
+                allowed="a point that another link or the frame has too, or slides", key=True,
+            )  # fmt: skip
+    used = {s.on for link in shape.links.values() for s in _slides(link)}
+    for guide in shape.guides:
+        if guide not in used:
+            raise ProblemError("nothing slides on this guide", path=("guides", guide), found=quote(guide), key=True)
+    _named_twice(shape, data, links, hinges, slides)
+
+
+def _named_twice(
+    shape: schema.File,
+    data: dict[str, Any],
+    links: dict[str, Link],
+    hinges: tuple[Hinge, ...],
+    slides: tuple[Slide, ...],
+) -> None:
+    shared = {h.point for h in hinges}
+    everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
+    pairs = {a + b: (a, b) for a in everything for b in everything}
+    elsewhere: set[str] = set()
+    for word in _words_outside_points(data):
+        elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
+    for name, link in links.items():
+        given = list(link.points) if name == FRAME else shape.links[name].points
+        running = {s.at for s in slides if s.runner == name}
+        for number, point in enumerate(given if isinstance(given, list) else ()):
+            if point in shared or point in elsewhere or link.points[point] in running:
+                continue
+            path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
+            raise ProblemError(
+                "this point is named nowhere else", path=path, found=quote(point),
+                allowed="a point of another link; a point that is only watched has coordinates (see also:)",
+                near=nearest(point, [p for p in everything if p != point and p not in link.points]),
+                key=name == FRAME,
+            )  # fmt: skip
+
+
+def _slides(link: schema.Link) -> list[schema.Slide]:
+    return link.slides if isinstance(link.slides, list) else [link.slides] if link.slides else []
+
+
+def _words_outside_points(data: dict[str, Any]) -> list[str]:
+    """Every text of the file that may name a point, the links' own lists of points left out."""
+    words: list[str] = []
+    todo: list[Any] = [{**data, "points": {}, "parameters": {}, "title": "", "description": ""}]
+    while todo:
+        part = todo.pop()
+        if isinstance(part, dict):
+            words += [k for k in part if isinstance(k, str)]
+            todo += [v for k, v in part.items() if k != "points"]
+        elif isinstance(part, list):
+            todo += part
+        elif isinstance(part, str):
+            words.append(part)
+    return words
