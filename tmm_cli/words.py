@@ -221,6 +221,7 @@ ENGLISH: dict[str, str] = {
     "draw.forces": "Force plan of links {links}. {caption}",
     "draw.forces_driver": "Force plan of the driving link {links}. {caption}",
     "draw.lever": "Zhukovsky lever: velocity plan for 1 rad/s, turned by 90°. {caption}",
+    "draw.lever_slider": "Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90°. {caption}",
     "draw.balance": "Mb = {value} N·m",
     "draw.balance_force": "Fb = {value} N",
     "draw.vanish": "zero: {names}",

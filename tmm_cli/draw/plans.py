@@ -106,26 +106,31 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     """The turned velocity plan with its forces; arms are thin lines from the pole."""
     if results.lever is None or results.motion is None:
         return
+    crank = results.linkage.driver.kind == "turn"
     plan = lever_plan(results.motion, results.lever, k)
     places = [*plan.ends.values(), *(f.at for f in plan.forces), *(f.foot for f in plan.forces)]
-    sheet = Sheet(results.problem.title, say("draw.lever", caption=caption(results, k)), places, pad=36)
+    sheet = Sheet(
+        results.problem.title,
+        say("draw.lever" if crank else "draw.lever_slider", caption=caption(results, k)),
+        places,
+        pad=36,
+    )
     for bar in plan.bars:
         sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
     size = max((abs(e) for e in plan.ends.values()), default=0.0)
     pole = sheet.on(0j)
     taken: list[tuple[complex, complex]] = []
+    inertial = {n for load in results.loads if load.kind == "inertia" for n in (load.name, load.couple_name)}
     for force in plan.forces:
         at, foot = sheet.on(force.at), sheet.on(force.foot)
         end = at + (FORCE_MM + stacked(taken, at, force.force)) * force.force / abs(force.force)
-        inertia = force.name.startswith("U")
-        colour = COLOURS["inertia" if inertia else "load"]
+        colour = COLOURS["inertia" if force.name in inertial else "load"]
         if abs(force.foot) > 1e-9 * size:
             sheet.line([pole, foot], THIN, 0.6, ":", 2)
             sheet.line([foot, at], THIN, 0.5, "--", 2)
         sheet.arrow(at, end, colour, 1.3)
         sheet.label(force.name, end, 9, colour)
     _letters(sheet, plan.ends, "p")
-    crank = results.linkage.driver.kind == "turn"
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:
