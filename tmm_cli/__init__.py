@@ -36,10 +36,11 @@ def solve(
 ) -> Results:
     """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError."""
     from tmm_cli.pipeline import solve as compute
-    from tmm_cli.problem.refusals import refusal
     from tmm_cli.refused import Refused
 
     try:
         return compute(problem, stage, positions)
     except Refused as error:
+        from tmm_cli.problem.refusals import refusal
+
         raise refusal(error, problem) from None

@@ -16,7 +16,6 @@ from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals import shape_error
 from tmm_cli.problem.sense import Sense, check_name, direction
 from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
@@ -44,6 +43,8 @@ def build(tree: Tree) -> Problem:
     try:
         shape = schema.File.model_validate(tree.data)
     except ValidationError as error:
+        from tmm_cli.problem.refusals import shape_error  # only a bad file needs its words
+
         raise shape_error(error, tree) from None
     try:
         return _Builder(shape, tree).problem()
