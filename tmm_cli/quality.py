@@ -253,6 +253,8 @@ def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists:
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
         for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
     ]
+    if not any(s.working for s in strokes):  # the output stands still but for rounding
+        return Strokes(link, kind, (), "")
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
 

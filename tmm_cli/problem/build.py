@@ -111,6 +111,8 @@ class _Builder:
             points = {p: self.sense.vector(xy, LENGTH, (*path, "points", p)) for p, xy in given.items()}
         else:
             points = self.listed(given, link, path)
+        if not points:
+            raise ProblemError("a link has at least one point", path=(*path, "points"), found="none", allowed="[A, B]")
         for point in points:
             spot = (*path, "points", point) if isinstance(given, dict) else (*path, "points", list(points).index(point))
             check_name(point, spot, "point")

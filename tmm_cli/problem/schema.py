@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 MAX_LINKS = 100
@@ -40,7 +40,8 @@ def _vector(found: Any) -> Any:
 
 _VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 Value = Annotated[Any, BeforeValidator(_value), WithJsonSchema(_VALUE)]
-Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "integer"}]})]
+_NAMES = [{"type": "string"}, {"type": "integer"}]
+Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"anyOf": _NAMES})]
 Vector = Annotated[
     Any, BeforeValidator(_vector), WithJsonSchema({"type": "array", "items": _VALUE, "minItems": 2, "maxItems": 2})
 ]
@@ -175,6 +176,10 @@ class Output(Strict):
     )
 
 
+def _output(found: Any) -> Any:
+    return Output.model_validate(found) if isinstance(found, dict) else Output(link=_name(found))
+
+
 class Positions(Strict):
     """Which positions are computed. They are numbered from 0 in the driver's sense."""
 
@@ -209,17 +214,8 @@ class File(Strict):
     masses: dict[Name, Mass] = Field(default_factory=dict)
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
-    output: Any = Field(default=None, description="a link, or {link, working}")
+    output: Annotated[Any, BeforeValidator(_output), WithJsonSchema({"anyOf": [*_NAMES, {"$comment": "Output"}]})] = (
+        Field(default=None, description="a link, or {link, working}")
+    )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _short_output(cls, found: Any) -> Any:
-        if isinstance(found, dict):
-            out = found.get("output")
-            if isinstance(out, dict):
-                found = {**found, "output": Output.model_validate(out)}
-            elif out is not None:
-                found = {**found, "output": Output(link=_name(out))}
-        return found
