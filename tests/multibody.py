@@ -1,7 +1,7 @@
 """The textbook multibody way in 60 digits: Newton on all constraints in absolute coordinates, Lagrange multipliers.
 
-It knows no Assur groups, so nothing that is wrong in them can hide here. Derivatives by differences, with steps far below
-what float64 can see.
+It knows no Assur groups, so nothing that is wrong in them can hide here. Derivatives by differences, with steps far
+below what float64 can see.
 """
 
 from __future__ import annotations

@@ -181,6 +181,8 @@ def test_change_point_four_bar_statics_at_90_degrees():
     assert motion.link("2").epsilon[0] == pytest.approx(0.09628595659519751, rel=1e-8)
     assert motion.link("3").epsilon[0] == pytest.approx(0.2730626518918343, rel=1e-8)
     assert motion.named("P").x[0] == pytest.approx(1.3465014289265458 + 1.8288147572882445j, rel=1e-10)
+    assert motion.named("P").v[0] == pytest.approx(-0.8419089144666019 - 0.25683648933538056j, rel=1e-9)
+    assert motion.named("P").a[0] == pytest.approx(-0.1287931305842911 - 0.9005056798720328j, rel=1e-8)
     still = {**problem, "driver": {"link": "1", "speed": 0}}  # their statics: weights without inertia
     reactions = results_of(still).reactions
     assert abs(reactions.balance.moment[0]) == pytest.approx(13.664357145334336, rel=2e-8)
@@ -191,3 +193,52 @@ def test_change_point_four_bar_statics_at_90_degrees():
         "D": 34.0018956580814,
     }.items():
         assert abs(reactions.of(joint).force[0]) == pytest.approx(printed, rel=2e-8), joint
+
+
+def test_jansen_leg_of_pyslvs_from_its_coordinates():
+    """test/test_core.py of KmolYuan/pyslvs gives joints in one pose; links are as long as they are there."""
+    o, a, g, b, c, d, e, f = (
+        0j, 9.61 + 11.52j, -38 - 7.8j, -35.24 + 33.61j, -77.75 - 2.54j, -20.1 - 42.79j, -56.05 - 35.42j, -22.22 - 91.74j
+    )  # fmt: skip
+
+    def plate(**points):
+        return {"points": {name: [z.real, z.imag] for name, z in points.items()}}
+
+    problem = {
+        "tmm": 1, "units": SI, "points": {"O": [o.real, o.imag], "G": [g.real, g.imag]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": abs(a - o)}, "2": plate(A=a, B=b), "3": plate(G=g, B=b, C=c),
+            "4": plate(A=a, D=d), "5": plate(G=g, D=d), "6": plate(C=c, E=e), "7": plate(D=d, E=e, F=f),
+        },
+        "driver": {"link": "1", "speed": 1},
+        "sketch": {"at": math.atan2(a.imag, a.real), **plate(B=b, C=c, D=d, E=e, F=f)["points"]},
+        "positions": {"at": [0, math.pi / 4]},
+    }  # fmt: skip
+    foot = results_of(problem, "kinematics").motion.named("F").x
+    assert foot[0] == pytest.approx(-43.1700551554 - 91.7532259054j, abs=1e-9)
+    assert foot[1] == pytest.approx(-24.4063935925 - 91.7895961426j, abs=1e-9)
+
+
+def test_pyslvs_primitives_of_dyads():
+    """PLLP: two circles meet; PLPP: a circle and a line meet."""
+    two = {
+        "tmm": 1, "units": SI, "points": {"O": [-100, 0], "D": [30, 0]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 70}, "2": {"points": ["A", "B"], "length": 90},
+            "3": {"points": ["D", "B"], "length": 30},
+        },
+        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 0.2, "B": [40, 28]}, "positions": {"at": [0.0]},
+    }  # fmt: skip
+    dead = results_of(two, "kinematics").motion  # the circles touch: 90 = 60 + 30, a dead position
+    assert dead.named("B").x[0] == pytest.approx(60 + 0j, abs=1e-9)
+    assert not dead.moving[0]
+    line = {
+        "tmm": 1, "units": SI, "points": {"O": [-3, 0]},
+        "guides": {"g": {"through": [0, -3], "angle": math.atan2(3, 1.5)}},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 3}, "2": {"points": ["A", "B"], "length": math.sqrt(5)},
+            "3": {"points": ["B"], "slides": {"on": "g"}},
+        },
+        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 0.0, "B": [2, 1]}, "positions": {"at": [0.0]},
+    }  # fmt: skip
+    assert results_of(line, "kinematics").motion.named("B").x[0] == pytest.approx(2 + 1j, abs=1e-12)
