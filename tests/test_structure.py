@@ -170,3 +170,20 @@ def test_a_driven_slider_is_balanced_along_its_guide():
     assert np.max(np.abs(balance.vector.imag)) == 0
     assert np.max(np.abs(frame.force.real)) < 1e-12 * np.max(np.abs(frame.force))
     assert np.max(results.lever.difference) < 1e-13
+
+
+@pytest.mark.parametrize("short", [0.01, 0.0001, 0.000001])
+def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
+    """Nearly a parallelogram: the crank is blocked where A and D are nearer than links 2 and 3 can fold."""
+    problem = {
+        "tmm": 1, "units": {"length": "mm", "angle": "deg"}, "points": {"O": [0, 0], "D": [300, 0]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 100}, "2": {"points": ["A", "B"], "length": 300},
+            "3": {"points": ["D", "B"], "length": 100 - short},
+        },
+        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 60, "B": [350, 86]},
+    }  # fmt: skip
+    way = results_of(problem, "kinematics").way
+    blocked = math.acos((100**2 + 300**2 - (200 + short) ** 2) / (2 * 100 * 300))
+    assert not way.full
+    assert way.start == pytest.approx(blocked, rel=1e-5)

@@ -16,19 +16,9 @@ from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.problem.record import Problem
-from tmm_cli.quality import (
-    DeadPosition,
-    Range,
-    Strokes,
-    find_dead,
-    find_range,
-    find_strokes,
-    hinged_to_frame,
-    output_link,
-    places,
-    resisted,
-)
+from tmm_cli.quality import DeadPosition, Range, find_dead, find_range
 from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
+from tmm_cli.strokes import Strokes, find_strokes, hinged_to_frame, output_link, places, resisted
 from tmm_cli.structure.assur import Structure, analyse
 from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real

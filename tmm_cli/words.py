@@ -26,6 +26,8 @@ ENGLISH: dict[str, str] = {
     "warning.sketch": "in the sketch {point} is {share} % of the mechanism's size from its place with the driver at "
     "{place}: is sketch.at right?",
     "warning.drives": "load {load} acts along the motion in the whole working stroke: it drives and does not resist",
+    "warning.always": "load {load} is one of the working stroke, but there are no whole strokes on this way of the "
+    "driver: it acts always",
     "warning.stopped": "driver {link} slows down and stops before it comes to position {number}: no velocities and "
     "forces from there on",
     "warning.near": "position {number} is near a dead position of {group}: sine of the transmission angle {margin}",

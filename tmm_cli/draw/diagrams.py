@@ -25,7 +25,7 @@ from tmm_cli.problem.dimensions import (
     SPEED,
     Dimension,
 )
-from tmm_cli.quality import output_link, output_run
+from tmm_cli.strokes import output_link, output_run
 from tmm_cli.words import say
 
 POINTS = 361

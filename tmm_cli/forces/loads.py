@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
-from tmm_cli.quality import Strokes, output_run
+from tmm_cli.strokes import Strokes, output_run
 from tmm_cli.vectors import Real, Vector
 
 

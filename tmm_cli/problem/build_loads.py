@@ -10,7 +10,7 @@ from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense, check_name, direction
 from tmm_cli.problem.units import ACCELERATION, ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Dimension
-from tmm_cli.quality import output_link, slides_on_frame
+from tmm_cli.strokes import output_link, slides_on_frame
 from tmm_cli.structure.assur import analyse
 
 STANDARD_GRAVITY = 9.81

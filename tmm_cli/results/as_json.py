@@ -14,10 +14,10 @@ from tmm_cli.forces.plan import Reaction, Reactions
 from tmm_cli.linkage import Driver
 from tmm_cli.motion import Motion, Point
 from tmm_cli.pipeline import Results
-from tmm_cli.quality import output_link
 from tmm_cli.results.reports.cycle import state
 from tmm_cli.results.reports.kinematics import mass_centres, named_points
 from tmm_cli.results.warnings import warnings
+from tmm_cli.strokes import output_link
 from tmm_cli.structure.assur import ROMAN, Structure
 from tmm_cli.vectors import Vector
 

@@ -18,8 +18,8 @@ from tmm_cli.problem.dimensions import (
     NUMBER,
     SPEED,
 )
-from tmm_cli.quality import output_link, output_run
 from tmm_cli.results.table import Column, Table
+from tmm_cli.strokes import output_link, output_run
 from tmm_cli.words import say
 
 

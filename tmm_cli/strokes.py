@@ -1,0 +1,207 @@
+"""Stage: the output of the mechanism, its strokes, which of them is the working one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.base import Dyad
+from tmm_cli.linkage import FRAME, Linkage, Load, Request
+from tmm_cli.motion import Law, Motion, move
+from tmm_cli.quality import HALVINGS, SCAN, Range
+from tmm_cli.structure.assur import Group
+from tmm_cli.vectors import Real
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed)."""
+
+    start: float
+    length: float
+    low: float
+    run: float
+    working: bool
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Strokes of the output link in a turn of the driver, beginning with the working one; empty when it has none.
+
+    kind: the output slides (m), or swings (rad). k is the time of the working strokes over that of the idle ones at
+    constant speed. rule: why that stroke is the working one.
+    """
+
+    link: str
+    kind: str
+    strokes: tuple[Stroke, ...]
+    rule: str
+
+    @property
+    def working(self) -> tuple[Stroke, ...]:
+        return tuple(s for s in self.strokes if s.working)
+
+    @property
+    def travel(self) -> float:
+        """Stroke H (m) or swing psi (rad)."""
+        return max((abs(s.run) for s in self.strokes), default=0.0)
+
+    @property
+    def k(self) -> float:
+        """Coefficient of change of mean speed."""
+        idle = sum(s.length for s in self.strokes if not s.working)
+        return sum(s.length for s in self.working) / idle if idle else float("nan")
+
+    def share(self, q: Real, sense: int) -> Real:
+        """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
+        inside = np.zeros(np.shape(q), dtype=bool)
+        for stroke in self.working:
+            way = np.mod(sense * (q - stroke.start) + 1e-9, 2 * np.pi) - 1e-9
+            inside |= way < stroke.length - 1e-9
+        return inside
+
+
+def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
+    """The output: named in the file, or the last link that is joined to the frame and not the driver."""
+    if linkage.output is not None:
+        return linkage.output.link
+    for group in reversed(groups):
+        held = [link for link in group.links if slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)]
+        if held:
+            return next((link for link in held if slides_on_frame(linkage, link)), held[0])
+    return None
+
+
+def slides_on_frame(linkage: Linkage, link: str) -> bool:
+    """Whether the link has a guide on the frame."""
+    return any({s.carrier, s.runner} == {FRAME, link} for s in linkage.slides)
+
+
+def hinged_to_frame(linkage: Linkage, link: str) -> bool:
+    """Whether the link has a hinge on the frame."""
+    return any(FRAME in h.links and link in h.links for h in linkage.hinges)
+
+
+def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
+    """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
+    for slide in motion.linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            sliding = motion.slide(slide)
+            return sliding.run, sliding.first, sliding.second
+    turning = motion.link(link)
+    return turning.angle, turning.first, turning.second
+
+
+def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0) -> Strokes | None:
+    """Strokes of the output over the driver's way; None when there is no output joined to the frame.
+
+    resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
+    stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
+    """
+    link = output_link(linkage, tuple(d.group for d in dyads))
+    if link is None or not (slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)):
+        return None
+    kind = "slide" if slides_on_frame(linkage, link) else "swing"
+    sense = linkage.driver.sense
+    law = Law(way.start, 1.0, 0.0, 1)
+    q = np.linspace(way.start, way.end, SCAN + 1)
+    slope = output_run(move(linkage, dyads, q, law), link)[1]
+    signs = np.sign(slope)
+    change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
+    if not change.size or not way.full:
+        return Strokes(link, kind, (), "")
+
+    def slope_at(x: Real) -> Real:
+        return output_run(move(linkage, dyads, x, law), link)[1]
+
+    turns = _roots(slope_at, q[change], q[change + 1])
+    # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
+    turns = turns[np.abs(slope_at(turns)) < 1e-6 * np.nanmax(np.abs(slope))]
+    turns = np.sort(np.mod(turns, 2 * np.pi))
+    again = np.diff(turns, append=turns[:1] + 2 * np.pi) < 1e-9  # found at both ends of the scan
+    turns = turns[~again][::sense]
+    if turns.size < 2:
+        return Strokes(link, kind, (), "")
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), 2 * np.pi)
+    runs = _runs(linkage, dyads, turns, lengths, link, kind)
+    lows = output_run(move(linkage, dyads, turns, law), link)[0]
+    forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
+    direction, rule = _working(linkage, forward, back, resists)
+    strokes = [
+        Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
+        for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
+    ]
+    if not any(s.working for s in strokes):  # the output stands still but for rounding
+        return Strokes(link, kind, (), "")
+    first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
+    return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
+
+
+def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:
+    asked = linkage.output.working if linkage.output else "auto"
+    if asked != "auto":
+        return (1 if asked == "forward" else -1), "as the file says"
+    if abs(forward - back) > 1e-9:
+        return (1 if forward > back else -1), "the slower one"
+    if resists:
+        return int(np.sign(resists)), "the one that the load resists"
+    return 1, "the forward one"
+
+
+def _runs(linkage: Linkage, dyads: tuple[Dyad, ...], turns: Real, lengths: Real, link: str, kind: str) -> Real:
+    """How far the output goes in each stroke (an angle is followed through, so that it may pass 180 degrees)."""
+    law = Law(0.0, 1.0, 0.0, 1)
+    places = turns[:, None] + linkage.driver.sense * lengths[:, None] * np.linspace(0, 1, 65)
+    run = output_run(move(linkage, dyads, places.ravel(), law), link)[0].reshape(places.shape)
+    if kind == "swing":
+        run = np.unwrap(run, axis=1)
+    return run[:, -1] - run[:, 0]
+
+
+def _roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
+    """Roots between places where a function has different signs, by halving all intervals at once."""
+    sign_low = np.sign(function(low))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        same = np.sign(function(middle)) == sign_low
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return (low + high) / 2
+
+
+def resisted(linkage: Linkage, link: str | None) -> float:
+    """The sign of the output's run that the loads of the working stroke resist; 0 when they tell nothing."""
+    for slide in linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            along = np.exp(1j * slide.direction)
+            if slide.runner == FRAME:
+                along = -along
+            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
+                       if x.link == link and x.working_stroke_only)  # fmt: skip
+            return -float(np.sign(push))
+    turn = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
+    return -float(np.sign(turn))
+
+
+def _mean(load: Load) -> float:
+    return float(np.mean(load.table.values)) if load.table else 1.0
+
+
+def places(request: Request, way: Range, strokes: Strokes | None, sense: int) -> Real:
+    """The driver's places that are asked for (rad or m); position 0 is the zero.
+
+    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost.
+    """
+    if request.places:
+        return np.array(request.places)
+    steps = np.arange(request.count)
+    if way.full:
+        start = request.start
+        if start == "working stroke":
+            start = strokes.strokes[0].start if strokes and strokes.strokes else way.start + np.pi
+        return start + sense * (2 * np.pi * steps / request.count)
+    share = (steps + 0.5) / request.count
+    if sense < 0:
+        share = 1 - share
+    return way.start + (way.end - way.start) * share
