@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import re
@@ -239,3 +240,21 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
     done = tmm(command, "--help")
     assert done.returncode == 0 and len(done.stdout) > 100
     assert f"tmm {command}" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
+    from rich.console import Console
+
+    from tmm_cli import load, solve
+    from tmm_cli.results.reports import tables
+    from tmm_cli.results.terminal import show
+
+    results = solve(load(str(SHAPER)))
+    for width in (60, 80, 120, 300):
+        console = Console(width=width, record=True, file=io.StringIO(), highlight=False)
+        for table in tables(results):
+            show(table, results.problem.units, console, {0, 1} if table.long else None)
+        text = console.export_text()
+        assert "…" not in text
+        assert all(len(line) <= width for line in text.splitlines())
+        assert ("Cycle (continued)" in text) == (width < 120)

@@ -100,6 +100,7 @@ ENGLISH: dict[str, str] = {
     "word.position": "position",
     "word.state": "state",
     "table.more": "... and {rows} rows more: -o DIR writes them all, --json too",
+    "table.continued": "{title} (continued)",
     "structure.title": "Structure",
     "structure.n": "moving links n",
     "structure.p1": "lower pairs p1",

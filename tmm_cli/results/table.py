@@ -15,6 +15,7 @@ class Column:
     header: str
     values: Any  # a list or an array, one entry a row
     dimension: Dimension | None = None
+    digits: int = 6  # shown on a terminal; files have them all
 
 
 @dataclass(frozen=True)

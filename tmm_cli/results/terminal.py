@@ -14,7 +14,6 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 from tmm_cli.words import say
 
-DIGITS = 6
 MOST_ROWS = 120  # on a terminal; files have them all
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
 
@@ -32,7 +31,7 @@ def _number(value: float, column: Column, units: UnitSystem) -> str:
     if not math.isfinite(value):
         return "-"
     number = value if column.dimension in (None, NUMBER) else units.from_si(value, column.dimension)
-    return f"{number:.{DIGITS}g}"
+    return f"{number:.{column.digits}g}"
 
 
 def heading(column: Column, units: UnitSystem) -> str:
@@ -43,17 +42,45 @@ def heading(column: Column, units: UnitSystem) -> str:
 
 
 def show(table: Table, units: UnitSystem, console: Console, rows: set[int] | None = None) -> None:
-    """Print a table; of a long one, the given rows only."""
-    rich_table = RichTable(title=Text(table.title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in table.columns:
-        words = column.dimension is None
-        rich_table.add_column(Text(heading(column, units)), justify="left" if words else "right", no_wrap=not words)
-    columns = [cells(column, units) for column in table.columns]
+    """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts."""
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
-    for k in chosen[:MOST_ROWS]:
-        rich_table.add_row(*(Text(column[k]) for column in columns))
-    console.print(rich_table)
+    told = [_told(column, cells(column, units), chosen[:MOST_ROWS], units) for column in table.columns]
+    for number, part in enumerate(_parts(table, told, console.width)):
+        title = table.title if number == 0 else say("table.continued", title=table.title)
+        rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+        for k in part:
+            words = table.columns[k].dimension is None
+            rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", min_width=_least(told[k]))
+        for row in range(len(chosen[:MOST_ROWS])):
+            rich_table.add_row(*(Text(told[k][1][row]) for k in part))
+        console.print(rich_table)
     if len(chosen) > MOST_ROWS:
         console.print(Text(say("table.more", rows=len(chosen) - MOST_ROWS), style="dim"))
     for note in table.notes:
         console.print(Text(note, style="dim"))
+
+
+def _told(column: Column, shown: list[str], rows: list[int], units: UnitSystem) -> tuple[str, list[str]]:
+    """A column's heading and the cells that are printed."""
+    return heading(column, units), [shown[k] for k in rows]
+
+
+def _least(column: tuple[str, list[str]]) -> int:
+    """The least width of a column: a heading may be broken between its words, a cell may not."""
+    return max([len(word) for word in column[0].split()] + [len(cell) for cell in column[1]], default=0)
+
+
+def _parts(table: Table, told: list[tuple[str, list[str]]], width: int) -> list[list[int]]:
+    """Columns that fit beside each other; what tells the rows apart stands in every part."""
+    keys = 0
+    while keys < len(told) and (table.columns[keys].dimension is None or keys == 1):
+        keys += 1
+    if keys == len(told):
+        return [list(range(len(told)))]
+    wide = [_least(column) + 3 for column in told]
+    parts: list[list[int]] = []
+    for k in range(keys, len(told)):
+        if not parts or sum(wide[i] for i in parts[-1]) + wide[k] > width + 1:
+            parts.append(list(range(keys)))
+        parts[-1].append(k)
+    return parts

@@ -66,9 +66,9 @@ def warnings(results: Results) -> Iterable[str]:
         if load.kind == "load" and _drives(results, load):
             yield say("warning.drives", load=load.name)
     if results.strokes is None or not results.strokes.strokes:
-        for given in results.linkage.loads:
-            if given.working_stroke_only:
-                yield say("warning.always", load=given.name)
+        for asked in results.linkage.loads:
+            if asked.working_stroke_only:
+                yield say("warning.always", load=asked.name)
     if results.lever is not None and not results.lever_holds:
         worst = np.where(motion.moving, results.lever.difference, 0.0)
         k = int(np.argmax(worst))

@@ -59,7 +59,7 @@ def tables(results: Results) -> Iterable[Table]:
         size = MOMENT if crank else FORCE
         columns.append(Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size))
         columns.append(Column(say("cycle.lever" if crank else "cycle.lever_force"), results.lever.balancing, size))
-        columns.append(Column(say("cycle.difference"), results.lever.difference * 100, NUMBER))
+        columns.append(Column(say("cycle.difference"), results.lever.difference * 100, NUMBER, digits=2))
     if not bool(np.all(motion.moving)):
         columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))
     yield Table("cycle", say("cycle.title"), tuple(columns))
