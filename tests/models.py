@@ -13,6 +13,17 @@ from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
 DATA = Path(__file__).parent / "data"
+PARALLELOGRAM = """tmm: 1
+points: {O: [0, 0], D: [300, 0]}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: [A, B], length: 300}
+  3: {points: [D, B], length: 100}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [350, 86]}
+masses: {2: {mass: 3 kg, inertia: 0.1, centre: {on: AB}}}
+positions: {count: 12, detail: [0, 1]}
+"""
 SI = {"length": "m", "angle": "rad", "mass": "kg", "force": "N", "moment": "N*m", "inertia": "kg*m^2"}
 
 

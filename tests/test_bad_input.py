@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
+from models import PARALLELOGRAM
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, solve
@@ -201,17 +203,10 @@ def test_nothing_is_written_and_there_is_no_traceback(tmp_path):
 
 
 def test_a_crank_that_cannot_turn_fully_gives_its_range_and_results_there(tmp_path):
-    text = """tmm: 1
-points: {O: [0, 0], D: [300, 0]}
-links:
-  1: {points: [O, A], length: 100}
-  2: {points: [A, B], length: 120}
-  3: {points: [D, B], length: 150}
-driver: {link: 1, speed: 60 rpm}
-sketch: {at: 60 deg, B: [170, 70]}
-masses: {2: {mass: 3 kg, inertia: 0.1, centre: {on: AB}}}
-positions: {count: 12, detail: [2]}
-"""
+    text = PARALLELOGRAM.replace("[A, B], length: 300", "[A, B], length: 120").replace(
+        "[D, B], length: 100", "[D, B], length: 150"
+    )
+    text = text.replace("B: [350, 86]", "B: [170, 70]")
     file = tmp_path / "rocker.yaml"
     file.write_text(text, encoding="utf-8")
     done = tmm("run", file, "-o", tmp_path)
@@ -223,26 +218,13 @@ positions: {count: 12, detail: [2]}
     results = solve(load(str(file)))
     assert bool(results.motion.moving.all())  # all twelve positions lie inside the range
     # the limit by the law of cosines: A and D are as far apart as links 2 and 3 reach
-    import math
-
     limit = math.acos((100**2 + 300**2 - 270**2) / (2 * 100 * 300))
     assert abs(results.way.end - limit) < 1e-7 and abs(results.way.start + limit) < 1e-7
 
 
 def test_a_dead_position_inside_the_cycle_is_reported_and_its_neighbours_computed(tmp_path):
-    text = """tmm: 1
-points: {O: [0, 0], D: [300, 0]}
-links:
-  1: {points: [O, A], length: 100}
-  2: {points: [A, B], length: 300}
-  3: {points: [D, B], length: 100}
-driver: {link: 1, speed: 60 rpm}
-sketch: {at: 60 deg, B: [350, 86]}
-masses: {2: {mass: 3 kg, inertia: 0.1, centre: {on: AB}}}
-positions: {count: 12}
-"""
     file = tmp_path / "parallelogram.yaml"
-    file.write_text(text, encoding="utf-8")
+    file.write_text(PARALLELOGRAM, encoding="utf-8")
     done = tmm("forces", file)
     assert done.returncode == 0
     assert "position 6 (180 deg): II(2,3) is in its dead position; no velocities and forces" in done.stderr

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 
 import pytest
+from models import PARALLELOGRAM
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
@@ -77,15 +78,5 @@ def test_sheets_of_other_linkages(name):
 
 
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
-    text = """tmm: 1
-points: {O: [0, 0], D: [300, 0]}
-links:
-  1: {points: [O, A], length: 100}
-  2: {points: [A, B], length: 300}
-  3: {points: [D, B], length: 100}
-driver: {link: 1, speed: 60 rpm}
-sketch: {at: 60 deg, B: [350, 86]}
-positions: {count: 12, detail: [0, 1]}
-"""
-    stems = [stem for stem, _ in sheets(solve(build(read_text(text, "x.yaml"))))]
+    stems = [stem for stem, _ in sheets(solve(build(read_text(PARALLELOGRAM, "x.yaml"))))]
     assert "velocity-01" in stems and "velocity-00" not in stems

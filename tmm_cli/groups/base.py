@@ -42,6 +42,11 @@ class Rate:
     v: Vector
     w: Real
 
+    @classmethod
+    def through(cls, v: Vector, w: Real, arm: Vector) -> Rate:
+        """Of a link that turns with w while its point `arm` from the origin has the velocity v."""
+        return cls(v - 1j * w * arm, w)
+
     def at(self, arm: Vector) -> Vector:
         """Velocity of the point of the link that lies `arm` (drawing's axes) from its origin, m/s."""
         velocity: Vector = self.v + 1j * self.w * arm
@@ -54,6 +59,11 @@ class Accel:
 
     a: Vector
     e: Real
+
+    @classmethod
+    def through(cls, a: Vector, e: Real, w: Real, arm: Vector) -> Accel:
+        """Of a link that turns with w and e while its point `arm` from the origin has the acceleration a."""
+        return cls(a - (1j * e - w * w) * arm, e)
 
     def at(self, arm: Vector, w: Real) -> Vector:
         """Acceleration of the point that lies `arm` from the origin when the link turns with w, m/s2."""
@@ -136,6 +146,18 @@ class Turn:
     known: str
     there: complex
     here: complex
+
+    def place(self, poses: Mapping[str, Pose]) -> Vector:
+        """Where the hinge is, m."""
+        return poses[self.known].at(self.there)
+
+    def velocity(self, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Vector:
+        """Velocity of the hinge, m/s."""
+        return rates[self.known].at(self.there * poses[self.known].z)
+
+    def acceleration(self, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]) -> Vector:
+        """Acceleration of the hinge, m/s2."""
+        return accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
 
 
 @dataclass(frozen=True)

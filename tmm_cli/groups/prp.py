@@ -47,8 +47,8 @@ class PRP(Dyad):
         ra, rb = rates[a.known], rates[b.known]
         vC = slide_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
         return (
-            Rate(vC - 1j * ra.w * (c.there * at.a.z), ra.w),
-            Rate(vC - 1j * rb.w * (c.here * at.b.z), rb.w),
+            Rate.through(vC, ra.w, c.there * at.a.z),
+            Rate.through(vC, rb.w, c.here * at.b.z),
         )
 
     def accelerations(
@@ -62,8 +62,8 @@ class PRP(Dyad):
         aC = slide_rate(by_a, u, by_b, v, at.det)
         (wa, ea), (wb, eb) = ((rates[k].w, accels[k].e) for k in (a.known, b.known))
         return (
-            Accel(aC - (1j * ea - wa * wa) * (c.there * at.a.z), ea),
-            Accel(aC - (1j * eb - wb * wb) * (c.here * at.b.z), eb),
+            Accel.through(aC, ea, wa, c.there * at.a.z),
+            Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:

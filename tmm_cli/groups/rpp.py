@@ -34,7 +34,7 @@ class RPP(Dyad):
         Q, v = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
         za = zb * unit(-run.turned)
-        A = poses[a.known].at(a.there)
+        A = a.place(poses)
         pose_a = Pose(A - a.here * za, za)
         u = za * unit(run.direction)
         # b's origin runs along both guides
@@ -51,8 +51,8 @@ class RPP(Dyad):
         a, b, _ = self._ends
         u, v = self._frame(at, poses)
         w = rates[b.known].w
-        vA = rates[a.known].at(a.there * poses[a.known].z)
-        rate_a = Rate(vA - 1j * w * (a.here * at.a.z), w)
+        vA = a.velocity(poses, rates)
+        rate_a = Rate.through(vA, w, a.here * at.a.z)
         by_a = rate_a.at(at.b.x - at.a.x)
         by_g = rates[b.known].at(at.b.x - poses[b.known].x)
         return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
@@ -63,8 +63,8 @@ class RPP(Dyad):
         a, b, _ = self._ends
         u, v = self._frame(at, poses)
         w, e = rates[b.known].w, accels[b.known].e
-        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
-        accel_a = Accel(aA - (1j * e - w * w) * (a.here * at.a.z), e)
+        aA = a.acceleration(poses, rates, accels)
+        accel_a = Accel.through(aA, e, w, a.here * at.a.z)
         rate_a, rate_b = (rates[link] for link in self.group.links)
         by_a = slide_acceleration(at.b.x, rate_b.v, (at.a.x, u, rate_a, accel_a))
         by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))

@@ -51,7 +51,7 @@ class RPR(Dyad):
 
     def place(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, run = self._ends
-        A, B = poses[a.known].at(a.there), poses[b.known].at(b.there)
+        A, B = a.place(poses), b.place(poses)
         base = B - A
         d, h = np.abs(base), self._offset()
         x = self.sign * np.sqrt(np.maximum((d - h) * (d + h), 0))
@@ -74,26 +74,24 @@ class RPR(Dyad):
     def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
         a, b, _ = self._ends
         u, _ = self._frame(at)
-        vA = rates[a.known].at(a.there * poses[a.known].z)
-        vB = rates[b.known].at(b.there * poses[b.known].z)
+        vA = a.velocity(poses, rates)
+        vB = b.velocity(poses, rates)
         w = cross(u, vB - vA) / at.det
-        return Rate(vA - 1j * w * (a.here * at.a.z), w), Rate(vB - 1j * w * (b.here * at.b.z), w)
+        return Rate.through(vA, w, a.here * at.a.z), Rate.through(vB, w, b.here * at.b.z)
 
     def accelerations(
         self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
     ) -> tuple[Accel, Accel]:
         a, b, _ = self._ends
         u, h = self._frame(at)
-        armA, armB = a.there * poses[a.known].z, b.there * poses[b.known].z
         w = rates[self.group.links[0]].w
-        sliding = dot(u, rates[b.known].at(armB) - rates[a.known].at(armA)) + w * h
-        aA = accels[a.known].at(armA, rates[a.known].w)
-        aB = accels[b.known].at(armB, rates[b.known].w)
+        sliding = dot(u, b.velocity(poses, rates) - a.velocity(poses, rates)) + w * h
+        aA, aB = a.acceleration(poses, rates, accels), b.acceleration(poses, rates, accels)
         # aB - aA = (i e - w^2) (x + i h) u + 2 i w sliding u + (sliding)' u
         e = (cross(u, aB - aA) + w * w * h - 2 * w * sliding) / at.det
         return (
-            Accel(aA - (1j * e - w * w) * (a.here * at.a.z), e),
-            Accel(aB - (1j * e - w * w) * (b.here * at.b.z), e),
+            Accel.through(aA, e, w, a.here * at.a.z),
+            Accel.through(aB, e, w, b.here * at.b.z),
         )
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:

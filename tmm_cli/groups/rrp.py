@@ -42,7 +42,7 @@ class RRP(Dyad):
 
     def place(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, c = self._ends
-        A = poses[a.known].at(a.there)
+        A = a.place(poses)
         Q, u = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
         arm = c.there - a.here
@@ -67,13 +67,13 @@ class RRP(Dyad):
     def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
         a, b, c = self._ends
         ra, u, onto = self._arms(at, poses)
-        vA = rates[a.known].at(a.there * poses[a.known].z)
+        vA = a.velocity(poses, rates)
         carried = rates[b.known].at(onto)
         w = carried - vA
         wa = cross(u, w) / at.det
         vC = carried - u * (dot(w, ra) / at.det)
         wb = rates[b.known].w
-        return Rate(vA - 1j * wa * (a.here * at.a.z), wa), Rate(vC - 1j * wb * (c.here * at.b.z), wb)
+        return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vC, wb, c.here * at.b.z)
 
     def accelerations(
         self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
@@ -83,15 +83,15 @@ class RRP(Dyad):
         wa, wb = rates[self.group.links[0]].w, rates[b.known].w
         vC = rates[self.group.links[1]].at(c.here * at.b.z)
         sliding = dot(u, vC - rates[b.known].at(onto))
-        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
+        aA = a.acceleration(poses, rates, accels)
         carried = accels[b.known].at(onto, wb) + 2j * wb * sliding * u
         w = carried - (aA - wa * wa * ra)
         ea = cross(u, w) / at.det
         aC = carried - u * (dot(w, ra) / at.det)
         eb = accels[b.known].e
         return (
-            Accel(aA - (1j * ea - wa * wa) * (a.here * at.a.z), ea),
-            Accel(aC - (1j * eb - wb * wb) * (c.here * at.b.z), eb),
+            Accel.through(aA, ea, wa, a.here * at.a.z),
+            Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:

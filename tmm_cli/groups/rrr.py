@@ -45,7 +45,7 @@ class RRR(Dyad):
 
     def place(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, c = self._ends
-        A, B = poses[a.known].at(a.there), poses[b.known].at(b.there)
+        A, B = a.place(poses), b.place(poses)
         arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
         la, lb = np.abs(arm_a), np.abs(arm_b)
         base = B - A
@@ -72,11 +72,11 @@ class RRR(Dyad):
     def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
         a, b, _ = self._ends
         ra, rb = self._arms(at)
-        vA = rates[a.known].at(a.there * poses[a.known].z)
-        vB = rates[b.known].at(b.there * poses[b.known].z)
+        vA = a.velocity(poses, rates)
+        vB = b.velocity(poses, rates)
         w = vB - vA
         wa, wb = dot(w, rb) / at.det, dot(w, ra) / at.det
-        return Rate(vA - 1j * wa * (a.here * at.a.z), wa), Rate(vB - 1j * wb * (b.here * at.b.z), wb)
+        return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vB, wb, b.here * at.b.z)
 
     def accelerations(
         self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
@@ -85,13 +85,13 @@ class RRR(Dyad):
         la, lb = self.group.links
         ra, rb = self._arms(at)
         wa, wb = rates[la].w, rates[lb].w
-        aA = accels[a.known].at(a.there * poses[a.known].z, rates[a.known].w)
-        aB = accels[b.known].at(b.there * poses[b.known].z, rates[b.known].w)
+        aA = a.acceleration(poses, rates, accels)
+        aB = b.acceleration(poses, rates, accels)
         w = (aB - wb * wb * rb) - (aA - wa * wa * ra)
         ea, eb = dot(w, rb) / at.det, dot(w, ra) / at.det
         return (
-            Accel(aA - (1j * ea - wa * wa) * (a.here * at.a.z), ea),
-            Accel(aB - (1j * eb - wb * wb) * (b.here * at.b.z), eb),
+            Accel.through(aA, ea, wa, a.here * at.a.z),
+            Accel.through(aB, eb, wb, b.here * at.b.z),
         )
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
