@@ -84,8 +84,9 @@ def _narrows(linkage: Linkage, dyads: tuple[Dyad, ...], scan: Motion, number: in
     """Places between those of a scan where a group comes nearest to losing its assembly: a gap may be narrower."""
     gap = np.where(np.isfinite(scan.placements[number].gap), scan.placements[number].gap, -np.inf)
     inner = gap[1:-1]
-    high = np.flatnonzero((inner >= gap[:-2]) & (inner > gap[2:]) & (inner < 0)) + 1
-    close = high[gap[high] > -0.05 * dyads[number].size]
+    # between two places it cannot rise by much more than it does from one to the next
+    rise = np.maximum(inner - gap[:-2], inner - gap[2:])
+    close = np.flatnonzero((inner >= gap[:-2]) & (inner > gap[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     step = scan.q[1] - scan.q[0]
 
     def slack(q: Real) -> Real:
