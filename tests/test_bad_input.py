@@ -191,10 +191,11 @@ def test_a_50_mb_file_is_refused_without_being_read(tmp_path):
 
 def test_nothing_is_written_and_there_is_no_traceback(tmp_path):
     file = tmp_path / "bad.yaml"
-    file.write_text(changed("DE: 210", "DE: 2"), encoding="utf-8")
+    text = changed("DE: 210", "DE: 2")
+    file.write_text(text, encoding="utf-8")
     done = tmm("run", file, "-o", tmp_path / "out")
     assert done.returncode == 2
-    assert done.stderr.startswith(f"error: {file}:24:14: sketch.at: ")
+    assert done.stderr.startswith(f"error: {file}:{place(text, '30 deg')}: sketch.at: ")
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
     told = tmm("forces", file, "--json")
@@ -212,8 +213,8 @@ def test_a_crank_that_cannot_turn_fully_gives_its_range_and_results_there(tmp_pa
     done = tmm("run", file, "-o", tmp_path)
     assert done.returncode == 0
     assert (
-        "crank 1 cannot turn fully: it can go from -63.14933 deg to 63.14933 deg; there II(2,3) comes to its dead "
-        "position; results are given for that range"
+        "driving link 1 cannot turn fully: it can go from -63.14933 deg to 63.14933 deg; there II(2,3) comes to its "
+        "dead position; results are given for that range"
     ) in done.stderr
     results = solve(load(str(file)))
     assert bool(results.motion.moving.all())  # all twelve positions lie inside the range

@@ -187,3 +187,24 @@ def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
     blocked = math.acos((100**2 + 300**2 - (200 + short) ** 2) / (2 * 100 * 300))
     assert not way.full
     assert way.start == pytest.approx(blocked, rel=1e-5)
+
+
+def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_wrong_way_of_a_load():
+    """At the end of a stroke both balancing moments may be nothing but rounding."""
+    from tmm_cli.results.warnings import warnings
+
+    for file in sorted((ROOT / "problems").glob("*.yaml")):
+        alone = solve(load(str(file)), positions=[0])
+        assert alone.lever_holds, file.stem
+        assert not any("drives" in w for w in warnings(alone)), file.stem
+
+
+def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
+    from tmm_cli.results.warnings import warnings
+
+    text = SHAPER.read_text(encoding="utf-8").replace(
+        "force: [1500, 0], when: working stroke",
+        "force: {angle: 0, against: stroke, table: [[0, 100], [150, 300]]}, when: working stroke",
+    )
+    said = list(warnings(solve(build(read_text(text, "x.yaml")))))
+    assert said == ["the table of load F does not reach as far as the stroke goes: its end value is held"]

@@ -85,7 +85,8 @@ def _narrows(linkage: Linkage, dyads: tuple[Dyad, ...], scan: Motion, number: in
     gap = np.where(np.isfinite(scan.placements[number].gap), scan.placements[number].gap, -np.inf)
     inner = gap[1:-1]
     # between two places it cannot rise by much more than it does from one to the next
-    rise = np.maximum(inner - gap[:-2], inner - gap[2:])
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(inner - gap[:-2], inner - gap[2:])
     close = np.flatnonzero((inner >= gap[:-2]) & (inner > gap[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     step = scan.q[1] - scan.q[0]
 

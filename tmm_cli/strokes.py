@@ -119,7 +119,8 @@ def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists:
     turns = _roots(slope_at, q[change], q[change + 1])
     # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
     turns = turns[np.abs(slope_at(turns)) < 1e-6 * np.nanmax(np.abs(slope))]
-    turns = np.sort(np.mod(turns, 2 * np.pi))
+    turns = np.mod(turns, 2 * np.pi)
+    turns = np.sort(np.where(2 * np.pi - turns < 1e-12, 0.0, turns))
     again = np.diff(turns, append=turns[:1] + 2 * np.pi) < 1e-9  # found at both ends of the scan
     turns = turns[~again][::sense]
     if turns.size < 2:

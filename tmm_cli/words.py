@@ -16,8 +16,8 @@ ENGLISH: dict[str, str] = {
     "role.rod": "rod",
     "role.rocking slider": "rocking slider",
     # warnings
-    "warning.range": "crank {link} cannot turn fully: it can go from {start} to {end}; there {groups} comes to its "
-    "dead position",
+    "warning.range": "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} comes to "
+    "its dead position",
     "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
@@ -28,6 +28,7 @@ ENGLISH: dict[str, str] = {
     "warning.drives": "load {load} acts along the motion in the whole working stroke: it drives and does not resist",
     "warning.always": "load {load} is one of the working stroke, but there are no whole strokes on this way of the "
     "driver: it acts always",
+    "warning.table": "the table of load {load} does not reach as far as the {against} goes: its end value is held",
     "warning.stopped": "driver {link} slows down and stops before it comes to position {number}: no velocities and "
     "forces from there on",
     "warning.near": "position {number} is near a dead position of {group}: sine of the transmission angle {margin}",
@@ -45,6 +46,7 @@ ENGLISH: dict[str, str] = {
     "explain.turned": "turned by",
     "explain.facts": "Driver, positions, limits",
     "explain.units": "bare numbers are in",
+    "explain.speed": "a bare speed is in",
     "explain.driver": "driver",
     "explain.driver_is": "link {link}, {speed} {sense}",
     "explain.ccw": "counterclockwise",

@@ -46,7 +46,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
         panels += _output(results, motion, link)
     if whole.reactions is not None and results.reactions is not None and whole.lever is not None:
         plan, given = whole.reactions.balance, results.reactions.balance
-        crank = plan.moment is not None
+        crank = plan.kind == "moment"
         name = "draw.moment" if crank else "draw.force"
         panels.append(
             (say(name), MOMENT if crank else FORCE,

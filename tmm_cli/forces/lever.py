@@ -15,6 +15,8 @@ from tmm_cli.forces.loads import Applied
 from tmm_cli.motion import Motion
 from tmm_cli.vectors import Real, Vector, dot
 
+ROUNDING = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
+
 
 @dataclass(frozen=True)
 class Item:
@@ -61,6 +63,10 @@ def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
     for item in items:
         total = total + item.moment
     balancing = -total
-    largest = np.nanmax(np.abs(np.where(motion.moving, plan, np.nan)), initial=0.0)
+    # where nothing has an arm (both ends of a stroke) there is only rounding to compare: not against itself
+    reach = max((d.size for d in motion.dyads), default=1.0) if motion.linkage.driver.kind == "turn" else 1.0
+    acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
+    plan_size = np.where(motion.moving, np.abs(plan), 0.0)
+    largest = float(np.max(np.where(motion.moving, np.maximum(plan_size, ROUNDING * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
     return Lever(tuple(items), balancing, difference)

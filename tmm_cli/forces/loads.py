@@ -55,14 +55,14 @@ def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
 def _given(load: Load, motion: Motion, strokes: Strokes | None) -> Applied:
     size = np.ones(np.shape(motion.q))
     if load.table is not None:
-        size = load.table(_argument(load.table.against, motion, strokes))
+        size = load.table(table_argument(load.table.against, motion, strokes))
     if load.working_stroke_only and strokes is not None and strokes.strokes:
         size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
     turn = motion.poses[load.link].z if load.follows else 1.0
     return Applied(load.name, "load", load.link, load.at, load.force * size * turn, load.moment * size, load.name)
 
 
-def _argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
+def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":

@@ -12,6 +12,7 @@ from tmm_cli.problem.expressions import evaluate
 from tmm_cli.problem.schema import OnLine
 from tmm_cli.problem.units import LENGTH, NUMBER, Dimension, Quantity, UnitSystem
 
+AXIS = 2.5e-16  # the cosine of the double next to a right angle is below this
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
 
@@ -107,5 +108,6 @@ def check_name(name: str, path: Path, what: str) -> None:
 
 
 def direction(angle: float) -> complex:
-    """e^(i angle)."""
-    return cmath.exp(1j * angle)
+    """e^(i angle), exact across and along the axes."""
+    turned = cmath.exp(1j * angle)
+    return complex(*(0.0 if abs(part) < AXIS else part for part in (turned.real, turned.imag)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Dimension
+from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.table import Column, Table
 from tmm_cli.structure.assur import Group, Pair
@@ -87,6 +87,7 @@ def _facts(problem: Problem) -> Table:
     units = problem.units
     rows = [
         (say("explain.units"), ", ".join(units.symbol(d) for d in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA))),
+        (say("explain.speed"), units.symbol(ANGULAR_SPEED if crank else SPEED)),
         (say("explain.driver"), say("explain.driver_is", link=driver.link, speed=speed, sense=sense)),
         (say("explain.gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s2"),
         (say("explain.positions"), asked),
@@ -125,7 +126,8 @@ def _loads(problem: Problem) -> Table:
         else:
             what = _show(problem, load.moment, MOMENT)
         when = say("explain.working" if load.working_stroke_only else "explain.always")
-        rows.append((load.name, load.link, _xy(problem, load.at), what, when))
+        place = _xy(problem, load.at) if load.force else ""
+        rows.append((load.name, load.link, place, what, when))
     return _words("loads", rows, ("forces.name", "word.link", "explain.at", "explain.size", "explain.when"))
 
 

@@ -16,6 +16,7 @@ from tmm_cli.words import say
 
 if TYPE_CHECKING:
     from tmm_cli.forces.loads import Applied
+    from tmm_cli.linkage import Load
 
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 NEAR = 0.05  # a margin (sine of the transmission angle) below which a position is said to be near a dead one
@@ -65,6 +66,9 @@ def warnings(results: Results) -> Iterable[str]:
     for load in results.loads:
         if load.kind == "load" and _drives(results, load):
             yield say("warning.drives", load=load.name)
+    for tabled in results.linkage.loads:
+        if tabled.table is not None and _short_table(results, tabled):
+            yield say("warning.table", load=tabled.name, against=tabled.table.against)
     if results.strokes is None or not results.strokes.strokes:
         for asked in results.linkage.loads:
             if asked.working_stroke_only:
@@ -85,5 +89,24 @@ def _drives(results: Results, load: Applied) -> bool:
     if not given.working_stroke_only or motion is None:
         return False
     power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
-    acting = motion.moving & (np.abs(power) > 1e-9 * np.max(np.abs(power), initial=0.0, where=motion.moving))
+    reach = max((d.size for d in results.dyads), default=1.0) if results.linkage.driver.kind == "turn" else 1.0
+    # at the ends of a stroke the speed is only rounding, and its sign says nothing
+    most = np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
+    acting = motion.moving & (np.abs(power) > 1e-6 * most)
     return bool(np.any(acting)) and bool(np.all(power[acting] > 0))
+
+
+def _short_table(results: Results, load: Load) -> bool:
+    """Whether a load acts beyond the first or last argument of its table."""
+    from tmm_cli.forces.loads import table_argument
+
+    motion = results.motion
+    if load.table is None or motion is None or not results.loads:
+        return False
+    acting = motion.placed
+    if load.working_stroke_only and results.strokes is not None and results.strokes.strokes:
+        acting = acting & results.strokes.share(motion.q, results.linkage.driver.sense)
+    argument = table_argument(load.table.against, motion, results.strokes)[acting]
+    first, last = load.table.arguments[0], load.table.arguments[-1]
+    slack = 1e-6 * (last - first)
+    return bool(np.any((argument < first - slack) | (argument > last + slack)))

@@ -54,11 +54,12 @@ def tables(results: Results) -> Iterable[Table]:
             columns.append(Column(say(f"cycle.{name}", link=link), values, dim))
     if results.reactions is not None and results.lever is not None:
         balance = results.reactions.balance
-        crank = balance.moment is not None
+        crank = balance.kind == "moment"
         plan = balance.moment if crank else balance.force
+        by_lever = results.lever.balancing if crank else results.lever.balancing / balance.arm
         size = MOMENT if crank else FORCE
         columns.append(Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size))
-        columns.append(Column(say("cycle.lever" if crank else "cycle.lever_force"), results.lever.balancing, size))
+        columns.append(Column(say("cycle.lever" if crank else "cycle.lever_force"), by_lever, size))
         columns.append(Column(say("cycle.difference"), results.lever.difference * 100, NUMBER, digits=2))
     if not bool(np.all(motion.moving)):
         columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))

@@ -75,8 +75,9 @@ def _point(p: Point) -> Values:
 
 def _link(motion: Motion, name: str) -> Values:
     t = motion.link(name)
+    angle = t.angle - 2 * np.pi * np.ceil((t.angle - np.pi) / (2 * np.pi))  # -180 to 180 deg, the driver's too
     return [
-        ("kinematics.angle", t.angle, ANGLE),
+        ("kinematics.angle", angle, ANGLE),
         ("kinematics.omega", t.omega, ANGULAR_SPEED),
         ("kinematics.epsilon", t.epsilon, ANGULAR_ACCELERATION),
         ("kinematics.first", t.first, NUMBER),
