@@ -144,6 +144,14 @@ class Linkage:
         """A named point in the axes of its link, m."""
         return self.links[link].points[point]
 
+    def slides_on_frame(self, link: str) -> bool:
+        """Whether the link has a guide on the frame, or is one for it."""
+        return any({s.carrier, s.runner} == {FRAME, link} for s in self.slides)
+
+    def hinged_to_frame(self, link: str) -> bool:
+        """Whether the link has a hinge on the frame."""
+        return any(FRAME in h.links and link in h.links for h in self.hinges)
+
     def owner(self, point: str) -> str:
         """The first link that carries the point, moving links before the frame."""
         for name in (*self.moving, FRAME):

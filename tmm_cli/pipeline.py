@@ -18,15 +18,15 @@ from tmm_cli.motion import Law, Motion, move
 from tmm_cli.problem.record import Problem
 from tmm_cli.quality import DeadPosition, Range, find_dead, find_range
 from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
-from tmm_cli.strokes import Strokes, find_strokes, hinged_to_frame, output_link, places, resisted
 from tmm_cli.structure.assur import Structure, analyse
 from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
-if TYPE_CHECKING:  # what only forces need is imported when they are asked for
+if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.loads import Applied
     from tmm_cli.forces.plan import Reactions
+    from tmm_cli.strokes import Strokes
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -55,6 +55,8 @@ class Results:
     @property
     def asked(self) -> Real:
         """The driver's places of all positions of the file, whether they were computed or not (rad or m)."""
+        from tmm_cli.strokes import places
+
         assert self.way is not None
         return places(self.problem.request, self.way, self.strokes, self.linkage.driver.sense)
 
@@ -91,6 +93,8 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
         raise WrongMobility(structure)
     if stage == "structure":
         return _structure_only(problem, structure)
+    from tmm_cli.strokes import find_strokes, output_link, places, resisted
+
     dyads = assemble(linkage, structure)
     way = find_range(linkage, dyads)
     strokes = find_strokes(linkage, dyads, way, resisted(linkage, output_link(linkage, structure.groups)))
@@ -139,7 +143,7 @@ def at_places(results: Results, q: Real) -> Results:
 def turning_links(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> dict[str, bool]:
     """Which links turn through 360 degrees while the driver goes its way."""
     turned = {linkage.driver.link: way.full and linkage.driver.kind == "turn"}
-    hung = [d for d in dyads if any(hinged_to_frame(linkage, link) for link in d.group.links)]
+    hung = [d for d in dyads if any(linkage.hinged_to_frame(link) for link in d.group.links)]
     if hung and way.full:
         motion = move(linkage, dyads, np.linspace(way.start, way.end, 721), Law(way.start, 1.0, 0.0, 1))
         for dyad in hung:

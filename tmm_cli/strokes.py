@@ -68,20 +68,10 @@ def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
     if linkage.output is not None:
         return linkage.output.link
     for group in reversed(groups):
-        held = [link for link in group.links if slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)]
+        held = [link for link in group.links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
         if held:
-            return next((link for link in held if slides_on_frame(linkage, link)), held[0])
+            return next((link for link in held if linkage.slides_on_frame(link)), held[0])
     return None
-
-
-def slides_on_frame(linkage: Linkage, link: str) -> bool:
-    """Whether the link has a guide on the frame."""
-    return any({s.carrier, s.runner} == {FRAME, link} for s in linkage.slides)
-
-
-def hinged_to_frame(linkage: Linkage, link: str) -> bool:
-    """Whether the link has a hinge on the frame."""
-    return any(FRAME in h.links and link in h.links for h in linkage.hinges)
 
 
 def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
@@ -101,9 +91,9 @@ def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists:
     stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
     """
     link = output_link(linkage, tuple(d.group for d in dyads))
-    if link is None or not (slides_on_frame(linkage, link) or hinged_to_frame(linkage, link)):
+    if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None
-    kind = "slide" if slides_on_frame(linkage, link) else "swing"
+    kind = "slide" if linkage.slides_on_frame(link) else "swing"
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
     q = np.linspace(way.start, way.end, SCAN + 1)

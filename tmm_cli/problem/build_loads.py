@@ -10,7 +10,6 @@ from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense, check_name, direction
 from tmm_cli.problem.units import ACCELERATION, ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Dimension
-from tmm_cli.strokes import output_link, slides_on_frame
 from tmm_cli.structure.assur import analyse
 
 STANDARD_GRAVITY = 9.81
@@ -135,8 +134,10 @@ def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, sense: Se
         )
     argument = ANGLE
     if given.against == "stroke":
+        from tmm_cli.strokes import output_link  # few files tabulate a load against the stroke
+
         link = output_link(linkage, analyse(linkage).groups)
-        argument = LENGTH if link is not None and slides_on_frame(linkage, link) else ANGLE
+        argument = LENGTH if link is not None and linkage.slides_on_frame(link) else ANGLE
     rows = given.table or []
     table_path: Path = (*path, "table")
     if len(rows) < 2:

@@ -16,9 +16,9 @@ def _role(linkage: Linkage, name: str, turns: bool) -> str:
     slides = [s for s in linkage.slides if name in (s.carrier, s.runner)]
     carries = any(s.carrier == name and s.runner != FRAME for s in slides)
     runs = any(s.runner == name and s.carrier != FRAME for s in slides)
-    if any(FRAME in (s.carrier, s.runner) for s in slides):
+    if linkage.slides_on_frame(name):
         return "slider"
-    if any(FRAME in h.links and name in h.links for h in linkage.hinges):
+    if linkage.hinged_to_frame(name):
         if carries:
             return "slotted link"
         if runs:
@@ -28,6 +28,5 @@ def _role(linkage: Linkage, name: str, turns: bool) -> str:
         return "stone"
     if carries:
         runner = next(s.runner for s in slides if s.carrier == name)
-        pivoted = any(FRAME in h.links and runner in h.links for h in linkage.hinges)
-        return "rod" if pivoted else "slotted link"
+        return "rod" if linkage.hinged_to_frame(runner) else "slotted link"
     return "coupler"
