@@ -1,4 +1,4 @@
-"""Random linkages of all dyads against the textbook multibody way in 60 digits."""
+"""Random linkages of all kernels against the textbook multibody way in 60 digits."""
 
 from __future__ import annotations
 

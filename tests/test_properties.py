@@ -1,4 +1,4 @@
-"""Laws that every linkage obeys, on random linkages of all five dyads joined in every way."""
+"""Laws that every linkage obeys, on random linkages of all five kernels joined in every way."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ GENERIC = 0.02  # margins below this are near a dead position, where nothing kee
 def solved(it, offsets=(0.0, 0.01, -0.01), law=None):
     """Motion and forces of a linkage about its sketch."""
     structure = analyse(it)
-    dyads = assemble(it, structure)
+    kernels = assemble(it, structure)
     q = it.sketch.at + np.array(offsets)
     d = it.driver
-    motion = move(it, dyads, q, law or Law(q[0], d.rate, d.acceleration, d.sense))
+    motion = move(it, kernels, q, law or Law(q[0], d.rate, d.acceleration, d.sense))
     loads = applied(motion, None)
     reactions = react(motion, structure, loads)
     return structure, motion, loads, reactions
@@ -100,9 +100,9 @@ def test_velocities_and_accelerations_are_derivatives_of_places(seed, kinds):
     step = 1e-4
     structure = analyse(it)
     generic(it)
-    dyads = assemble(it, structure)
+    kernels = assemble(it, structure)
     q = it.sketch.at + step * np.arange(-2, 3)
-    motion = move(it, dyads, q, Law(it.sketch.at, 1.0, 0.0, 1))
+    motion = move(it, kernels, q, Law(it.sketch.at, 1.0, 0.0, 1))
     assume(min(float(np.min(p.margin)) for p in motion.placements) > 0.2)
     for point in it.sketch.points:
         x = motion.named(point)

@@ -1,9 +1,9 @@
 """Published problems with printed answers.
 
 Joints, samples and values are those of the public test data of PMKS (slider_crank_tracer, teaching_four_bar,
-stephenson_iii_example_2: kinematics and Newton-Euler forces with and without gravity), of
-gabemorris12/mechanism, tests/mechanism/non-grashof_test.py (an 8-link of three dyads, checked homework), of the Jansen
-leg (PMKS-Web, library-fixtures), and of coleas33/linkage_sim (fourbar_statics).
+stephenson_iii_example_2: kinematics and Newton-Euler forces with and without gravity), of gabemorris12/mechanism,
+tests/mechanism/non-grashof_test.py (an 8-link of three kernels, checked homework), of the Jansen leg (PMKS-Web,
+library-fixtures), and of coleas33/linkage_sim (fourbar_statics).
 """
 
 from __future__ import annotations

@@ -159,13 +159,13 @@ def test_a_balancing_force_at_the_crank_s_end_has_the_balancing_moment_and_chang
     assert by_force.balance.force * 0.110 == pytest.approx(by_moment.balance.moment, rel=1e-14)
     for one, other in zip(by_moment.all[1:], by_force.all[1:], strict=True):
         assert np.array_equal(one.force, other.force)
-    gap = by_moment.frame.force - by_force.frame.force
+    gap = by_moment.frames[0].force - by_force.frames[0].force
     assert gap == pytest.approx(by_force.balance.vector, rel=1e-9, abs=1e-9)
 
 
 def test_a_driven_slider_is_balanced_along_its_guide():
     results = bank("cylinder", "forces")
-    balance, frame = results.reactions.balance, results.reactions.frame
+    balance, frame = results.reactions.balance, results.reactions.frames[0]
     assert balance.moment is None
     assert np.max(np.abs(balance.vector.imag)) == 0
     assert np.max(np.abs(frame.force.real)) < 1e-12 * np.max(np.abs(frame.force))

@@ -1,4 +1,4 @@
-"""Stage: which of its assemblies each group has, from the sketch. The sign found holds for every position."""
+"""Stage: which of its assemblies each group has, from the sketch. It is kept in every position."""
 
 from __future__ import annotations
 
@@ -7,38 +7,82 @@ from dataclasses import replace
 
 import numpy as np
 
+from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Placement, Pose, Turn
+from tmm_cli.groups.base import Dyad, Kernel, Turn
+from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.motion import driven_state, frame_state
-from tmm_cli.refused import Misfit, NoAssembly, NotSolvable, Undecided
+from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move
+from tmm_cli.pairs.base import Drives
+from tmm_cli.refused import Misfit, NoAssembly, Undecided
 from tmm_cli.structure.assur import Group, Structure
 
 TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
 FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
+FOLLOWED = 720  # places a turn at which angles are followed through
+
+Hints = dict[str, complex | float]
 
 
-def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Dyad, ...]:
-    """The groups with their signs, in solving order.
+def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Kernel, ...]:
+    """The groups with their assemblies, in solving order.
 
-    Raises NotSolvable, NoAssembly, Undecided, Misfit.
+    Raises NoAssembly, Undecided, Misfit.
     """
     q = np.array([linkage.sketch.at])
-    poses = {FRAME: frame_state(q)[0], linkage.driver.link: driven_state(linkage, linkage.driver, q)[0]}
-    chosen = []
+    drives = drives_at(linkage, q)
+    poses = {FRAME: frame_state(q)[0]}
+    for driver in linkage.cranks:
+        poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
+    chosen: list[Kernel] = []
     for group in structure.groups if groups is None else groups:
-        if group.type not in KERNELS:
-            raise NotSolvable(group)
-        dyad, at = _choose(KERNELS[group.type].of(group, linkage), linkage, poses)
-        poses[group.links[0]], poses[group.links[1]] = at.a, at.b
-        chosen.append(dyad)
+        kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen))
+        poses.update(zip(kernel.group.links, at.poses, strict=True))
+        chosen.append(kernel)
     _check_fit(linkage, poses)
     return tuple(chosen)
 
 
+def _assembled(
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
+) -> tuple[Kernel, Placement]:
+    q = np.array([linkage.sketch.at])
+    if group.type in KERNELS and not group.drivers:
+        dyad, at = _choose(KERNELS[group.type].of(group, linkage), linkage, poses)
+        geared = {name for mesh in linkage.meshes for name in (mesh.i, mesh.j, mesh.carrier)} & set(group.links)
+        if geared:
+            dyad = replace(dyad, winding=_winding(linkage, (*before, dyad), tuple(geared)))
+            at = dyad.place(poses, q, drives)
+        return dyad, at
+    from tmm_cli.assembly_newton import assembled  # class II alone needs none of it
+
+    return assembled(group, linkage, poses, drives, before)
+
+
+def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
+    """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
+    turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
+    half = turns * np.pi if linkage.driver.kind == "turn" else 4 * max(k.size for k in kernels)
+    q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
+    motion = move(linkage, kernels, q, Law(at, 1.0, 0.0, 1))
+    middle = len(q) // 2
+    lost = np.flatnonzero(~motion.placed)
+    first = int(lost[lost < middle].max(initial=-1)) + 1
+    last = int(lost[lost > middle].min(initial=len(q)))
+    angles = {}
+    for link in links:
+        z = motion.poses[link].z[first:last]
+        angle = np.unwrap(np.angle(z))
+        here = middle - first
+        angles[link] = angle + (np.angle(z[here]) - angle[here])
+    closed = first == 0 and last == len(q) and linkage.driver.kind == "turn"
+    return Winding(q[first:last], angles, closed)
+
+
 def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad, Placement]:
     with np.errstate(invalid="ignore", divide="ignore"):
-        ways = [(replace(dyad, sign=s), replace(dyad, sign=s).place(poses)) for s in (1, -1)[: dyad.assemblies]]
+        ways = [(replace(dyad, sign=s), replace(dyad, sign=s).closed(poses)) for s in (1, -1)[: dyad.assemblies]]
     first = ways[0][1]
     if not first.assembled[0] or not np.isfinite(first.a.x[0] + first.b.x[0]):
         raise NoAssembly(dyad.group, float(first.gap[0]))
@@ -46,16 +90,27 @@ def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad,
         return ways[0]
     if first.dead[0]:
         raise Undecided(dyad.group, {})
-    hints = [_hints(dyad, linkage, at) for _, at in ways]
-    tells = [name for name in hints[0] if abs(hints[0][name] - hints[1][name]) > _scale(name, linkage, dyad)]
-    shift = _shift(dyad, linkage, poses)
+    return ways[nearest_to_sketch(dyad, linkage, [at.poses for _, at in ways], _shift(dyad, linkage, poses))]
+
+
+def nearest_to_sketch(
+    kernel: Kernel, linkage: Linkage, ways: list[tuple[Pose, ...]], shift: complex = 0j
+) -> int:  # fmt: skip
+    """Which of several assemblies the sketch shows. Raises Undecided when it does not tell."""
+    if len(ways) == 1:
+        return 0
+    hints = [_hints(kernel, linkage, poses) for poses in ways]
+    tells = [
+        name for name in hints[0]
+        if any(abs(hint[name] - hints[0][name]) > _scale(name, linkage, kernel) for hint in hints[1:])
+    ]  # fmt: skip
     sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
     given = {name: sketched[name] for name in tells if name in sketched}
-    errors = [_distance(given, hint, dyad) for hint in hints]
-    best = int(np.argmin(errors))
-    if not given or errors[best] > TELLS * errors[1 - best]:
-        raise Undecided(dyad.group, {name: (hints[0][name], hints[1][name]) for name in tells})
-    return ways[best]
+    errors = [sketch_distance(given, hint, kernel) for hint in hints]
+    best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
+    if not given or errors[best] > TELLS * errors[second]:
+        raise Undecided(kernel.group, {name: (hints[best][name], hints[second][name]) for name in tells})
+    return best
 
 
 def _shift(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> complex:
@@ -99,26 +154,31 @@ def _check_fit(linkage: Linkage, poses: dict[str, Pose]) -> None:
                 raise Misfit(link, angle, turned)
 
 
-def _hints(dyad: Dyad, linkage: Linkage, at: Placement) -> dict[str, complex | float]:
-    """Everything about the group's two links that a sketch may name: points and angles."""
-    hints: dict[str, complex | float] = {}
-    for name, pose in zip(dyad.group.links, (at.a, at.b), strict=True):
+def _hints(kernel: Kernel, linkage: Linkage, poses: tuple[Pose, ...]) -> Hints:
+    """Everything about the group's links that a sketch may name: points and angles."""
+    hints: Hints = {}
+    for name, pose in zip(kernel.group.links, poses, strict=True):
         hints |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
         hints[name] = float(np.angle(pose.z)[0])
     return hints
 
 
-def _scale(name: str, linkage: Linkage, dyad: Dyad) -> float:
+def _scale(name: str, linkage: Linkage, kernel: Kernel) -> float:
     """Differences below this are rounding."""
-    return 1e-9 * (1.0 if name in linkage.links else dyad.size)
+    return 1e-9 * (1.0 if name in linkage.links else kernel.size)
 
 
-def _distance(sketched: dict[str, complex | float], hint: dict[str, complex | float], dyad: Dyad) -> float:
+def sketch_distance(sketched: Mapping[str, complex | float], hint: Hints, kernel: Kernel) -> float:
     """The worst deviation of the sketch from an assembly: points against the group's size, angles against a radian."""
     worst = 0.0
     for name, value in sketched.items():
         if isinstance(value, complex):
-            worst = max(worst, abs(value - hint[name]) / dyad.size)
+            worst = max(worst, abs(value - hint[name]) / kernel.size)
         else:
             worst = max(worst, abs(np.angle(np.exp(1j * (value - float(hint[name].real))))))
     return worst
+
+
+def source(linkage: Linkage, kernels: tuple[Kernel, ...], q: np.ndarray) -> Motion:
+    """Motion of the links placed so far by the driver's place alone."""
+    return move(linkage, kernels, q, Law(linkage.sketch.at, 1.0, 0.0, 1))

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.camlaw import CamLaw
 
 FRAME = "0"
 
@@ -58,10 +61,12 @@ class Slide:
 
 @dataclass(frozen=True)
 class Driver:
-    """The input: a link that turns about the frame, or one that slides on it, by q = q0 + rate t + acceleration t^2/2.
+    """An input: a link that turns about its base, or slides on it, by q = q0 + rate t + acceleration t^2/2.
 
-    q is the angle of the link's x axis (rad) or the run along the guide from its `through` point (m). `sense` is +1
-    or -1, and `rate` >= 0 is counted in that sense; `acceleration` too (negative: it slows down).
+    The base is the frame (a crank, a cylinder on the frame) or a moving link (a cylinder that swings, a drive in the
+    hinge of an arm). q is the angle of the link's x axis from the base's (rad), or the run along the guide `joint` from
+    its `through` point (m). `sense` is +1 or -1, and `rate` >= 0 is counted in that sense; `acceleration` too
+    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first.
     """
 
     link: str
@@ -72,6 +77,60 @@ class Driver:
     sense: int = 1
     balance: Literal["moment", "force"] = "moment"
     end: str = ""
+    base: str = FRAME
+    at: float = 0.0
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A higher pair of two links on a common carrier: teeth in mesh, or a cam and its follower given by their law.
+
+    a is the angle of link i from the carrier's axes (rad); b that of link j, or its run in the sliding pair `slide` on
+    the carrier (m). Then b = offset + ratio a, or for a cam b = offset + law(a). Angles are followed through full turns
+    from the sketch on, where those of links that are not driven lie within -pi..pi. pressure: angle between the force
+    of the teeth and the common tangent of the pitch circles (rad).
+    """
+
+    name: str
+    kind: Literal["gear", "rack", "cam"]
+    i: str
+    j: str
+    carrier: str
+    ratio: float = 0.0
+    offset: float = 0.0
+    slide: str = ""
+    law: CamLaw | None = None
+    pressure: float = 0.0
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring between two links, or a cylinder that only pushes.
+
+    Linear: between two points, it pulls with force = preload + rate (length - free) + damping (speed of lengthening),
+    N. Torsion (`turns`): from link i on link j, moment = -(preload + rate (angle - free) + damping omega), N m, where
+    the angle is that of j from i, within half a turn of `free`.
+    """
+
+    name: str
+    i: str
+    j: str
+    at_i: complex = 0j
+    at_j: complex = 0j
+    turns: bool = False
+    rate: float = 0.0
+    free: float = 0.0
+    preload: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coulomb friction in one pair: its coefficient, and for a hinge the radius of its journal (m)."""
+
+    pair: str
+    coefficient: float
+    radius: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -134,6 +193,29 @@ class Linkage:
     loads: tuple[Load, ...] = ()
     gravity: complex = -9.81j
     output: Output | None = None
+    others: tuple[Driver, ...] = ()
+    meshes: tuple[Mesh, ...] = ()
+    springs: tuple[Spring, ...] = ()
+    friction: tuple[Friction, ...] = ()
+    outputs: tuple[Output, ...] = ()
+
+    @property
+    def drivers(self) -> tuple[Driver, ...]:
+        """All drivers; the first one counts the positions."""
+        return (self.driver, *self.others)
+
+    @property
+    def cranks(self) -> tuple[Driver, ...]:
+        """Drivers that stand on the frame: their links need no group."""
+        return tuple(d for d in self.drivers if d.base == FRAME)
+
+    def slide(self, name: str) -> Slide:
+        """A sliding pair by its name."""
+        return next(s for s in self.slides if s.name == name)
+
+    def shared(self, one: str, other: str) -> str | None:
+        """The point in which two links are hinged to one another."""
+        return next((h.point for h in self.hinges if {one, other} <= set(h.links)), None)
 
     @property
     def moving(self) -> tuple[str, ...]:

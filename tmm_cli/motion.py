@@ -6,12 +6,14 @@ Everything is found per unit of the driver's motion first (transfer functions) a
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.groups.base import Accel, Dyad, Placement, Pose, Rate
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.state import Accel, Placement, Pose, Rate
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide
+from tmm_cli.pairs.base import Drive
 from tmm_cli.vectors import Real, Vector, dot, unit
 
 
@@ -77,13 +79,15 @@ class Law:
 
 @dataclass(frozen=True)
 class Motion:
-    """Kinematics at the places q of the driver. Arrays are (positions,); nan where `placed` or `moving` is False.
+    """Kinematics at the places q of the first driver. Arrays are (positions,); nan where `placed` or `moving` is False.
+
+    first and second are derivatives by q; drives say where all drivers are.
 
     margins: for each group its distance from a dead position, 1 at best. gaps: what it lacks to assemble (> 0), m.
     """
 
     linkage: Linkage
-    dyads: tuple[Dyad, ...]
+    kernels: tuple[Kernel, ...]
     q: Real
     time: Real
     rate: Real
@@ -96,6 +100,7 @@ class Motion:
     moving: Real
     dead: Mapping[str, Real] = field(default_factory=dict)
     missing: Mapping[str, Real] = field(default_factory=dict)
+    drives: Mapping[str, Drive] = field(default_factory=dict)
 
     def point(self, link: str, local: complex) -> Point:
         """Motion of a point given in the axes of a link (m)."""
@@ -116,9 +121,8 @@ class Motion:
     def link(self, name: str) -> Turning:
         """Turning of a link."""
         w1, e1 = self.first[name].w, self.second[name].e
-        driver = self.linkage.driver
-        own = self.q if name == driver.link and driver.kind == "turn" else None
-        angle = np.angle(self.poses[name].z) if own is None else own
+        own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
+        angle = self.drives[name].value if own else np.angle(self.poses[name].z)
         return Turning(angle, w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
 
     def slide(self, slide: Slide) -> Sliding:
@@ -141,67 +145,95 @@ class Motion:
 def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
     """The frame's pose and its rest, one value a position."""
     zero, one = np.zeros(np.shape(q), dtype=complex), np.ones(np.shape(q), dtype=complex)
-    return Pose(zero, one), Rate(zero, zero.real), Accel(zero, zero.real)
+    return Pose(zero, one, zero.real), Rate(zero, zero.real), Accel(zero, zero.real)
 
 
-def driven_state(linkage: Linkage, driver: Driver, q: Real) -> tuple[Pose, Rate, Accel]:
-    """Pose of the driving link at q, and its transfer functions."""
+def driven_state(linkage: Linkage, driver: Driver, drive: Drive) -> tuple[Pose, Rate, Accel]:
+    """Pose of a link that is driven from the frame, and its transfer functions."""
+    q = drive.value
     zero = np.zeros(np.shape(q))
     if driver.kind == "turn":
         pivot, here = linkage.local(FRAME, driver.joint), linkage.local(driver.link, driver.joint)
         z = unit(q)
         arm = -here * z
-        return Pose(pivot + arm, z), Rate(1j * arm, zero + 1), Accel(-arm, zero)
-    slide = next(s for s in linkage.slides if s.name == driver.joint)
-    if slide.runner == driver.link:
-        z = unit(np.full(np.shape(q), slide.turned))
-        u = unit(slide.direction)
-        origin = slide.through + q * u - slide.at * z
+        pose, v, bend, w = Pose(pivot + arm, z, q), 1j * arm, -arm, zero + 1
     else:
-        z = unit(np.full(np.shape(q), -slide.turned))
-        u = -unit(slide.direction) * z
-        origin = slide.at + q * u - slide.through * z
-    return Pose(origin, z), Rate(zero + u, zero), Accel(zero + 0j, zero)
+        slide = linkage.slide(driver.joint)
+        if slide.runner == driver.link:
+            z = unit(np.full(np.shape(q), slide.turned))
+            u = unit(slide.direction)
+            origin = slide.through + q * u - slide.at * z
+        else:
+            z = unit(np.full(np.shape(q), -slide.turned))
+            u = -unit(slide.direction) * z
+            origin = slide.at + q * u - slide.through * z
+        pose, v, bend, w = Pose(origin, z), zero + u, zero + 0j, zero
+    first, second = drive.first, drive.second
+    return pose, Rate(v * first, w * first), Accel(bend * first**2 + v * second, w * second)
 
 
-def move(linkage: Linkage, dyads: Iterable[Dyad], q: Real, law: Law) -> Motion:
-    """Kinematics at the driver's places q (rad or m), each found alone.
+def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
+    """Where each driver is when the first one is at q, by the driven link.
+
+    Several drivers move by their own speeds and pass together through the places of the sketch; their speeds are those
+    of that moment.
+    """
+    zero = np.zeros(np.shape(q))
+    found = {linkage.driver.link: Drive(q, zero + 1, zero)}
+    if linkage.others:
+        lead = linkage.driver
+        law = Law(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+        time, speed = law.time(q), law.speed(q)
+        for driver in linkage.others:
+            value = driver.at + driver.sense * time * (driver.rate + driver.acceleration * time / 2)
+            first = driver.sense * (driver.rate + driver.acceleration * time) / speed
+            second = (driver.sense * driver.acceleration - first * lead.sense * lead.acceleration) / speed**2
+            found[driver.link] = Drive(value, first, second)
+    return found
+
+
+def move(linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law) -> Motion:
+    """Kinematics at the first driver's places q (rad or m), each found alone.
 
     A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it.
     """
-    dyads = tuple(dyads)
+    kernels = tuple(kernels)
     q = np.atleast_1d(np.asarray(q))
-    driver = linkage.driver
     poses, first, second = {}, {}, {}
     poses[FRAME], first[FRAME], second[FRAME] = frame_state(q)
-    poses[driver.link], first[driver.link], second[driver.link] = driven_state(linkage, driver, q)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        drives = drives_at(linkage, q)
+        for driver in linkage.cranks:
+            link = driver.link
+            poses[link], first[link], second[link] = driven_state(linkage, driver, drives[link])
     placed = np.ones(np.shape(q), dtype=bool)
     moving = placed.copy()
     placements, dead, missing = [], {}, {}
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        for dyad in dyads:
-            at = dyad.place(poses)
-            sound = at.assembled & np.isfinite(at.a.x + at.b.x + at.a.z + at.b.z)
-            missing[dyad.group.title] = placed & ~sound
-            dead[dyad.group.title] = placed & sound & at.dead
+        for kernel in kernels:
+            at = kernel.place(poses, q, drives)
+            sound = at.assembled & np.isfinite(sum(pose.x + pose.z for pose in at.poses))
+            missing[kernel.group.title] = placed & ~sound
+            dead[kernel.group.title] = placed & sound & at.dead
             placed = placed & sound
             moving = moving & placed & ~at.dead
-            lost, det = ~placed, np.where(at.dead, np.nan, at.det)
-            at = Placement(_without(at.a, lost), _without(at.b, lost), det, at.margin, at.gap, at.slack)
-            a, b = dyad.group.links
-            poses[a], poses[b] = at.a, at.b
-            first[a], first[b] = dyad.rates(at, poses, first)
-            second[a], second[b] = dyad.accelerations(at, poses, first, second)
+            det = np.where(at.dead, np.nan, at.det)
+            at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
+            links = kernel.group.links
+            poses.update(zip(links, at.poses, strict=True))
+            first.update(zip(links, kernel.rates(at, poses, first, drives), strict=True))
+            second.update(zip(links, kernel.accelerations(at, poses, first, second, drives), strict=True))
             placements.append(at)
     rate = law.speed(q)
     moving = moving & np.isfinite(rate)
     acceleration = np.full(np.shape(q), float(law.sense * law.acceleration))
     return Motion(
-        linkage, dyads, q, law.time(q), rate, acceleration, poses, first, second,
-        tuple(placements), placed, moving, dead, missing,
+        linkage, kernels, q, law.time(q), rate, acceleration, poses, first, second,
+        tuple(placements), placed, moving, dead, missing, drives,
     )  # fmt: skip
 
 
 def _without(pose: Pose, lost: Real) -> Pose:
     """A pose that is nothing where it is lost."""
-    return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z))
+    turn = None if pose.turn is None else np.where(lost, np.nan, pose.turn)
+    return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), turn)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from tmm_cli.assembly import assemble
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.problem.record import Problem
@@ -38,7 +38,7 @@ class Results:
     problem: Problem
     structure: Structure
     roles: dict[str, str]
-    dyads: tuple[Dyad, ...]
+    kernels: tuple[Kernel, ...]
     way: Range | None = None
     dead: tuple[DeadPosition, ...] = ()
     strokes: Strokes | None = None
@@ -89,26 +89,26 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     """
     linkage = problem.linkage
     structure = analyse(linkage)
-    if structure.freedom != 1 or structure.mobility != 1 or structure.idle or structure.loose:
+    if not structure.sound:
         raise WrongMobility(structure)
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.strokes import find_strokes, output_link, places, resisted
 
-    dyads = assemble(linkage, structure)
-    way = find_range(linkage, dyads)
-    strokes = find_strokes(linkage, dyads, way, resisted(linkage, output_link(linkage, structure.groups)))
+    kernels = assemble(linkage, structure)
+    way = find_range(linkage, kernels)
+    strokes = find_strokes(linkage, kernels, way, resisted(linkage, output_link(linkage, structure.groups)))
     _need_strokes(problem, strokes, way)
     q = places(problem.request, way, strokes, linkage.driver.sense)
     numbers = tuple(range(len(q))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(q):
             raise NoSuchPosition(number, len(q))
-    law = Law(float(q[0]), linkage.driver.rate, linkage.driver.acceleration, linkage.driver.sense)
-    motion = move(linkage, dyads, q[list(numbers)], law)
-    named = roles(linkage, turning_links(linkage, dyads, way))
-    dead = find_dead(linkage, dyads, way)
-    results = Results(problem, structure, named, dyads, way, dead, strokes, numbers, motion)
+    law = _law(linkage, float(q[0]))
+    motion = move(linkage, kernels, q[list(numbers)], law)
+    named = roles(linkage, turning_links(linkage, kernels, way))
+    dead = find_dead(linkage, kernels, way)
+    results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
     return results if stage == "kinematics" else with_forces(results)
 
 
@@ -116,22 +116,25 @@ def with_forces(results: Results) -> Results:
     """Add loads, the force plan and the lever to kinematics."""
     from tmm_cli.forces.lever import lever
     from tmm_cli.forces.loads import applied
-    from tmm_cli.forces.plan import react
+    from tmm_cli.forces.plan import power, react
 
     motion = results.motion
     assert motion is not None
     loads = applied(motion, results.strokes)
     reactions = react(motion, results.structure, loads)
-    balance = reactions.balance
-    plan = balance.force if balance.moment is None else balance.moment
-    return replace(results, loads=loads, reactions=reactions, lever=lever(motion, loads, plan))
+    return replace(results, loads=loads, reactions=reactions, lever=lever(motion, loads, power(motion, reactions)))
 
 
 def at_positions(results: Results, q: Real) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
-    driver = results.linkage.driver
-    law = Law(results.start, driver.rate, driver.acceleration, driver.sense)
-    return move(results.linkage, results.dyads, q, law)
+    return move(results.linkage, results.kernels, q, _law(results.linkage, results.start))
+
+
+def _law(linkage: Linkage, start: float) -> Law:
+    """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
+    driver = linkage.driver
+    at = linkage.sketch.at if linkage.others else start
+    return Law(at, driver.rate, driver.acceleration, driver.sense)
 
 
 def at_places(results: Results, q: Real) -> Results:
@@ -140,12 +143,12 @@ def at_places(results: Results, q: Real) -> Results:
     return moved if results.reactions is None else with_forces(moved)
 
 
-def turning_links(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> dict[str, bool]:
+def turning_links(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> dict[str, bool]:
     """Which links turn through 360 degrees while the driver goes its way."""
-    turned = {linkage.driver.link: way.full and linkage.driver.kind == "turn"}
-    hung = [d for d in dyads if any(linkage.hinged_to_frame(link) for link in d.group.links)]
+    turned = {d.link: way.full and d.kind == "turn" for d in linkage.cranks}
+    hung = [d for d in kernels if any(linkage.hinged_to_frame(link) for link in d.group.links)]
     if hung and way.full:
-        motion = move(linkage, dyads, np.linspace(way.start, way.end, 721), Law(way.start, 1.0, 0.0, 1))
+        motion = move(linkage, kernels, np.linspace(way.start, way.end, 721), Law(way.start, 1.0, 0.0, 1))
         for dyad in hung:
             for link in dyad.group.links:
                 angle = np.unwrap(np.angle(motion.poses[link].z))
@@ -157,12 +160,12 @@ def _structure_only(problem: Problem, structure: Structure) -> Results:
     """Names of links need a turn of the driver; where it cannot be assembled yet, names come from the pairs alone."""
     linkage = problem.linkage
     try:
-        dyads = assemble(linkage, structure)
+        kernels = assemble(linkage, structure)
     except Refused:  # kinematics will say what is wrong; the structure stands without it
         turns = {linkage.driver.link: linkage.driver.kind == "turn"}
         return Results(problem, structure, roles(linkage, turns), ())
-    way = find_range(linkage, dyads)
-    return Results(problem, structure, roles(linkage, turning_links(linkage, dyads, way)), dyads, way)
+    way = find_range(linkage, kernels)
+    return Results(problem, structure, roles(linkage, turning_links(linkage, kernels, way)), kernels, way)
 
 
 def _need_strokes(problem: Problem, strokes: Strokes | None, way: Range) -> None:

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.vectors import Real
@@ -45,16 +45,16 @@ class DeadPosition:
     margin: float
 
 
-def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
+def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     """The driver's way about the sketch, its limits to the last bit."""
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
-    half = np.pi if turns else 4 * max((d.size for d in dyads), default=1.0)
+    half = np.pi if turns else 4 * max((d.size for d in kernels), default=1.0)
     steps = np.linspace(-half, half, SCAN + 1)
     law = Law(at, 1.0, 0.0, 1)
-    side = [np.sign(p.det[0]) for p in move(linkage, dyads, np.array([at]), law).placements]
-    scan = move(linkage, dyads, at + steps, law)
-    steps = np.sort(np.concatenate([steps, *(_narrows(linkage, dyads, scan, n) - at for n in range(len(dyads)))]))
-    lost = _lost(move(linkage, dyads, at + steps, law), side)
+    side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law).placements]
+    scan = move(linkage, kernels, at + steps, law)
+    steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
+    lost = _lost(move(linkage, kernels, at + steps, law), side)
     if not bool(np.any(lost)):
         return Range(at - half, at + half, turns)
     blocked = np.flatnonzero(np.any(lost, axis=0))
@@ -64,9 +64,9 @@ def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
         good, bad = at + steps[index - towards], at + steps[index]
         for _ in range(HALVINGS):
             half_way = (good + bad) / 2
-            there = bool(np.any(_lost(move(linkage, dyads, np.array([half_way]), law), side)))
+            there = bool(np.any(_lost(move(linkage, kernels, np.array([half_way]), law), side)))
             good, bad = (good, half_way) if there else (half_way, bad)
-        return Limit(good, dyads[int(np.argmax(lost[:, index]))].group.title)
+        return Limit(good, kernels[int(np.argmax(lost[:, index]))].group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
@@ -80,7 +80,7 @@ def find_range(linkage: Linkage, dyads: tuple[Dyad, ...]) -> Range:
     return Range(start, end, False, tuple(x for x in (first, last) if x))
 
 
-def _narrows(linkage: Linkage, dyads: tuple[Dyad, ...], scan: Motion, number: int) -> Real:
+def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: Motion, number: int) -> Real:
     """Places between those of a scan where a group comes nearest to losing its assembly: a gap may be narrower."""
     gap = np.where(np.isfinite(scan.placements[number].gap), scan.placements[number].gap, -np.inf)
     inner = gap[1:-1]
@@ -91,7 +91,7 @@ def _narrows(linkage: Linkage, dyads: tuple[Dyad, ...], scan: Motion, number: in
     step = scan.q[1] - scan.q[0]
 
     def slack(q: Real) -> Real:
-        return -move(linkage, dyads[: number + 1], q, Law(0.0, 1.0, 0.0, 1)).placements[number].gap
+        return -move(linkage, kernels[: number + 1], q, Law(0.0, 1.0, 0.0, 1)).placements[number].gap
 
     return np.array([_least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
 
@@ -116,13 +116,13 @@ def limit_from(known: Limit, blocked: Real, steps: Real, at: float, limit: Calla
     return Limit(other.place + 2 * np.pi, other.group)
 
 
-def find_dead(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> tuple[DeadPosition, ...]:
+def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tuple[DeadPosition, ...]:
     """Dead positions inside the driver's way (its limits are dead too and are not repeated here)."""
     q = np.linspace(way.start, way.end, SCAN + 1)
     law = Law(way.start, 1.0, 0.0, 1)
-    motion = move(linkage, dyads, q, law)
+    motion = move(linkage, kernels, q, law)
     found = []
-    for number, dyad in enumerate(dyads):
+    for number, dyad in enumerate(kernels):
         margin = np.where(motion.placed, motion.placements[number].margin, np.inf)
         inner = margin[1:-1]
         low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1)) + 1
@@ -131,14 +131,14 @@ def find_dead(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range) -> tuple[De
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
         for place in places:
-            best, least = _least(partial(_margin, linkage, dyads, number), place - steps, place + steps)
+            best, least = _least(partial(_margin, linkage, kernels, number), place - steps, place + steps)
             if least < DEAD and (way.full or way.start + steps < best < way.end - steps):
                 found.append(DeadPosition(best, dyad.group.title, least))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
-def _margin(linkage: Linkage, dyads: tuple[Dyad, ...], number: int, q: Real) -> Real:
-    motion = move(linkage, dyads[: number + 1], q, Law(0.0, 1.0, 0.0, 1))
+def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, q: Real) -> Real:
+    motion = move(linkage, kernels[: number + 1], q, Law(0.0, 1.0, 0.0, 1))
     return np.where(motion.placed, motion.placements[number].margin, 0.0)
 
 

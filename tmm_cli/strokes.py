@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.quality import HALVINGS, SCAN, Range
@@ -84,27 +84,27 @@ def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
     return turning.angle, turning.first, turning.second
 
 
-def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists: float = 0.0) -> Strokes | None:
+def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resists: float = 0.0) -> Strokes | None:
     """Strokes of the output over the driver's way; None when there is no output joined to the frame.
 
     resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
     stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
     """
-    link = output_link(linkage, tuple(d.group for d in dyads))
+    link = output_link(linkage, tuple(d.group for d in kernels))
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None
     kind = "slide" if linkage.slides_on_frame(link) else "swing"
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
     q = np.linspace(way.start, way.end, SCAN + 1)
-    slope = output_run(move(linkage, dyads, q, law), link)[1]
+    slope = output_run(move(linkage, kernels, q, law), link)[1]
     signs = np.sign(slope)
     change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
     if not change.size or not way.full:
         return Strokes(link, kind, (), "")
 
     def slope_at(x: Real) -> Real:
-        return output_run(move(linkage, dyads, x, law), link)[1]
+        return output_run(move(linkage, kernels, x, law), link)[1]
 
     turns = _roots(slope_at, q[change], q[change + 1])
     # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
@@ -116,8 +116,8 @@ def find_strokes(linkage: Linkage, dyads: tuple[Dyad, ...], way: Range, resists:
     if turns.size < 2:
         return Strokes(link, kind, (), "")
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), 2 * np.pi)
-    runs = _runs(linkage, dyads, turns, lengths, link, kind)
-    lows = output_run(move(linkage, dyads, turns, law), link)[0]
+    runs = _runs(linkage, kernels, turns, lengths, link, kind)
+    lows = output_run(move(linkage, kernels, turns, law), link)[0]
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
     direction, rule = _working(linkage, forward, back, resists)
     strokes = [
@@ -141,11 +141,11 @@ def _working(linkage: Linkage, forward: float, back: float, resists: float) -> t
     return 1, "the forward one"
 
 
-def _runs(linkage: Linkage, dyads: tuple[Dyad, ...], turns: Real, lengths: Real, link: str, kind: str) -> Real:
+def _runs(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, lengths: Real, link: str, kind: str) -> Real:
     """How far the output goes in each stroke (an angle is followed through, so that it may pass 180 degrees)."""
     law = Law(0.0, 1.0, 0.0, 1)
     places = turns[:, None] + linkage.driver.sense * lengths[:, None] * np.linspace(0, 1, 65)
-    run = output_run(move(linkage, dyads, places.ravel(), law), link)[0].reshape(places.shape)
+    run = output_run(move(linkage, kernels, places.ravel(), law), link)[0].reshape(places.shape)
     if kind == "swing":
         run = np.unwrap(run, axis=1)
     return run[:, -1] - run[:, 0]

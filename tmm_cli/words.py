@@ -74,6 +74,7 @@ ENGLISH: dict[str, str] = {
     "explain.given": "the driver: its place is given",
     "explain.one": "the only one",
     "explain.two": "sign {sign} of two, from the sketch",
+    "explain.newton": "that of the sketch, followed",
     "explain.unsolved": "not decided: see tmm kinematics",
     "explain.from": "{pair} of {link}",
     "explain.back": "Each group: places, velocities, accelerations in closed form; then reactions, last group first; "
@@ -205,6 +206,7 @@ ENGLISH: dict[str, str] = {
     "balance.title": "Driving link",
     "balance.moment": "M_b",
     "balance.force": "F_b",
+    "balance.of": " of {link}",
     "balance.frame_x": "{name} x",
     "balance.frame_y": "{name} y",
     "lever.title": "Zhukovsky lever",

@@ -119,16 +119,17 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
 
 
 def _balance(sheet: Sheet, results: Results, k: int) -> None:
-    assert results.reactions is not None and results.motion is not None
-    balance = results.reactions.balance
-    if balance.kind == "moment" and balance.moment is not None:
-        pivot = sheet.on(complex(results.reactions.frame.at[k]))
-        couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 7.5)
-    elif abs(balance.vector[k]) > 0:
-        at = sheet.on(complex(balance.at[k]))
-        end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
-        sheet.arrow(at, end, REACTION, 1.5)
-        sheet.label("Fb", end, 9, REACTION)
+    assert results.reactions is not None
+    for balance in results.reactions.balances:
+        if balance.kind == "moment" and balance.moment is not None:
+            pivots = [f.at for f in results.reactions.frames if f.on == balance.driver.link]
+            pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
+            couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 7.5)
+        elif abs(balance.vector[k]) > 0:
+            at = sheet.on(complex(balance.at[k]))
+            end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
+            sheet.arrow(at, end, REACTION, 1.5)
+            sheet.label("Fb", end, 9, REACTION)
 
 
 def stacked(taken: list[tuple[complex, complex]], at: complex, force: complex) -> float:

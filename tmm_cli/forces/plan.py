@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_cli.forces.loads import Applied
 from tmm_cli.groups.base import Held, Wrench
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.linkage import FRAME, Driver, Linkage
 from tmm_cli.motion import Motion
 from tmm_cli.structure.assur import Group, Pair, Structure
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
@@ -25,6 +25,7 @@ class Reaction:
 
     arm: where a guide's force really acts, along the guide from the running point (m; infinite for a pure couple).
     signed: a guide's force, positive to the left of the guide. tangential, normal: parts of an outer hinge's force.
+    back: the couple on `by` where it is not the opposite (a swinging follower of a cam given by its law).
     """
 
     pair: Pair
@@ -37,6 +38,7 @@ class Reaction:
     normal: Vector | None = None
     signed: Real | None = None
     arm: Real | None = None
+    back: Real | None = None
 
     def onto(self, link: str) -> Vector:
         """The force on one of the two links, N."""
@@ -48,18 +50,21 @@ class GroupForces:
     """The force plan of a group: its reactions; loads and the reactions of later groups that it bears are inputs."""
 
     group: Group
-    outer: tuple[Reaction, Reaction]
-    inner: Reaction
+    outer: tuple[Reaction, ...]
+    inner: tuple[Reaction, ...]
     borne: tuple[Reaction, ...]
 
 
 @dataclass(frozen=True)
 class Balance:
-    """The driving link: balancing moment (N m) or force (N, on the crank's end across it, or along the cylinder).
+    """A driver: balancing moment (N m) or force (N, on the crank's end across it, or along the cylinder).
 
-    For a crank both are given, `force` being moment / arm; the frame's reaction belongs to the one asked for.
+    For a crank both are given, `force` being moment / arm; the frame's reaction belongs to the one asked for. It acts
+    on the driven link, and with the opposite sign on the base. `generalized` is what works with the driver's place: the
+    moment of a crank, the force of a cylinder.
     """
 
+    driver: Driver
     kind: str
     moment: Real | None
     force: Real
@@ -67,21 +72,30 @@ class Balance:
     at: Vector
     arm: float
 
+    @property
+    def generalized(self) -> Real:
+        return self.force if self.moment is None else self.moment
+
 
 @dataclass(frozen=True)
 class Reactions:
-    """The whole force plan."""
+    """The whole force plan. frames: of the pairs in which cranks stand on the frame; balances: of all drivers."""
 
     applied: tuple[Applied, ...]
     groups: tuple[GroupForces, ...]
-    frame: Reaction
-    balance: Balance
-    borne: tuple[Reaction, ...]
+    frames: tuple[Reaction, ...]
+    balances: tuple[Balance, ...]
+    borne: Mapping[str, tuple[Reaction, ...]]
+
+    @property
+    def balance(self) -> Balance:
+        """Of the first driver."""
+        return self.balances[0]
 
     @property
     def all(self) -> tuple[Reaction, ...]:
-        """Every pair's reaction, the driver's first, then groups in solving order."""
-        return (self.frame, *(r for g in self.groups for r in (*g.outer, g.inner)))
+        """Every pair's reaction, the drivers' first, then groups in solving order."""
+        return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
 
     def of(self, name: str) -> Reaction:
         """The reaction in a pair, by the pair's name."""
@@ -89,61 +103,110 @@ class Reactions:
 
 
 def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:
-    """Reactions in all pairs and what balances the driver, at every position of the motion."""
+    """Reactions in all pairs and what balances the drivers, at every position of the motion."""
     linkage = motion.linkage
     on = {name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links}
     for load in loads:
         arm = load.at * motion.poses[load.link].z
         on[load.link] += Wrench(load.force, cross(arm, load.force) + load.moment)
     borne: dict[str, list[Reaction]] = {name: [] for name in linkage.links}
-    groups = []
+    groups: list[GroupForces] = []
+    frames: list[Reaction] = []
+    balances: dict[str, Balance] = {}
     with np.errstate(invalid="ignore", divide="ignore"):
-        for dyad, at in zip(reversed(motion.dyads), reversed(motion.placements), strict=True):
-            a, b = dyad.group.links
-            held = dyad.reactions(at, motion.poses, on[a], on[b])
-            outer = tuple(
-                _reaction(motion, pair, own, part)
-                for pair, own, part in zip(dyad.group.outer, (a, b), (held.a, held.b), strict=True)
+        for kernel, at in zip(reversed(motion.kernels), reversed(motion.placements), strict=True):
+            group = kernel.group
+            held = kernel.reactions(at, motion.poses, tuple(on[link] for link in group.links))
+            own = [pair.i if pair.i in group.links else pair.j for pair in group.outer]
+            parts = zip(group.outer, own, held.outer, strict=True)
+            outer = tuple(_reaction(motion, pair, link, part) for pair, link, part in parts)
+            inner = tuple(
+                _reaction(motion, pair, kernel.inner_on(pair), part)
+                for pair, part in zip(group.inner, held.inner, strict=True)
             )
-            inner = _reaction(motion, dyad.group.inner[0], b, held.inner)
-            groups.append(GroupForces(dyad.group, (outer[0], outer[1]), inner, (*borne[a], *borne[b])))
+            groups.append(GroupForces(group, outer, inner, tuple(r for link in group.links for r in borne[link])))
             for reaction in outer:
                 on[reaction.by] += _opposite(reaction, motion)
                 borne[reaction.by].append(reaction)
-        frame, balance = _drive(motion, structure, on)
-    return Reactions(loads, tuple(reversed(groups)), frame, balance, tuple(borne[linkage.driver.link]))
+            for driver in group.drivers:
+                balance = balances[driver.link] = _driven(motion, driver, held.drives[driver.link])
+                for link, sense in ((driver.base, -1), (driver.link, 1)):
+                    if link not in group.links:
+                        on[link] += _driving(motion, balance, link, sense)
+        for driver in linkage.cranks:
+            frame, balances[driver.link] = _drive(motion, structure, driver, on[driver.link])
+            frames.append(frame)
+    return Reactions(
+        loads, tuple(reversed(groups)), tuple(frames), tuple(balances[d.link] for d in linkage.drivers),
+        {name: tuple(reactions) for name, reactions in borne.items()},
+    )  # fmt: skip
+
+
+def power(motion: Motion, reactions: Reactions) -> Real:
+    """What all drivers do per unit of the first one's motion; with one driver its balancing moment or force."""
+    total = np.zeros(np.shape(motion.q))
+    for balance in reactions.balances:
+        total = total + balance.generalized * motion.drives[balance.driver.link].first
+    return total
 
 
 def _reaction(motion: Motion, pair: Pair, own: str, held: Held) -> Reaction:
+    other = pair.other(own)
+    if pair.mesh is not None:
+        assert held.at is not None
+        return Reaction(pair, own, other, held.at, held.force, held.couple, back=held.back)
     if pair.slide is None:
         at = motion.poses[own].at(motion.linkage.local(own, pair.point))
-        return Reaction(pair, own, pair.other(own), at, held.force, None, held.tangential, held.normal)
+        return Reaction(pair, own, other, at, held.force, None, held.tangential, held.normal)
     assert held.couple is not None
     slide = pair.slide
     at = motion.poses[slide.runner].at(slide.at)
     u = motion.poses[slide.carrier].z * unit(slide.direction)
     signed = dot(1j * u, held.force)
     # on the carrier both force and couple change sign, and the arm stays
-    return Reaction(pair, own, pair.other(own), at, held.force, held.couple, signed=signed, arm=held.couple / signed)
+    return Reaction(pair, own, other, at, held.force, held.couple, signed=signed, arm=held.couple / signed)
 
 
 def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
     """The same reaction on the other link, reduced to that link's origin."""
     arm = reaction.at - motion.poses[reaction.by].x
     moment = cross(arm, -reaction.force)
-    return Wrench(-reaction.force, moment if reaction.couple is None else moment - reaction.couple)
+    if reaction.back is not None:
+        moment = moment + reaction.back
+    elif reaction.couple is not None:
+        moment = moment - reaction.couple
+    return Wrench(-reaction.force, moment)
 
 
-def _drive(motion: Motion, structure: Structure, on: Mapping[str, Wrench]) -> tuple[Reaction, Balance]:
-    linkage: Linkage = motion.linkage
-    driver = linkage.driver
-    pair = structure.driving_pair
-    assert pair is not None
-    pose, total = motion.poses[driver.link], on[driver.link]
+def _driven(motion: Motion, driver: Driver, size: Real) -> Balance:
+    """A driver between two moving links, from its row in their group."""
+    linkage = motion.linkage
+    if driver.kind == "turn":
+        at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
+        return Balance(driver, "moment", size, size * np.nan, size * 0j, at, float("nan"))
+    slide = linkage.slide(driver.joint)
+    u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
+    at = motion.poses[slide.runner].at(slide.at)
+    return Balance(driver, "force", None, size, size * u, at, 1.0)
+
+
+def _driving(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
+    """What a driver does to its link (sense 1) or to its base (-1), reduced to that link's origin."""
+    if balance.moment is not None:
+        return Wrench(balance.moment * 0j, sense * balance.moment)
+    force = sense * balance.vector
+    return Wrench(force, cross(balance.at - motion.poses[link].x, force))
+
+
+def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
+    """A link driven from the frame, under all that acts on it."""
+    linkage = motion.linkage
+    pair = structure.driving_pair(driver)
+    pose = motion.poses[driver.link]
     if driver.kind == "turn":
         pivot = pose.at(linkage.local(driver.link, driver.joint))
         moment = -total.about(pivot - pose.x)
-        end = _end(linkage)
+        end = _end(linkage, driver)
         radius = pose.at(end) - pivot
         arm = float(np.abs(end - linkage.local(driver.link, driver.joint)))
         size = moment / arm
@@ -151,7 +214,7 @@ def _drive(motion: Motion, structure: Structure, on: Mapping[str, Wrench]) -> tu
         force = -total.force - (vector if driver.balance == "force" else 0)
         return (
             Reaction(pair, driver.link, FRAME, pivot, force),
-            Balance(driver.balance, moment, size, vector, pivot + radius, arm),
+            Balance(driver, driver.balance, moment, size, vector, pivot + radius, arm),
         )
     slide = pair.slide
     assert slide is not None
@@ -164,13 +227,12 @@ def _drive(motion: Motion, structure: Structure, on: Mapping[str, Wrench]) -> tu
     signed = dot(1j * u, guide)
     return (
         Reaction(pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=couple / signed),
-        Balance("force", None, size, size * u, at, 1.0),
+        Balance(driver, "force", None, size, size * u, at, 1.0),
     )
 
 
-def _end(linkage: Linkage) -> complex:
+def _end(linkage: Linkage, driver: Driver) -> complex:
     """The crank's end in its axes: the point named for it, or the first that is not its pivot."""
-    driver = linkage.driver
     points = linkage.links[driver.link].points
     if driver.end:
         return points[driver.end]

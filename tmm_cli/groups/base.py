@@ -1,142 +1,30 @@
-"""What all Assur groups of two links share: the states they work on, and a group seen from outside.
+"""A group seen from outside, and what all Assur groups of two links share.
 
-A group knows the states of the links it hangs on and gives those of its own two links, a and b: first places, then
-rates, then accelerations; and backward the reactions. Arrays are (variants, positions) by broadcasting. The formulas
-of each type stand in its own file; they follow from writing the closure of the group as complex numbers and taking
-dot and cross products until one unknown is left.
+A group knows the states of the links it hangs on and gives those of its own links: first places, then rates, then
+accelerations; and backward the reactions. Arrays are (variants, positions) by broadcasting. The formulas of each type
+of two links, a and b, stand in its own file; they follow from writing the closure of the group as complex numbers and
+taking dot and cross products until one unknown is left.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
+from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import Linkage
+from tmm_cli.pairs.base import Drives
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.vectors import Real, Vector, cross, unit
+from tmm_cli.vectors import Real, Vector, unit
+
+__all__ = ["Accel", "Dyad", "Held", "Holding", "Kernel", "Placement", "Pose", "Rate", "Wrench"]
 
 ROUNDINGS = 8.0  # a distance below so many roundings of its data cannot be told from zero
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Place of a link: its origin x (m) and e^(i angle) of its x axis, z."""
-
-    x: Vector
-    z: Vector
-
-    def at(self, local: Any) -> Vector:
-        """A point of the link in the drawing's axes, m."""
-        place: Vector = self.x + local * self.z
-        return place
-
-
-@dataclass(frozen=True)
-class Rate:
-    """Velocity of a link: of its origin v (m/s), and w (rad/s)."""
-
-    v: Vector
-    w: Real
-
-    @classmethod
-    def through(cls, v: Vector, w: Real, arm: Vector) -> Rate:
-        """Of a link that turns with w while its point `arm` from the origin has the velocity v."""
-        return cls(v - 1j * w * arm, w)
-
-    def at(self, arm: Vector) -> Vector:
-        """Velocity of the point of the link that lies `arm` (drawing's axes) from its origin, m/s."""
-        velocity: Vector = self.v + 1j * self.w * arm
-        return velocity
-
-
-@dataclass(frozen=True)
-class Accel:
-    """Acceleration of a link: of its origin a (m/s2), and e (rad/s2)."""
-
-    a: Vector
-    e: Real
-
-    @classmethod
-    def through(cls, a: Vector, e: Real, w: Real, arm: Vector) -> Accel:
-        """Of a link that turns with w and e while its point `arm` from the origin has the acceleration a."""
-        return cls(a - (1j * e - w * w) * arm, e)
-
-    def at(self, arm: Vector, w: Real) -> Vector:
-        """Acceleration of the point that lies `arm` from the origin when the link turns with w, m/s2."""
-        acceleration: Vector = self.a + (1j * self.e - w * w) * arm
-        return acceleration
-
-
-@dataclass(frozen=True)
-class Wrench:
-    """Forces on a link reduced to its origin: force (N) and moment about the origin (N m)."""
-
-    force: Vector
-    moment: Real
-
-    def __add__(self, other: Wrench) -> Wrench:
-        return Wrench(self.force + other.force, self.moment + other.moment)
-
-    def about(self, arm: Vector) -> Real:
-        """Moment of the same forces about the point that lies `arm` from the link's origin, N m."""
-        moment: Real = self.moment - cross(arm, self.force)
-        return moment
-
-
-@dataclass(frozen=True)
-class Placement:
-    """Places of a group's links and how far it is from losing them.
-
-    det is the determinant (or root) that velocities, accelerations and reactions are divided by; margin its size
-    without dimension, 1 at best and 0 in a dead position (the sine of the transmission angle where there is one);
-    gap (m, or a pure number for two guides) is negative by as much as the group can still give way, positive by as
-    much as it falls short of assembling, and cannot be told from zero within slack.
-    """
-
-    a: Pose
-    b: Pose
-    det: Real
-    margin: Real
-    gap: Real
-    slack: Real
-
-    @property
-    def assembled(self) -> Any:
-        return self.gap <= self.slack
-
-    @property
-    def dead(self) -> Any:
-        return np.abs(self.gap) <= self.slack
-
-
-@dataclass(frozen=True)
-class Held:
-    """A reaction on one link at one point: force (N), couple (N m, sliding pairs only).
-
-    tangential and normal are the two components of an outer hinge's reaction, across its link and along it, that the
-    force plan finds one after the other.
-    """
-
-    force: Vector
-    couple: Real | None = None
-    tangential: Vector | None = None
-    normal: Vector | None = None
-
-
-@dataclass(frozen=True)
-class Holding:
-    """Reactions of a group: of the outer pairs on links a and b, and of the inner pair on link b from link a.
-
-    A couple belongs to the running point of its sliding pair.
-    """
-
-    a: Held
-    b: Held
-    inner: Held
 
 
 @dataclass(frozen=True)
@@ -196,14 +84,53 @@ def run_end(pair: Pair, own: str) -> Run:
 
 
 @dataclass(frozen=True)
-class Dyad(ABC):
-    """An Assur group of class II: two links, one inner pair, two outer pairs. sign tells its two assemblies apart."""
+class Kernel(ABC):
+    """An Assur group that can be solved."""
 
     group: Group
+    size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
+
+    @abstractmethod
+    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+        """Places of its links at the driver's places q; where it cannot be assembled the nearest it comes (see gap)."""
+
+    @abstractmethod
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
+        """Velocities of its links."""
+
+    @abstractmethod
+    def accelerations(
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
+        """Accelerations of its links; rates holds those of its own links too."""
+
+    @abstractmethod
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+        """Reactions of its pairs that hold its links, in their order, under the given forces."""
+
+    def inner_on(self, pair: Pair) -> str:
+        """The link on which an inner pair's reaction is given."""
+        return pair.j
+
+
+@dataclass(frozen=True)
+class Dyad(Kernel):
+    """An Assur group of class II: two links, one inner pair, two outer pairs. sign tells its two assemblies apart.
+
+    winding: how often its links have gone round, where something depends on that.
+    """
+
     ends: tuple[Turn | Run, Turn | Run]
     inner: Turn | Run
-    size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
     sign: int = 1
+    winding: Winding | None = None
 
     type: ClassVar[str]
     assemblies: ClassVar[int] = 2
@@ -217,29 +144,26 @@ class Dyad(ABC):
 
         a, b = group.links
         ends = (seen(group.outer[0], a), seen(group.outer[1], b))
-        size = max(_spread(linkage, link) for link in (a, b, *(end.known for end in ends)))
-        return cls(group, ends, seen(group.inner[0], b), size, sign)
+        size = max(spread(linkage, link) for link in (a, b, *(end.known for end in ends)))
+        return cls(group, size, ends, seen(group.inner[0], b), sign)
+
+    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+        at = self.closed(poses)
+        return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
+
+    def inner_on(self, pair: Pair) -> str:
+        return self.group.links[1]
 
     @abstractmethod
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
-        """Places of both links; where it cannot be assembled the nearest it comes (see gap)."""
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+        """Places of both links in the group's own assembly."""
 
     @abstractmethod
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
-        """Velocities of both links."""
-
-    @abstractmethod
-    def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
-        """Accelerations of both links; rates holds those of both links too."""
-
-    @abstractmethod
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
-        """Reactions of the three pairs that hold both links under the given forces."""
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        """The rate at which its gap grows, from the motion of the links it hangs on alone."""
 
 
-def _spread(linkage: Linkage, link: str) -> float:
+def spread(linkage: Linkage, link: str) -> float:
     points = np.array(list(linkage.links[link].points.values()) or [0j])
     return float(np.max(np.abs(points - points[..., :1])))
 

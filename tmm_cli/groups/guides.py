@@ -20,6 +20,12 @@ def parallel(det: Real) -> tuple[Real, Real]:
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * epsilon(det))
 
 
+def turned_apart(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
+    """Rate of the gap -|u x v| when the two guides turn."""
+    rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
+    return rate
+
+
 def slide_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
     """Velocity of the common point when the two guides carry it with v1 and v2 and it runs along u1 and u2."""
     velocity: Vector = v1 + u1 * (cross(v2 - v1, u2) / det)

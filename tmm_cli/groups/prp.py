@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
-from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
-from tmm_cli.vectors import Vector, cross, unit
+from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split, turned_apart
+from tmm_cli.pairs.base import Drives
+from tmm_cli.vectors import Real, Vector, cross, unit
 
 
 @dataclass(frozen=True)
@@ -28,20 +29,27 @@ class PRP(Dyad):
         assert isinstance(a, Run) and isinstance(b, Run) and isinstance(self.inner, Turn)
         return a, b, self.inner
 
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, c = self._ends
         (P, u), (Q, v) = line(a, poses), line(b, poses)
         za, zb = poses[a.known].z * unit(a.turned), poses[b.known].z * unit(b.turned)
         C, det = meet(P + (c.there - a.here) * za, u, Q + (c.here - b.here) * zb, v)
         gap, slack = parallel(det)
-        return Placement(Pose(C - c.there * za, za), Pose(C - c.here * zb, zb), det, np.abs(det), gap, slack)
+        return Placement((Pose(C - c.there * za, za), Pose(C - c.here * zb, zb)), det, np.abs(det), gap, slack)
 
     def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
         """C and the directions of both guides."""
         a, b, c = self._ends
         return at.a.at(c.there), line(a, poses)[1], line(b, poses)[1]
 
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        a, b, _ = self._ends
+        u, v = line(a, poses)[1], line(b, poses)[1]
+        return turned_apart(u, v, rates[a.known].w, rates[b.known].w)
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
         a, b, c = self._ends
         C, u, v = self._frame(at, poses)
         ra, rb = rates[a.known], rates[b.known]
@@ -52,8 +60,13 @@ class PRP(Dyad):
         )
 
     def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
         a, b, c = self._ends
         C, u, v = self._frame(at, poses)
         vC = rates[self.group.links[0]].at(c.there * at.a.z)
@@ -66,12 +79,13 @@ class PRP(Dyad):
             Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """The polygon gives both guides' forces, moments of each link about C their couples."""
+        on_a, on_b = on
         a, b, c = self._ends
         _, u, v = self._frame(at, poses)
         by_a, by_b = split(on_a.force + on_b.force, u, v, at.det)
         arm_a, arm_b = c.there * at.a.z, c.here * at.b.z
         couple_a = -on_a.about(arm_a) - cross(a.runner_arm(at.a, poses) - arm_a, by_a)
         couple_b = -on_b.about(arm_b) - cross(b.runner_arm(at.b, poses) - arm_b, by_b)
-        return Holding(Held(by_a, couple_a), Held(by_b, couple_b), Held(-(by_b + on_b.force)))
+        return Holding((Held(by_a, couple_a), Held(by_b, couple_b)), (Held(-(by_b + on_b.force)),))

@@ -13,7 +13,8 @@ import numpy as np
 
 from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
 from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
-from tmm_cli.vectors import Vector, cross, unit
+from tmm_cli.pairs.base import Drives
+from tmm_cli.vectors import Real, Vector, cross, unit
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class RPP(Dyad):
         assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Run)
         return a, b, self.inner
 
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, run = self._ends
         Q, v = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
@@ -40,14 +41,19 @@ class RPP(Dyad):
         # b's origin runs along both guides
         origin, det = meet(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
         gap, slack = parallel(det)
-        return Placement(pose_a, Pose(origin, zb), det, np.abs(det), gap, slack)
+        return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), gap, slack)
 
     def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:
         """Directions of the guides on a and on the known link."""
         _, b, run = self._ends
         return at.a.z * unit(run.direction), line(b, poses)[1]
 
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
         a, b, _ = self._ends
         u, v = self._frame(at, poses)
         w = rates[b.known].w
@@ -58,8 +64,13 @@ class RPP(Dyad):
         return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
 
     def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
         a, b, _ = self._ends
         u, v = self._frame(at, poses)
         w, e = rates[b.known].w, accels[b.known].e
@@ -70,8 +81,9 @@ class RPP(Dyad):
         by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
         return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
+        on_a, on_b = on
         a, b, run = self._ends
         u, v = self._frame(at, poses)
         inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link
@@ -83,4 +95,4 @@ class RPP(Dyad):
         arm = run.runner_arm(at.b, {run.known: at.a})
         moment = on_b.about(arm) + couple
         held = b.runner_arm(at.b, poses) - arm
-        return Holding(Held(RA), Held(guide, -moment - cross(held, guide)), Held(inner, couple))
+        return Holding((Held(RA), Held(guide, -moment - cross(held, guide))), (Held(inner, couple),))

@@ -25,6 +25,7 @@ from tmm_cli.groups.base import (
     Wrench,
     epsilon,
 )
+from tmm_cli.pairs.base import Drives
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 
@@ -49,7 +50,7 @@ class RPR(Dyad):
         offset: Real = cross(unit(run.direction), fixed)
         return offset
 
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, run = self._ends
         A, B = a.place(poses), b.place(poses)
         base = B - A
@@ -65,13 +66,21 @@ class RPR(Dyad):
         size = np.maximum(d, self.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             margin = np.abs(x) / size
-        return Placement(Pose(A - a.here * za, za), Pose(B - b.here * zb, zb), x, margin, np.abs(h) - d, slack)
+        return Placement((Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), x, margin, np.abs(h) - d, slack)
 
     def _frame(self, at: Placement) -> tuple[Vector, Real]:
         _, _, run = self._ends
         return at.a.z * unit(run.direction), self._offset()
 
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        a, b, _ = self._ends
+        base = b.place(poses) - a.place(poses)
+        shorter: Real = -dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / np.abs(base)
+        return shorter
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
         a, b, _ = self._ends
         u, _ = self._frame(at)
         vA = a.velocity(poses, rates)
@@ -80,8 +89,13 @@ class RPR(Dyad):
         return Rate.through(vA, w, a.here * at.a.z), Rate.through(vB, w, b.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
         a, b, _ = self._ends
         u, h = self._frame(at)
         w = rates[self.group.links[0]].w
@@ -94,8 +108,9 @@ class RPR(Dyad):
             Accel.through(aB, e, w, b.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """b along the guide, moments of the whole group about A, then the polygons of each link."""
+        on_a, on_b = on
         a, b, run = self._ends
         u, h = self._frame(at)
         A = at.a.at(a.here)
@@ -112,7 +127,6 @@ class RPR(Dyad):
             couple = on_a.about(a.here * at.a.z) - cross((run.there - a.here) * at.a.z, guide)
         push_a = u * dot(RA, u)
         return Holding(
-            Held(RA, tangential=RA - push_a, normal=push_a),
-            Held(RB, tangential=tau, normal=normal),
-            Held(guide, couple),
+            (Held(RA, tangential=RA - push_a, normal=push_a), Held(RB, tangential=tau, normal=normal)),
+            (Held(guide, couple),),
         )

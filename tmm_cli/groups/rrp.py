@@ -25,7 +25,8 @@ from tmm_cli.groups.base import (
     epsilon,
     line,
 )
-from tmm_cli.vectors import Vector, cross, dot, unit
+from tmm_cli.pairs.base import Drives
+from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class RRP(Dyad):
         assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Turn)
         return a, b, self.inner
 
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, c = self._ends
         A = a.place(poses)
         Q, u = line(b, poses)
@@ -56,7 +57,7 @@ class RRP(Dyad):
         C = start + u * (run + half)
         gap = np.abs(y) - la
         slack = epsilon(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
-        return Placement(Pose(A - a.here * za, za), Pose(C - c.here * zb, zb), half, np.abs(half) / la, gap, slack)
+        return Placement((Pose(A - a.here * za, za), Pose(C - c.here * zb, zb)), half, np.abs(half) / la, gap, slack)
 
     def _arms(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
         """ra, u, and C from the origin of the guide's link."""
@@ -64,7 +65,18 @@ class RRP(Dyad):
         _, u = line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
 
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        a, b, c = self._ends
+        Q, u = line(b, poses)
+        A = a.place(poses)
+        start = Q + (c.here - b.here) * poses[b.known].z * unit(b.turned)
+        away: Real = cross(u, a.velocity(poses, rates) - rates[b.known].at(A - poses[b.known].x))
+        rate: Real = np.sign(cross(u, A - start)) * away
+        return rate
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
         a, b, c = self._ends
         ra, u, onto = self._arms(at, poses)
         vA = a.velocity(poses, rates)
@@ -76,8 +88,13 @@ class RRP(Dyad):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vC, wb, c.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
         a, b, c = self._ends
         ra, u, onto = self._arms(at, poses)
         wa, wb = rates[self.group.links[0]].w, rates[b.known].w
@@ -94,8 +111,9 @@ class RRP(Dyad):
             Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
+        on_a, on_b = on
         _, b, c = self._ends
         ra, u, _ = self._arms(at, poses)
         tau = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
@@ -105,4 +123,4 @@ class RRP(Dyad):
         inner = -(guide + on_b.force)
         arm_c = c.here * at.b.z
         couple = -on_b.about(arm_c) - cross(b.runner_arm(at.b, poses) - arm_c, guide)
-        return Holding(Held(tau + normal, tangential=tau, normal=normal), Held(guide, couple), Held(inner))
+        return Holding((Held(tau + normal, tangential=tau, normal=normal), Held(guide, couple)), (Held(inner),))

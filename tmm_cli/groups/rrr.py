@@ -23,6 +23,7 @@ from tmm_cli.groups.base import (
     Wrench,
     epsilon,
 )
+from tmm_cli.pairs.base import Drives
 from tmm_cli.vectors import Real, Vector, cross, dot
 
 
@@ -43,7 +44,7 @@ class RRR(Dyad):
         a, b, c = self._ends
         return (c.there - a.here) * at.a.z, (c.here - b.here) * at.b.z
 
-    def place(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose]) -> Placement:
         a, b, c = self._ends
         A, B = a.place(poses), b.place(poses)
         arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
@@ -66,10 +67,21 @@ class RRR(Dyad):
         gap = -np.minimum(reach, spare)
         slack = epsilon(d) * (ROUNDINGS * (la + lb) + 2 * (np.abs(A) + np.abs(B)))
         return Placement(
-            Pose(A - a.here * za, za), Pose(B - b.here * zb, zb), d * h, np.abs(d * h) / (la * lb), gap, slack
+            (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), gap, slack
         )
 
-    def rates(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> tuple[Rate, Rate]:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+        a, b, c = self._ends
+        base = b.place(poses) - a.place(poses)
+        d = np.abs(base)
+        la, lb = np.abs(c.there - a.here), np.abs(c.here - b.here)
+        reach, spare = _slacks(d, np.minimum(la, lb), np.maximum(la, lb))
+        longer: Real = dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / d
+        return np.where(reach < spare, longer, -longer)
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
         a, b, _ = self._ends
         ra, rb = self._arms(at)
         vA = a.velocity(poses, rates)
@@ -79,8 +91,13 @@ class RRR(Dyad):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vB, wb, b.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]
-    ) -> tuple[Accel, Accel]:
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
         a, b, _ = self._ends
         la, lb = self.group.links
         ra, rb = self._arms(at)
@@ -94,8 +111,9 @@ class RRR(Dyad):
             Accel.through(aB, eb, wb, b.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on_a: Wrench, on_b: Wrench) -> Holding:
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """Moments of each link about C give the tangential components, the polygon the normal ones."""
+        on_a, on_b = on
         _, _, c = self._ends
         ra, rb = self._arms(at)
         tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
@@ -104,7 +122,7 @@ class RRR(Dyad):
         n_a, n_b = ra * (-cross(rest, rb) / at.det), rb * (cross(rest, ra) / at.det)
         RA, RB = tau_a + n_a, tau_b + n_b
         inner = -(RB + on_b.force)
-        return Holding(Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b), Held(inner))
+        return Holding((Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b)), (Held(inner),))
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:

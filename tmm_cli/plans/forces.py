@@ -22,12 +22,33 @@ class ForcePlan:
 
 
 def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
-    """Last group first, as they are drawn, and the driving link at the end."""
+    """Last group first, as they are drawn, and the driving links at the end."""
     groups = [_group(group, reactions, k) for group in reversed(reactions.groups)]
-    return (*groups, _driver(reactions, k))
+    return (*groups, *(_driver(frame, reactions, k) for frame in reactions.frames))
 
 
 def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
+    if len(group.group.links) != 2 or len(group.outer) != 2 or len(group.inner) != 1:
+        return _whole(group, reactions, k)
+    return _dyad(group, reactions, k)
+
+
+def _whole(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
+    """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
+    parts: list[Part] = []
+    for link in group.group.links:
+        parts += _borne(group.borne, reactions.applied, link, k)
+        parts += [(reaction_name(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
+    for balance in reactions.balances:
+        # a driver between one link of the group and one before it acts on the group from outside
+        ends = [link in group.group.links for link in (balance.driver.link, balance.driver.base)]
+        if balance.driver in group.group.drivers and ends == [True, False]:
+            parts.append(("Fb", complex(balance.vector[k]), "load"))
+    plan = _polygon(parts)
+    return ForcePlan(group.group.links, plan, " + ".join(v.name for v in plan.vectors) + " = 0")
+
+
+def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """Tangential parts, what the links bear, then normal parts and guides; the inner reaction joins two corners.
 
     Link a's forces stand together and so do link b's: the inner reaction on b is the vector that closes b's part.
@@ -39,7 +60,7 @@ def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     closing_b, closing_a = list(_rest(last, k)), list(_rest(first, k))
     plan = _polygon([*closing_a, *parts_a, *parts_b, *closing_b])
     corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
-    inner = group.inner
+    inner = group.inner[0]
     force = complex(inner.onto(b)[k])
     # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
     joined = NamedVector(reaction_name(inner.pair.other(b), b), corner - force, corner, "inner")
@@ -47,13 +68,13 @@ def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     return ForcePlan((a, b), Plan((*plan.vectors, joined)), f"{order} = 0")
 
 
-def _driver(reactions: Reactions, k: int) -> ForcePlan:
-    link = reactions.frame.on
-    parts = list(_borne(reactions.borne, reactions.applied, link, k))
-    balance = reactions.balance
+def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
+    link = frame.on
+    parts = list(_borne(reactions.borne[link], reactions.applied, link, k))
+    balance = next(b for b in reactions.balances if b.driver.link == link)
     if balance.kind == "force":
         parts.append(("Fb", complex(balance.vector[k]), "load"))
-    parts += _rest(reactions.frame, k)
+    parts += _rest(frame, k)
     plan = _polygon(parts)
     return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0")
 

@@ -148,7 +148,7 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
             "runner": slide.runner, "carrier": slide.carrier, "run": s.run, "v": s.v, "a": s.a,
             "coriolis": _xy(s.coriolis), "first": s.first, "second": s.second,
         }  # fmt: skip
-    margins = {d.group.title: p.margin for d, p in zip(motion.dyads, motion.placements, strict=True)}
+    margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
         "points": {name: _point(motion.point(*key)) for name, key in named_points(results).items()},

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
@@ -13,8 +14,6 @@ from tmm_cli.problem.record import Problem
 from tmm_cli.results.table import Column, Table
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.words import say
-
-COUNTS = {"RRR": 2, "RRP": 2, "RPR": 2, "PRP": 1, "RPP": 1}
 
 
 def explain(results: Results) -> Iterable[Table]:
@@ -134,16 +133,16 @@ def _loads(problem: Problem) -> Table:
 def _way(results: Results) -> Table:
     structure = results.structure
     linkage = results.linkage
-    rows = [("1", f"I({FRAME},{linkage.driver.link})", say("explain.given"), "")]
-    signs = {d.group.title: d.sign for d in results.dyads}
+    rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers), say("explain.given"), "")]
+    solved = {k.group.title: k for k in results.kernels}
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)
-        if group.title in signs:
-            which = (
-                say("explain.one")
-                if COUNTS.get(group.type) == 1
-                else say("explain.two", sign=f"{signs[group.title]:+d}")
-            )
+        kernel = solved.get(group.title)
+        if isinstance(kernel, Dyad):
+            one = kernel.assemblies == 1
+            which = say("explain.one") if one else say("explain.two", sign=f"{kernel.sign:+d}")
+        elif kernel is not None:
+            which = say("explain.newton")
         else:
             which = say("explain.unsolved")
         rows.append((str(number), f"{group.title} {group.type}", hangs, which))

@@ -38,7 +38,7 @@ def warnings(results: Results) -> Iterable[str]:
         given = "" if results.problem.request.places else say("warning.given")
         ends = {"start": place(way.start), "end": place(way.end)}
         yield say("warning.range", link=results.linkage.driver.link, groups=groups, **ends) + given
-    there = move(results.linkage, results.dyads, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1))
+    there = move(results.linkage, results.kernels, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1))
     for point, off in sketch_deviations(results.linkage, there.poses).items():
         if off > SKETCH:
             yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
@@ -56,7 +56,7 @@ def warnings(results: Results) -> Iterable[str]:
     stopped = [n for k, n in enumerate(results.numbers) if not np.isfinite(motion.rate[k])]
     if stopped:
         yield say("warning.stopped", link=results.linkage.driver.link, number=stopped[0])
-    for dyad, at in zip(motion.dyads, motion.placements, strict=True):
+    for dyad, at in zip(motion.kernels, motion.placements, strict=True):
         margin = np.where(motion.moving, at.margin, np.inf)
         if margin.size and np.min(margin) < NEAR:
             k = int(np.argmin(margin))
@@ -89,7 +89,7 @@ def _drives(results: Results, load: Applied) -> bool:
     if not given.working_stroke_only or motion is None:
         return False
     power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
-    reach = max((d.size for d in results.dyads), default=1.0) if results.linkage.driver.kind == "turn" else 1.0
+    reach = max((d.size for d in results.kernels), default=1.0) if results.linkage.driver.kind == "turn" else 1.0
     # at the ends of a stroke the speed is only rounding, and its sign says nothing
     most = np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
     acting = motion.moving & (np.abs(power) > 1e-6 * most)

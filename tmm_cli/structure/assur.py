@@ -12,22 +12,35 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Slide
+from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Mesh, Slide
 from tmm_cli.structure.graph import Count, Tie, components, count
 
 ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
 
+HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
+LOWER = ("R", "P")  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
+
+
 @dataclass(frozen=True)
 class Pair:
-    """A lower pair of two links. `i` comes first: the frame, the carrier, or the link that is placed earlier."""
+    """A pair of two links. `i` comes first: the frame, the carrier, or the link that is placed earlier.
+
+    kind: R turning, P sliding; higher pairs: G toothed wheels, K wheel and rack, C cam and follower.
+    """
 
     name: str
-    kind: Literal["R", "P"]
+    kind: Literal["R", "P", "G", "K", "C"]
     i: str
     j: str
     point: str
     slide: Slide | None = None
+    mesh: Mesh | None = None
+
+    @property
+    def lower(self) -> bool:
+        """Whether it leaves one freedom only."""
+        return self.kind in LOWER
 
     def other(self, link: str) -> str:
         """The link at the other side."""
@@ -36,13 +49,17 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type."""
+    """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type.
+
+    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are.
+    """
 
     links: tuple[str, ...]
     inner: tuple[Pair, ...]
     outer: tuple[Pair, ...]
     grade: int
     type: str
+    drivers: tuple[Driver, ...] = ()
 
     @property
     def order(self) -> int:
@@ -58,19 +75,40 @@ class Group:
 class Structure:
     """The structure of a linkage.
 
-    mobility is Chebyshev's 3n - 2 p1; freedom is what the count on all sub-chains leaves (equal unless a part is
-    over-held). groups are in solving order. loose and idle name what is wrong when the mobility is not one.
+    mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
+    over-held). groups are in solving order. loose and idle name what is wrong when the mobility is not the number of
+    drivers.
     """
 
     links: tuple[str, ...]
     pairs: tuple[Pair, ...]
-    driver: Driver
-    driving_pair: Pair | None
+    drivers: tuple[Driver, ...]
     groups: tuple[Group, ...]
     mobility: int
     freedom: int
     loose: tuple[str, ...] = ()
     idle: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+    @property
+    def driver(self) -> Driver:
+        """The first driver."""
+        return self.drivers[0]
+
+    @property
+    def higher(self) -> int:
+        """Number of higher pairs, p2."""
+        return sum(not pair.lower for pair in self.pairs)
+
+    @property
+    def sound(self) -> bool:
+        """Whether the count finds each freedom driven and nothing held twice."""
+        wanted = len(self.drivers)
+        return self.freedom == wanted == self.mobility and not self.idle and not self.loose
+
+    def driving_pair(self, driver: Driver) -> Pair:
+        """The pair in which a driver works."""
+        ends = {driver.base, driver.link}
+        return next(p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
 
     @property
     def contours(self) -> int:
@@ -80,7 +118,8 @@ class Structure:
     @property
     def formula(self) -> str:
         """Formula of structure: I(0,1) -> II(2,3) -> II(4,5)."""
-        return " -> ".join([f"I({FRAME},{self.driver.link})", *(g.title for g in self.groups)])
+        inputs = [f"I({d.base},{d.link})" for d in self.drivers]
+        return " -> ".join([" + ".join(inputs), *(g.title for g in self.groups)])
 
     @property
     def mechanism_class(self) -> int:
@@ -106,25 +145,17 @@ def analyse(linkage: Linkage) -> Structure:
     pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2)
     bodies = tuple(linkage.links)
     undriven = count(bodies, FRAME, ties, pins)
-    driver = linkage.driver
-    driven = count(bodies, FRAME, [*ties, Tie("driver", FRAME, driver.link, 1)], pins)
+    driven = count(bodies, FRAME, [*ties, *(Tie("driver", d.base, d.link, 1) for d in linkage.drivers)], pins)
     parts = [tuple(b for b in part if b in linkage.links) for part in components(driven.depends)]
     solved = [tuple(sorted(part, key=linkage.moving.index)) for part in parts if part and part != (FRAME,)]
     rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
     pairs = tuple(_pairs(linkage, rank))
-    mobility = 3 * len(linkage.moving) - 2 * len(pairs)
-    sound = undriven.free == 1 and not undriven.idle and not driven.idle and driven.free == 0
-    groups = tuple(_group(part, pairs, rank) for part in solved if part != (driver.link,)) if sound else ()
-    driving = next((p for p in pairs if {p.i, p.j} == {FRAME, driver.link}), None)
+    mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
+    sound = undriven.free == len(linkage.drivers) and not undriven.idle and not driven.idle and driven.free == 0
+    cranks = {(driver.link,) for driver in linkage.cranks}
+    groups = tuple(_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
     return Structure(
-        linkage.moving,
-        pairs,
-        driver,
-        driving,
-        groups,
-        mobility,
-        undriven.free,
-        *_faults(linkage, undriven, driven),
+        linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free, *_faults(linkage, undriven, driven)
     )
 
 
@@ -139,6 +170,7 @@ def _ties(linkage: Linkage) -> Iterable[Tie]:
         else:
             yield from (Tie(hinge.point, _pin(hinge), link, 2) for link in hinge.links)
     yield from (Tie(slide.name, slide.carrier, slide.runner, 2) for slide in linkage.slides)
+    yield from (Tie(mesh.name, mesh.i, mesh.j, 1) for mesh in linkage.meshes)
 
 
 def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
@@ -154,30 +186,57 @@ def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
             yield Pair(hinge.point + ("'" * (number + 1) if number else ""), "R", i, j, hinge.point)
     for slide in linkage.slides:
         yield Pair(slide.name, "P", slide.carrier, slide.runner, slide.point, slide)
+    for mesh in linkage.meshes:
+        yield Pair(mesh.name, HIGHER[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
 
 
-def _group(links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, int]) -> Group:
+def _group(links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, int], linkage: Linkage) -> Group:
     here = rank[links[0]]
     inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
     outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
     own = {p.name: p.i if rank[p.i] == here else p.j for p in outer}
     outer.sort(key=lambda p: links.index(own[p.name]))
-    if len(links) == 2 and len(inner) == 1 and len(outer) == 2:
+    drivers = tuple(d for d in linkage.drivers if max(rank[d.base], rank[d.link]) == here and d not in linkage.cranks)
+    if len(links) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers:
         # The standard names write the turning end first: RRP, RPP.
         outer.sort(key=lambda p: p.kind == "P")
         kind = outer[0].kind + inner[0].kind + outer[1].kind
         return Group(tuple(own[p.name] for p in outer), inner, tuple(outer), 2, kind)
-    grade = max(3, _largest_contour(links, inner), *(sum(link in (p.i, p.j) for p in inner) for link in links))
-    kind = "".join(sorted((p.kind for p in (*inner, *outer)), reverse=True))
-    return Group(links, inner, tuple(outer), grade, kind)
+    kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
+    return Group(links, inner, tuple(outer), _grade(links, inner, outer, drivers), kind, drivers)
 
 
-def _largest_contour(links: tuple[str, ...], inner: tuple[Pair, ...]) -> int:
+def _grade(links: tuple[str, ...], inner: tuple[Pair, ...], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
+    """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link."""
+    one = {name: name for name in links}
+    for driver in drivers:
+        if driver.base in one:
+            keep, gone = one[driver.base], one[driver.link]
+            one = {name: keep if as_one == gone else as_one for name, as_one in one.items()}
+    bodies = list(dict.fromkeys(one.values()))
+    joints: list[tuple[str, str]] = []
+    for pair in inner:
+        i, j = one[pair.i], one[pair.j]
+        if pair.lower and i != j:
+            joints.append((i, j))
+        elif not pair.lower:
+            bodies.append(f"tooth {pair.name}")
+            joints += [(i, bodies[-1]), (bodies[-1], j)]
+    for pair in outer:
+        if not pair.lower:
+            bodies.append(f"tooth {pair.name}")
+            joints.append((one[pair.i] if pair.i in one else one[pair.j], bodies[-1]))
+    if len(bodies) <= 2:
+        return 2
+    return max(3, _largest_contour(bodies, joints), *(sum(body in joint for joint in joints) for body in bodies))
+
+
+def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
     """Sides of the largest closed contour of inner pairs (groups are small: a plain search of all simple cycles)."""
     joined: dict[str, list[str]] = {link: [] for link in links}
-    for pair in inner:
-        joined[pair.i].append(pair.j)
-        joined[pair.j].append(pair.i)
+    for i, j in inner:
+        joined[i].append(j)
+        joined[j].append(i)
     best, budget = 0, 20_000
     stack: list[tuple[str, tuple[str, ...]]] = [(link, (link,)) for link in links]
     while stack and budget:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tmm_cli.forces.loads import Applied
 from tmm_cli.forces.plan import Reaction
+from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, FORCE, LENGTH, MOMENT
 from tmm_cli.results.reports.cycle import driver_columns
@@ -37,7 +38,7 @@ def tables(results: Results) -> Iterable[Table]:
     if loads:
         words = {"word.link": [x.link for x in loads], "forces.name": [x.name for x in loads]}
         yield long_table(results, "loads", words, [_load(x) for x in loads])
-    yield _balance(results)
+    yield _balances(results)
 
 
 def _reaction(r: Reaction) -> Values:
@@ -58,17 +59,20 @@ def _force(force: Vector) -> Values:
     return [("forces.Fx", force.real, FORCE), ("forces.Fy", force.imag, FORCE), ("forces.F", np.abs(force), FORCE)]
 
 
-def _balance(results: Results) -> Table:
+def _balances(results: Results) -> Table:
+    """Every driver's moment or force, and what the frame does to the links that are driven from it."""
     reactions = results.reactions
     assert reactions is not None
-    balance = reactions.balance
     columns = driver_columns(results)
-    if balance.moment is not None:
-        columns.append(Column(say("balance.moment"), balance.moment, MOMENT))
-    columns.append(Column(say("balance.force"), balance.force, FORCE))
-    frame = reactions.frame
-    columns += [
-        Column(say("balance.frame_x", name=label(frame.by, frame.on)), frame.force.real, FORCE),
-        Column(say("balance.frame_y", name=label(frame.by, frame.on)), frame.force.imag, FORCE),
-    ]
+    several = len(reactions.balances) > 1
+    for balance in reactions.balances:
+        of = say("balance.of", link=balance.driver.link) if several else ""
+        if balance.moment is not None:
+            columns.append(Column(say("balance.moment") + of, balance.moment, MOMENT))
+        if balance.moment is None or balance.driver.base == FRAME:
+            columns.append(Column(say("balance.force") + of, balance.force, FORCE))
+        for frame in (f for f in reactions.frames if f.on == balance.driver.link):
+            name = label(frame.by, frame.on)
+            columns.append(Column(say("balance.frame_x", name=name), frame.force.real, FORCE))
+            columns.append(Column(say("balance.frame_y", name=name), frame.force.imag, FORCE))
     return Table("balance", say("balance.title"), tuple(columns))

@@ -1,0 +1,96 @@
+"""Laws of motion of a cam's follower: rise, dwell and return, piece by piece over a turn of the cam.
+
+A piece of rise h over the angle d with x = (a - start)/d from 0 to 1 follows s = h f(x). Sources of f: I. I.
+Artobolevsky, Theory of Mechanisms and Machines, ch. 25 (parabolic, cosine, sine); R. L. Norton, Cam Design, ch. 3
+(3-4-5 and 4-5-6-7 polynomials).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.vectors import Real
+
+Shape = Callable[[Any], tuple[Any, Any, Any]]
+TAU = 2 * np.pi
+
+
+def _linear(x: Any) -> tuple[Any, Any, Any]:
+    return x, np.ones_like(x), np.zeros_like(x)
+
+
+def _parabolic(x: Any) -> tuple[Any, Any, Any]:
+    early = x < 0.5
+    rest = 1 - x
+    return (
+        np.where(early, 2 * x * x, 1 - 2 * rest * rest),
+        np.where(early, 4 * x, 4 * rest),
+        np.where(early, 4.0, -4.0) * np.ones_like(x),
+    )
+
+
+def _cosine(x: Any) -> tuple[Any, Any, Any]:
+    return (1 - np.cos(np.pi * x)) / 2, np.pi / 2 * np.sin(np.pi * x), np.pi**2 / 2 * np.cos(np.pi * x)
+
+
+def _sine(x: Any) -> tuple[Any, Any, Any]:
+    return x - np.sin(TAU * x) / TAU, 1 - np.cos(TAU * x), TAU * np.sin(TAU * x)
+
+
+def _polynomial5(x: Any) -> tuple[Any, Any, Any]:
+    return (
+        x**3 * (10 + x * (-15 + 6 * x)),
+        30 * x * x * (1 - x) ** 2,
+        60 * x * (1 - x) * (1 - 2 * x),
+    )
+
+
+def _polynomial7(x: Any) -> tuple[Any, Any, Any]:
+    return (
+        x**4 * (35 + x * (-84 + x * (70 - 20 * x))),
+        140 * x**3 * (1 - x) ** 3,
+        420 * x * x * (1 - x) ** 2 * (1 - 2 * x),
+    )
+
+
+SHAPES: dict[str, Shape] = {
+    "linear": _linear, "parabolic": _parabolic, "cosine": _cosine, "sine": _sine, "3-4-5": _polynomial5,
+    "4-5-6-7": _polynomial7,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A rise (m or rad, negative for a return, zero for a dwell) over an angle of the cam (rad)."""
+
+    over: float
+    rise: float
+    shape: str = "sine"
+
+
+@dataclass(frozen=True)
+class CamLaw:
+    """Pieces one after another from the cam's angle `start` (rad); together a full turn, and back where they began."""
+
+    pieces: tuple[Piece, ...]
+    start: float = 0.0
+
+    def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
+        """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
+        turn = np.mod(angle - self.start, TAU)
+        value, first, second = (np.zeros(np.shape(turn)) for _ in range(3))
+        at, low = 0.0, 0.0
+        for number, piece in enumerate(self.pieces):
+            last = number == len(self.pieces) - 1
+            here = (turn >= at) & ((turn < at + piece.over) | last)
+            x = np.clip((turn - at) / piece.over, 0.0, 1.0)
+            s, ds, dds = SHAPES[piece.shape](x)
+            value = np.where(here, low + piece.rise * s, value)
+            first = np.where(here, piece.rise / piece.over * ds, first)
+            second = np.where(here, piece.rise / piece.over**2 * dds, second)
+            at, low = at + piece.over, low + piece.rise
+        return value, first, second

@@ -1,0 +1,244 @@
+"""Following a group from its sketch along the driver's way: here, and only here, a place needs the last one.
+
+Steps are predicted with first and second derivatives and corrected by Newton's method; a step that corrects too much,
+or changes the side of a dead position, is halved. E. L. Allgower, K. Georg, Introduction to Numerical Continuation
+Methods, ch. 2 and 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.groups.linear import signed_determinant, solve
+from tmm_cli.groups.newton import CONVERGED, Newton
+from tmm_cli.groups.state import Accel, Placement, Pose, Rate
+from tmm_cli.groups.track import State, Track
+from tmm_cli.pairs.base import Drives
+from tmm_cli.vectors import Real
+
+FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
+LEAST_STEP = 1e-9
+CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
+TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
+SAME = 1e-7  # states this near are the same
+HALVINGS = 80
+
+
+@dataclass(frozen=True)
+class Upstream:
+    """Places and motions (by q) of the links that are placed before a group, at places q of the driver."""
+
+    poses: Mapping[str, Pose]
+    rates: Mapping[str, Rate]
+    accels: Mapping[str, Accel]
+    drives: Drives
+    placed: bool
+
+
+Source = Callable[[Real], Upstream]
+
+
+@dataclass(frozen=True)
+class _Node:
+    q: float
+    state: State
+    first: State
+    second: State
+    side: float
+
+
+class Walker:
+    """Follows one group; `source` gives the links it hangs on."""
+
+    def __init__(self, kernel: Newton, source: Source) -> None:
+        self.kernel, self.source = kernel, source
+
+    def node(self, q: float, start: State) -> tuple[_Node, float] | None:
+        """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
+        place = np.array([q])
+        before = self.source(place)
+        if not before.placed:
+            return None
+        kernel = self.kernel
+        with np.errstate(all="ignore"):
+            state, size = kernel.close(start, before.poses, before.drives)
+            if not size[0] < CONVERGED:
+                return None
+            own = kernel.poses_of(state)
+            everything = {**before.poses, **own}
+            if kernel.passive and np.max(np.abs(kernel.gaps(everything, before.drives))) > CONVERGED:
+                return None
+            matrix = kernel.matrix(everything)
+            side = signed_determinant(matrix)
+            one = np.ones(1)
+            at = Placement(tuple(own[n] for n in kernel.group.links), side, one, -one, 0 * one)
+            rates = kernel.rates(at, before.poses, before.rates, before.drives)
+            both = {**before.rates, **dict(zip(kernel.group.links, rates, strict=True))}
+            accels = kernel.accelerations(at, before.poses, both, before.accels, before.drives)
+        first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
+        second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
+        return _Node(q, state, first, second, float(side[0])), self.apart(state, start)
+
+    def apart(self, one: State, other: State) -> float:
+        """How far two states are apart: lengths against the group's size, angles in rad."""
+        return float(max(np.max(np.abs(one.x - other.x)) / self.kernel.size, np.max(np.abs(one.turn - other.turn))))
+
+    def leg(self, start: _Node, end: float) -> tuple[list[_Node], bool]:
+        """Nodes from one on to the place `end`, and whether it was reached; if not, the last node is the limit."""
+        nodes, here = [], start
+        way = end - start.q
+        least = LEAST_STEP * abs(way)
+        step = FIRST_STEP * way / np.pi
+        while here.q != end:
+            step = float(np.sign(way)) * min(abs(step), LARGEST_STEP * abs(way) / np.pi)
+            q = end if abs(end - here.q) <= abs(step) * (1 + 1e-9) else here.q + step
+            found = self.node(q, _predicted(here, q - here.q))
+            if found is not None and found[1] < CORRECTION and found[0].side == start.side:
+                step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
+                here = found[0]
+                nodes.append(here)
+                continue
+            step = (q - here.q) / 2
+            if abs(step) < least:
+                limit = self.limit(here, float(np.sign(way)))
+                if limit is not None:
+                    nodes.append(limit)
+                return nodes, False
+        return nodes, True
+
+    def limit(self, last: _Node, sense: float) -> _Node | None:
+        """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
+
+        With l the direction in which the group moves, F(X, q) = 0 and l (X - X0) = s give q(s), and q' = 0 is looked
+        for.
+        """
+        kernel = self.kernel
+        with np.errstate(all="ignore"):
+            direction = _flat(last.first, kernel.size) * sense
+            length = np.linalg.norm(direction)
+            if not np.isfinite(length) or length == 0:
+                return None
+            line = direction / length
+
+            def at(s: float, state: State, q: float) -> tuple[State, float, float] | None:
+                for _ in range(15):
+                    before = self.source(np.array([q]))
+                    if not before.placed:
+                        return None
+                    everything = {**before.poses, **kernel.poses_of(state)}
+                    matrix = self._bordered(everything, before, line)
+                    ahead = float(np.dot(line, _flat(state, kernel.size) - _flat(last.state, kernel.size)))
+                    right = np.concatenate([-kernel.gaps(everything, before.drives)[0], [s - ahead]])
+                    step = solve(matrix, right)
+                    if not np.all(np.isfinite(step)):
+                        return None
+                    state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1])
+                    if np.max(np.abs(step)) < 1e-14:
+                        break
+                before = self.source(np.array([q]))
+                if not before.placed:
+                    return None
+                everything = {**before.poses, **kernel.poses_of(state)}
+                unit_step = np.zeros(len(line) + 1)
+                unit_step[-1] = 1.0
+                slope = solve(self._bordered(everything, before, line), unit_step)
+                return state, q, float(slope[-1]) * sense
+
+            good = at(0.0, last.state, last.q)
+            if good is None or good[2] <= 0:
+                return None
+            low, high, best = 0.0, 1e-6, good
+            while high < 1:
+                found = at(high, best[0], best[1])
+                if found is None:
+                    return None
+                if found[2] <= 0:
+                    break
+                low, best, high = high, found, 2 * high
+            else:
+                return None
+            for _ in range(HALVINGS):
+                middle = (low + high) / 2
+                found = at(middle, best[0], best[1])
+                if found is None or middle in (low, high):
+                    break
+                if found[2] > 0:
+                    low, best = middle, found
+                else:
+                    high = middle
+        state, q, _ = best
+        if (q - last.q) * sense < 0 or abs(q - last.q) > 0.1:
+            return None
+        return _Node(q, state, last.first, last.second, last.side)
+
+    def _bordered(self, everything: dict[str, Pose], before: Upstream, line: Real) -> Real:
+        kernel = self.kernel
+        by_q = kernel.known(everything, {n: (r.v, r.w) for n, r in before.rates.items()})[0]
+        by_q = by_q - kernel.asked(before.drives, 1, (1,))[0]
+        n = len(line)
+        matrix = np.zeros((n + 1, n + 1))
+        matrix[:n, :n] = kernel.matrix(everything)[0]
+        matrix[:n, n] = by_q
+        matrix[n, :n] = line
+        return matrix
+
+    def follow(self, at: float, state: State, half: float, turns: bool) -> Track | None:
+        """The group's track about the driver's place `at`: `half` a way to both sides, and round when it turns.
+
+        When all has come back to where it was after some turns, the track is closed.
+        """
+        found = self.node(at, state)
+        if found is None:
+            return None
+        middle = found[0]
+        up, above = self.leg(middle, at + half)
+        down, below = self.leg(middle, at - half)
+        nodes = [*reversed(down), middle, *up]
+        if not (turns and above and below):
+            return _track(nodes, False, (below and not turns, above and not turns))
+        for turn in range(1, TURNS + 1):
+            if self.returned(nodes[0].state, nodes[-1].state):
+                return _track(nodes, True, (False, False))
+            if turn < TURNS:
+                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
+                nodes += more
+                if not above:
+                    break
+        return _track(nodes, False, (True, True))
+
+    def returned(self, one: State, other: State) -> bool:
+        """Whether two states are the same but for full turns."""
+        around = (other.turn - one.turn) / (2 * np.pi)
+        same = State(other.x, one.turn + (around - np.round(around)) * 2 * np.pi)
+        return self.apart(one, same) < SAME
+
+
+def _predicted(node: _Node, step: float) -> State:
+    def taylor(value: Real, first: Real, second: Real) -> Real:
+        return value + step * (first + step / 2 * second)
+
+    return State(
+        taylor(node.state.x, node.first.x, node.second.x), taylor(node.state.turn, node.first.turn, node.second.turn)
+    )
+
+
+def _flat(state: State, size: float) -> Real:
+    """A state as the unknowns of the group's equations."""
+    return np.stack([state.x[0].real / size, state.x[0].imag / size, state.turn[0]], axis=-1).ravel()
+
+
+def _moved(state: State, step: Real, size: float) -> State:
+    parts = step.reshape(1, -1, 3)
+    return State(state.x + size * (parts[..., 0] + 1j * parts[..., 1]), state.turn + parts[..., 2])
+
+
+def _track(nodes: list[_Node], closed: bool, open_ends: tuple[bool, bool]) -> Track:
+    def stacked(part: str) -> State:
+        states = [getattr(node, part) for node in nodes]
+        return State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
+
+    first, second = stacked("first"), stacked("second")
+    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends)

@@ -1,0 +1,236 @@
+"""Groups of any class: Newton's method on the equations of the group's own pairs, all positions at once.
+
+Unknowns are the origins and angles of the group's links, lengths counted in the group's size. One matrix serves places,
+velocities, accelerations and, transposed, reactions. E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical
+Systems, ch. 3 and 4. Where a group has more equations than unknowns (passive constraints) they are solved by least
+squares, which is exact as long as they agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, spread
+from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
+from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.track import State, Track
+from tmm_cli.linkage import Linkage
+from tmm_cli.pairs import PAIRS
+from tmm_cli.pairs.base import Constraint, Drives, Grip
+from tmm_cli.pairs.driven import Driven
+from tmm_cli.structure.assur import Group
+from tmm_cli.vectors import Real, unit
+
+ROUNDS = 12  # of Newton's method at most
+NEAR = 1e-9  # a step below this squares to less than rounding
+CONVERGED = 1e-6  # a last step above this has not converged
+
+
+@dataclass(frozen=True)
+class Newton(Kernel):
+    """A group with its pairs and drivers as constraints: outer pairs, inner pairs, drivers, in the group's order."""
+
+    constraints: tuple[Constraint, ...]
+    start: State | None = None
+    track: Track | None = None
+    passive: bool = False
+    order: Mapping[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage) -> Newton:
+        """The group with its numbers, not yet assembled."""
+        pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
+        drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
+        known = {pair.other(link) for pair in group.outer for link in group.links if link in (pair.i, pair.j)}
+        size = max(spread(linkage, link) for link in {*group.links, *known}) or 1.0
+        rows = sum(len(c.lengths) for c in (*pairs, *drives))
+        order = {link: k for k, link in enumerate(group.links)}
+        return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
+
+    @cached_property
+    def by_angle(self) -> bool:
+        """Whether the angles follow from equations of angles alone: then there is one assembly, wherever one starts."""
+        still = {name: Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1)) for name in self._all}
+        rows = []
+        for constraint in self.constraints:
+            grips = constraint.grips(still) if constraint.kind in "GPD" else {}
+            for k, length in enumerate(constraint.lengths):
+                if not length and grips:
+                    rows.append([float(np.ravel(grips[n][k][1])[0]) if n in grips else 0.0 for n in self.group.links])
+        return bool(rows) and int(np.linalg.matrix_rank(np.array(rows))) == len(self.group.links)
+
+    @property
+    def _all(self) -> set[str]:
+        return {link for constraint in self.constraints for link in constraint.links} | set(self.group.links)
+
+    @cached_property
+    def _scale(self) -> Real:
+        return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
+
+    def _columns(self) -> Real:
+        return np.array([self.size, self.size, 1.0] * len(self.group.links))
+
+    def _fill(self, gripped: Sequence[Mapping[str, Sequence[Grip]]], shape: tuple[int, ...], kind: type) -> Real:
+        """Rows of grips as a matrix (..., rows, unknowns), without dimension."""
+        matrix: Real = np.zeros((*shape, len(self._scale), 3 * len(self.group.links)), dtype=kind)
+        row = 0
+        for constraint, grips in zip(self.constraints, gripped, strict=True):
+            for link, lines in grips.items():
+                if link in self.order:
+                    at = 3 * self.order[link]
+                    for k, (c, m) in enumerate(lines):
+                        matrix[..., row + k, at] = c.real
+                        matrix[..., row + k, at + 1] = c.imag
+                        matrix[..., row + k, at + 2] = m
+            row += len(constraint.lengths)
+        matrix *= self._scale[:, None] * self._columns()
+        return matrix
+
+    def matrix(self, poses: Mapping[str, Pose]) -> Real:
+        """The Jacobian without dimension, (..., rows, unknowns)."""
+        x = poses[self.group.links[0]].x
+        return self._fill([c.grips(poses) for c in self.constraints], np.shape(x), x.real.dtype.type)
+
+    def gaps(self, poses: Mapping[str, Pose], drives: Drives) -> Real:
+        """What is short of closing, without dimension, (..., rows)."""
+        rows = np.broadcast_arrays(*[gap for c in self.constraints for gap in c.gaps(poses, drives)])
+        return np.stack(rows, axis=-1) * self._scale
+
+    def known(self, poses: Mapping[str, Pose], motion: Mapping[str, tuple[object, Real]]) -> Real:
+        """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
+        shape = np.shape(poses[self.group.links[0]].x)
+        rows: list[Real] = []
+        for constraint in self.constraints:
+            total: list[Real] = [np.zeros(shape) for _ in constraint.lengths]
+            for link, lines in constraint.grips(poses).items():
+                if link not in self.order:
+                    v, w = motion[link]
+                    total = [t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
+                             for t, (c, m) in zip(total, lines, strict=True)]  # fmt: skip
+            rows += total
+        return np.stack(rows, axis=-1) * self._scale
+
+    def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
+        """Derivative of each row that the drivers ask for, without dimension."""
+        rows = [np.broadcast_to(value, shape) for c in self.constraints for value in c.asked(drives, order)]
+        return np.stack(rows, axis=-1) * self._scale
+
+    def poses_of(self, state: State) -> dict[str, Pose]:
+        """A state as poses."""
+        return {
+            link: Pose(state.x[..., k], unit(state.turn[..., k]), state.turn[..., k]) for link, k in self.order.items()
+        }
+
+    def close(
+        self, start: State, poses: Mapping[str, Pose], drives: Drives, rounds: int = ROUNDS
+    ) -> tuple[State, Real]:
+        """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
+        state = start
+        size = np.full(np.shape(start.x)[:-1], np.inf)
+        for _ in range(ROUNDS):
+            near = size < NEAR
+            everything = {**poses, **self.poses_of(state)}
+            step = solve(self.matrix(everything), -self.gaps(everything, drives))
+            size = np.max(np.abs(step), axis=-1)
+            moved = step.reshape(*np.shape(step)[:-1], -1, 3)
+            state = State(
+                state.x + self.size * (moved[..., 0] + 1j * moved[..., 1]), state.turn + moved[..., 2],
+            )  # fmt: skip
+            if bool(np.all(near | ~np.isfinite(size))):
+                break
+        return state, size
+
+    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+        q = np.asarray(q)
+        if self.track is not None:
+            start, gap = self.track.start(q)
+        else:
+            assert self.start is not None
+            shape = (*np.shape(q), len(self.group.links))
+            start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.turn, shape))
+            gap = np.full(np.shape(q), -1.0)
+        with np.errstate(all="ignore"):
+            state, step = self.close(start, poses, drives)
+        own = self.poses_of(state)
+        everything = {**poses, **own}
+        matrix = self.matrix(everything)
+        margin = least_over_largest(matrix)
+        missed = np.max(np.abs(self.gaps(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
+        lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
+        slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.turn))
+        gap = np.where(lost & (gap < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), gap)
+        det = signed_determinant(matrix) * margin
+        return Placement(
+            tuple(own[link] for link in self.group.links), det, margin, gap * self.size, slack * self.size
+        )  # fmt: skip
+
+    def _all_poses(self, at: Placement, poses: Mapping[str, Pose]) -> dict[str, Pose]:
+        return {**poses, **dict(zip(self.group.links, at.poses, strict=True))}
+
+    def rates(
+        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
+        everything = self._all_poses(at, poses)
+        known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
+        found = solve(self.matrix(everything), self.asked(drives, 1, np.shape(at.det)) - known)
+        found = np.where(np.isfinite(at.det)[..., None], found * self._columns(), np.nan)
+        return tuple(
+            Rate(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
+            for k in range(len(self.group.links))
+        )
+
+    def accelerations(
+        self,
+        at: Placement,
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
+        everything = self._all_poses(at, poses)
+        known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
+        rows = np.broadcast_arrays(*[bend for c in self.constraints for bend in c.bends(everything, rates)])
+        bend = np.stack(rows, axis=-1) * self._scale
+        found = solve(self.matrix(everything), self.asked(drives, 2, np.shape(at.det)) - known - bend)
+        found = np.where(np.isfinite(at.det)[..., None], found * self._columns(), np.nan)
+        return tuple(
+            Accel(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
+            for k in range(len(self.group.links))
+        )
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+        """The transposed equations; the forces of teeth at their pitch points."""
+        everything = self._all_poses(at, poses)
+        pushes = self._fill(
+            [c.pushes(everything) for c in self.constraints], np.shape(at.det), at.det.dtype.type
+        )  # fmt: skip
+        borne = [part for wrench in on for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
+        load = np.stack(np.broadcast_arrays(*borne), axis=-1) * self._columns()
+        found = solve(np.swapaxes(pushes, -1, -2), -load)
+        found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+        held: list[Held] = []
+        row = 0
+        for constraint in self.constraints:
+            here = [found[..., row + k] for k in range(len(constraint.lengths))]
+            held.append(constraint.held(everything, here))
+            row += len(here)
+        outer, inner = len(self.group.outer), len(self.group.inner)
+        for k, pair in enumerate(self.group.outer):
+            if pair.i in self.order:
+                held[k] = _turned_round(held[k])
+        drives = {
+            driver.link: found[..., row - len(self.group.drivers) + k] for k, driver in enumerate(self.group.drivers)
+        }
+        return Holding(tuple(held[:outer]), tuple(held[outer : outer + inner]), drives)
+
+
+def _turned_round(held: Held) -> Held:
+    """The reaction on the pair's first link."""
+    couple = None if held.couple is None else -held.couple
+    if held.back is not None:
+        return Held(-held.force, held.back, at=held.at, back=held.couple)
+    return Held(-held.force, couple, at=held.at)

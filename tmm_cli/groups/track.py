@@ -1,0 +1,62 @@
+"""Where a group's links are along the driver's way: nodes from which Newton's method starts at any place alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.vectors import Real, Vector
+
+
+@dataclass(frozen=True)
+class State:
+    """Origins (m) and angles (rad, through full turns) of a group's links on the last axis."""
+
+    x: Vector
+    turn: Real
+
+
+@dataclass(frozen=True)
+class Track:
+    """States at growing places q of the driver with their first and second derivatives by q.
+
+    closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the track
+    ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above).
+    """
+
+    q: Real
+    states: State
+    first: State
+    second: State
+    closed: bool
+    open_ends: tuple[bool, bool] = (False, False)
+
+    def start(self, q: Real) -> tuple[State, Real]:
+        """A state near that at each place q, from the nearest node, and the gap: how far q is beyond the track's ends.
+
+        Negative inside, by the distance to the nearer end; -1 on a closed track.
+        """
+        low, high = self.q[0], self.q[-1]
+        cycle = high - low
+        whole = np.floor((q - low) / cycle) if self.closed else np.zeros(np.shape(q))
+        within = np.clip(q - whole * cycle, low, high)
+        right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
+        node = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
+        step = (within - self.q[node])[..., None]
+        turns = self.states.turn[-1] - self.states.turn[0] if self.closed else np.zeros(self.states.turn.shape[-1])
+
+        def taylor(value: Vector, first: Vector, second: Vector) -> Vector:
+            here: Vector = value[node] + step * (first[node] + step / 2 * second[node])
+            return here
+
+        state = State(
+            taylor(self.states.x, self.first.x, self.second.x),
+            taylor(self.states.turn, self.first.turn, self.second.turn) + whole[..., None] * turns,
+        )
+        if self.closed:
+            return state, np.full(np.shape(q), -1.0)
+        below = np.where(self.open_ends[0], -np.inf, low - q)
+        above = np.where(self.open_ends[1], -np.inf, q - high)
+        gap = np.maximum(np.maximum(below, above), -1.0)
+        return state, np.where((q < low) | (q > high), np.maximum(np.maximum(low - q, q - high), 1e-12), gap)

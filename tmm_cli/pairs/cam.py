@@ -1,0 +1,101 @@
+"""A cam and its follower, given by the follower's law of motion instead of the shape of the cam."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.groups.state import Held
+from tmm_cli.linkage import FRAME, Mesh, Slide
+from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.pairs.sliding import Guided
+from tmm_cli.vectors import Real, Vector, cross, dot
+
+if TYPE_CHECKING:
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.structure.assur import Pair
+
+
+@dataclass(frozen=True)
+class Cam(Constraint):
+    """Row: run (or angle) of the follower on the frame less offset and the law of the cam's angle.
+
+    The law does not say where cam and follower touch. A sliding follower is taken as flat-faced: it touches the cam
+    ds/da from the cam's axis and the force is along its guide (I. I. Artobolevsky, ch. 26). A swinging one is loaded by
+    a couple and the cam by the couple of the same power.
+    """
+
+    mesh: Mesh
+    slide: Slide | None
+    axis: complex  # of the cam, on the frame, m
+
+    kind = "C"
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Cam:
+        mesh = pair.mesh
+        assert mesh is not None
+        point = linkage.shared(mesh.carrier, mesh.i)
+        assert point is not None
+        return cls(pair.name, mesh, linkage.slide(mesh.slide) if mesh.slide else None, linkage.local(FRAME, point))
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return self.mesh.i, self.mesh.j, FRAME
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (self.slide is not None,)
+
+    def _law(self, poses: Poses) -> tuple[Real, Real, Real]:
+        assert self.mesh.law is not None
+        return self.mesh.law(poses[self.mesh.i].turned)
+
+    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        want = self._law(poses)[0] + self.mesh.offset
+        if self.slide is None:
+            gap = poses[self.mesh.j].z * np.exp(-1j * want)
+            return (np.arctan2(gap.imag, gap.real),)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.off) - want,)
+
+    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        slope = self._law(poses)[1]
+        cam = {self.mesh.i: ((0j, -slope),)}
+        if self.slide is None:
+            return {self.mesh.j: ((0j, 1.0),), **cam}
+        here = Guided.at(self.slide, poses)
+        return {name: (grip,) for name, grip in here.grips(self.slide, here.u).items()} | cam
+
+    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        bend = -self._law(poses)[2] * rates[self.mesh.i].w ** 2
+        if self.slide is None:
+            return (bend,)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.bend(self.slide, rates)) + bend,)
+
+    def touch(self, poses: Poses) -> tuple[Vector, Vector]:
+        """Where a flat-faced follower touches, and the direction in which its run grows."""
+        assert self.slide is not None
+        here = Guided.at(self.slide, poses)
+        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        return self.axis - 1j * self._law(poses)[1] * forward, forward
+
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        if self.slide is None:
+            return self.grips(poses)
+        point, along = self.touch(poses)
+        return {
+            self.mesh.i: ((-along, -cross(point - poses[self.mesh.i].x, along)),),
+            self.mesh.j: ((along, cross(point - poses[self.mesh.j].x, along)),),
+        }
+
+    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+        n = multipliers[0]
+        if self.slide is None:
+            return Held(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
+        point, along = self.touch(poses)
+        return Held(along * n, at=point)

@@ -1,0 +1,78 @@
+"""A driver between two moving links, as one more row of their group: a cylinder, or a drive in a hinge."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.groups.state import Held
+from tmm_cli.linkage import Driver, Slide
+from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.pairs.sliding import Guided
+from tmm_cli.vectors import Real, dot
+
+if TYPE_CHECKING:
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.structure.assur import Pair
+
+
+@dataclass(frozen=True)
+class Driven(Constraint):
+    """Row: angle of the driven link from its base, or run in their sliding pair, less the driver's place."""
+
+    driver: Driver
+    slide: Slide | None
+
+    kind = "D"
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Driven:
+        driver = next(d for d in linkage.drivers if d.joint == pair.name)
+        return cls.by(driver, linkage)
+
+    @classmethod
+    def by(cls, driver: Driver, linkage: Linkage) -> Driven:
+        """The row of a driver."""
+        return cls(driver.link, driver, linkage.slide(driver.joint) if driver.kind == "slide" else None)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return (self.driver.base, self.driver.link) if self.slide is None else (self.slide.carrier, self.slide.runner)
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (self.slide is not None,)
+
+    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        want = drives[self.driver.link].value
+        if self.slide is None:
+            turned = poses[self.driver.link].z * np.conj(poses[self.driver.base].z)
+            gap = turned * np.exp(-1j * want)
+            return (np.arctan2(gap.imag, gap.real),)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.off) - want,)
+
+    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        if self.slide is None:
+            return {self.driver.base: ((0j, -1.0),), self.driver.link: ((0j, 1.0),)}
+        here = Guided.at(self.slide, poses)
+        return {name: (grip,) for name, grip in here.grips(self.slide, here.u).items()}
+
+    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        if self.slide is None:
+            return (np.zeros(np.shape(rates[self.driver.link].w)),)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.bend(self.slide, rates)),)
+
+    def asked(self, drives: Drives, order: int) -> Sequence[Real | float]:
+        drive = drives[self.driver.link]
+        return (drive.first if order == 1 else drive.second,)
+
+    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+        n = multipliers[0]
+        if self.slide is None:
+            return Held(n * 0j, couple=n)
+        return Held(Guided.at(self.slide, poses).u * n, at=poses[self.slide.runner].at(self.slide.at))

@@ -1,0 +1,83 @@
+"""Two toothed wheels on a common carrier, fixed or turning (planetary), in outer or inner mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.groups.state import Held
+from tmm_cli.linkage import Mesh
+from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.vectors import Real, Vector, cross
+
+if TYPE_CHECKING:
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.structure.assur import Pair
+
+
+@dataclass(frozen=True)
+class Gear(Constraint):
+    """Row: angle of j from the carrier less offset and ratio times that of i.
+
+    The teeth push at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the wheels i and j, where
+    both wheels have one velocity; across the line of axes first, the part along it (`pressure`) afterwards.
+    """
+
+    mesh: Mesh
+    axis_i: complex  # on the carrier, m
+    axis_j: complex
+
+    kind = "G"
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Gear:
+        mesh = pair.mesh
+        assert mesh is not None
+        points = [linkage.shared(mesh.carrier, wheel) for wheel in (mesh.i, mesh.j)]
+        axis_i, axis_j = (linkage.local(mesh.carrier, point) for point in points if point is not None)
+        return cls(pair.name, mesh, axis_i, axis_j)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return self.mesh.i, self.mesh.j, self.mesh.carrier
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (False,)
+
+    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        mesh = self.mesh
+        i, j, c = (poses[name].turned for name in (mesh.i, mesh.j, mesh.carrier))
+        return ((j - c) - mesh.ratio * (i - c) - mesh.offset,)
+
+    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        ratio = self.mesh.ratio
+        return {
+            self.mesh.i: ((0j, -ratio),), self.mesh.j: ((0j, 1.0),), self.mesh.carrier: ((0j, ratio - 1.0),),
+        }  # fmt: skip
+
+    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        return (np.zeros(np.shape(rates[self.mesh.i].w)),)
+
+    def pitch(self, poses: Poses) -> tuple[Vector, Vector]:
+        """The pitch point, and the direction from axis i to axis j."""
+        ratio, carrier = self.mesh.ratio, poses[self.mesh.carrier]
+        here = (self.axis_i - ratio * self.axis_j) / (1 - ratio)
+        line = (self.axis_j - self.axis_i) / abs(self.axis_j - self.axis_i)
+        return carrier.at(here), line * carrier.z
+
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        """Wheel on wheel at the pitch point; the carrier gets nothing but through its hinges."""
+        point, line = self.pitch(poses)
+        across = 1j * line
+        return {
+            self.mesh.i: ((-across, -cross(point - poses[self.mesh.i].x, across)),),
+            self.mesh.j: ((across, cross(point - poses[self.mesh.j].x, across)),),
+        }
+
+    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+        point, line = self.pitch(poses)
+        return Held(1j * line * multipliers[0], at=point)

@@ -1,0 +1,81 @@
+"""A toothed wheel that rolls on a rack; both are held by a common carrier."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tmm_cli.groups.state import Held
+from tmm_cli.linkage import Mesh, Slide
+from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.pairs.sliding import Guided
+from tmm_cli.vectors import Real, Vector, cross, dot
+
+if TYPE_CHECKING:
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.structure.assur import Pair
+
+
+@dataclass(frozen=True)
+class Rack(Constraint):
+    """Row: run of the rack on the carrier less offset and ratio (m a radian) times the angle of the wheel from it.
+
+    The slide may have the rack as its runner or as its carrier. The teeth push at the pitch point, where wheel and rack
+    have one velocity: the wheel's radius |ratio| away from its axis, square to the guide.
+    """
+
+    mesh: Mesh
+    slide: Slide
+    axis: complex  # of the wheel, on the carrier, m
+
+    kind = "K"
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Rack:
+        mesh = pair.mesh
+        assert mesh is not None
+        point = linkage.shared(mesh.carrier, mesh.i)
+        assert point is not None
+        return cls(pair.name, mesh, linkage.slide(mesh.slide), linkage.local(mesh.carrier, point))
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return self.mesh.i, self.mesh.j, self.mesh.carrier
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (True,)
+
+    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        here = Guided.at(self.slide, poses)
+        turned = poses[self.mesh.i].turned - poses[self.mesh.carrier].turned
+        return (dot(here.u, here.off) - self.mesh.ratio * turned - self.mesh.offset,)
+
+    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        here = Guided.at(self.slide, poses)
+        grips = {name: [grip] for name, grip in here.grips(self.slide, here.u).items()}
+        c, m = grips[self.mesh.carrier][0]
+        grips[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
+        return grips | {self.mesh.i: [(0j, -self.mesh.ratio)]}
+
+    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.bend(self.slide, rates)),)
+
+    def pitch(self, poses: Poses) -> tuple[Vector, Vector]:
+        """The pitch point, and the direction in which the rack's run grows."""
+        here = Guided.at(self.slide, poses)
+        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
+
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+        point, along = self.pitch(poses)
+        return {
+            self.mesh.i: ((-along, -cross(point - poses[self.mesh.i].x, along)),),
+            self.mesh.j: ((along, cross(point - poses[self.mesh.j].x, along)),),
+        }
+
+    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+        point, along = self.pitch(poses)
+        return Held(along * multipliers[0], at=point)
