@@ -43,12 +43,16 @@ def reference_problem(data: dict[str, Any]) -> dict[str, Any]:
     """A reference model as a problem file in SI."""
     model = data["model"]
     driver = model["driver"]
+    if driver["type"] == "P":
+        joint = next(j for j in model["joints"] if j["name"] == driver["joint"])
+        drive, at = {"link": joint["j"], "on": joint["i"], "speed": driver["v"]}, driver["s0"]
+    else:
+        sense = "ccw" if driver["omega"] > 0 else "cw"
+        drive, at = {"link": driver["body"], "speed": abs(driver["omega"]), "turns": sense}, driver["theta0"]
     problem: dict[str, Any] = {
         "tmm": 1, "units": SI, "points": model["ground"], "guides": {}, "links": {}, "masses": {}, "loads": {},
-        "gravity": model["gravity"],
-        "driver": {"link": driver["body"], "speed": abs(driver["omega"]),
-                   "turns": "ccw" if driver["omega"] > 0 else "cw"},
-        "sketch": {"at": driver["theta0"], **sketched_points(model)},
+        "gravity": model["gravity"], "driver": drive,
+        "sketch": {"at": at, **sketched_points(model), **{n: guess[2] for n, guess in model["guess"].items()}},
         "positions": {"at": [float(row["input"]) for row in data["reference"]]},
     }  # fmt: skip
     for name, body in model["bodies"].items():

@@ -1,4 +1,4 @@
-"""Every class II reference linkage, against 50 digits: relative to the largest value of each quantity in the cycle."""
+"""Every reference linkage, against 50 digits: relative to the largest value of each quantity in the cycle."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from models import DATA, reference, reference_problem, results_of
 
-NAMES = sorted(path.stem for path in (DATA / "reference").glob("*.json"))
+# positions 1 to 5 of this one belong to another assembly than position 0: each is solved from a sketch of its own
+CLASS_III = "stephenson3_class_three_group"
+NAMES = [name for name in sorted(path.stem for path in (DATA / "reference").glob("*.json")) if name != CLASS_III]
+ROWS = [f"{CLASS_III} {k}" for k in range(1, 6)]
 TOLERANCE = 1e-12
 
 
@@ -26,10 +29,30 @@ def series(rows, *keys):
     return np.array(values)
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=[*NAMES, *ROWS])
 def case(request):
-    data = reference(request.param)
-    return data["model"], data["reference"], results_of(reference_problem(data))
+    name, _, row = request.param.partition(" ")
+    data = reference(name)
+    return (
+        solved_row(data, int(row)) if row else (data["model"], data["reference"], results_of(reference_problem(data)))
+    )
+
+
+def solved_row(data, k):
+    """One position alone, sketched as the reference found it."""
+    model, row = data["model"], data["reference"][k]
+    problem = reference_problem({"model": model, "reference": [row]})
+    problem["sketch"] = {"at": float(row["input"])}
+    for key, motion in row["points"].items():
+        body, point = key.split(".")
+        if point != f"S{body}" and point not in model["ground"]:
+            problem["sketch"][point] = [float(v) for v in motion["x"]]
+    return model, [row], results_of(problem)
+
+
+def named(results, name, joint):
+    """A pair of the reference by its name there (a sliding pair on a link is named for its point here)."""
+    return results.reactions.of(name if name in {p.name for p in results.structure.pairs} else f"{joint['pj']}'")
 
 
 def test_every_point_and_centre_of_mass_moves_as_the_reference(case):
@@ -58,9 +81,10 @@ def test_every_link_turns_as_the_reference(case):
 
 
 def test_every_reaction_is_that_of_the_lagrange_multipliers(case):
-    _, rows, results = case
+    model, rows, results = case
+    joints = {joint["name"]: joint for joint in model["joints"]}
     for name, first in rows[0]["reactions"].items():
-        found = results.reactions.of(name)
+        found = named(results, name, joints[name])
         assert {found.on, found.by} == {first["on"], first["by"]}
         assert deviation(found.onto(first["on"]), series(rows, "reactions", name, "F")) < TOLERANCE, name
         if "couple" in first:
@@ -71,25 +95,45 @@ def test_every_reaction_is_that_of_the_lagrange_multipliers(case):
 def test_the_balancing_moment_is_the_reference_by_plan_and_by_lever(case):
     _, rows, results = case
     expected = series(rows, "balancing")
-    assert deviation(results.reactions.balance.moment, expected) < TOLERANCE
+    assert deviation(results.reactions.balance.generalized, expected) < TOLERANCE
     assert deviation(results.lever.balancing, expected) < TOLERANCE
     assert np.max(results.lever.difference) < 1e-10
 
 
-def test_a_position_alone_is_that_position_of_the_cycle_in_any_order(case):
-    model, rows, results = case
+def test_near_a_dead_position_the_loss_is_that_of_the_data_alone():
+    """The class III reference starts 2.0e-5 rad from where its driver turns back, with all data decimals.
+
+    Rounding them to doubles changes the results by u/eps and more, with every method (measured: omega of link 1 by
+    3.3e-12 in 50 digits). What is asked is that the calculator adds little to that.
+    """
+    _, (row,), results = solved_row(reference(CLASS_III), 0)
+    eps = results.way.end - float(row["input"])
+    assert 2.0e-5 < eps < 2.1e-5
+    unit = 2.0**-53 / eps
+    for name in row["links"]:
+        found = results.motion.link(name)
+        assert deviation(found.omega, series([row], "links", name, "omega")) < 2 * unit
+        assert deviation(found.epsilon, series([row], "links", name, "eps")) < 4 * unit
+    assert deviation(results.reactions.balance.moment, series([row], "balancing")) < 4 * unit
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_position_alone_is_that_position_of_the_cycle_in_any_order(name):
+    data = reference(name)
+    model, rows, results = data["model"], data["reference"], results_of(reference_problem(data))
+    chosen = min(7, len(rows) - 1)
     problem = reference_problem({"model": model, "reference": rows})
-    alone = results_of(problem, positions=[7])
+    alone = results_of(problem, positions=[chosen])
     backward = results_of(problem, positions=list(range(len(rows)))[::-1])
     for link in model["bodies"]:
-        for other, k in ((alone, 0), (backward, len(rows) - 8)):
+        for other, k in ((alone, 0), (backward, len(rows) - 1 - chosen)):
             for one, many in zip(_state(other, link), _state(results, link), strict=True):
-                assert abs(one[k] - many[7]) <= 1e-15 * np.max(np.abs(many)), link
+                assert abs(one[k] - many[chosen]) <= 1e-15 * np.max(np.abs(many)), link
     for reaction in results.reactions.all:
         many = reaction.force
-        for other, k in ((alone, 0), (backward, len(rows) - 8)):
+        for other, k in ((alone, 0), (backward, len(rows) - 1 - chosen)):
             one = other.reactions.of(reaction.pair.name).force
-            assert abs(one[k] - many[7]) <= 1e-15 * np.max(np.abs(many)), reaction.pair.name
+            assert abs(one[k] - many[chosen]) <= 1e-15 * np.max(np.abs(many)), reaction.pair.name
 
 
 def _state(results, link):

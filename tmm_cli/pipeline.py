@@ -23,9 +23,12 @@ from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.forces.energy import Energy
+    from tmm_cli.forces.friction import Rubbed
     from tmm_cli.forces.lever import Lever
-    from tmm_cli.forces.loads import Applied
     from tmm_cli.forces.plan import Reactions
+    from tmm_cli.pressure import Pressure
     from tmm_cli.strokes import Strokes
 
 Stage = Literal["structure", "kinematics", "forces"]
@@ -47,6 +50,9 @@ class Results:
     loads: tuple[Applied, ...] = ()
     reactions: Reactions | None = None
     lever: Lever | None = None
+    friction: Rubbed | None = None
+    energy: Energy | None = None
+    pressure: tuple[Pressure, ...] = ()
 
     @property
     def linkage(self) -> Linkage:
@@ -69,7 +75,7 @@ class Results:
         """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
         driver = self.linkage.driver
         if self.way is not None and self.way.full and driver.kind == "turn":
-            return self.start + driver.sense * np.linspace(0, 2 * np.pi, count)
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.way.turns, count)
         asked = self.asked
         return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 
@@ -93,6 +99,7 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
         raise WrongMobility(structure)
     if stage == "structure":
         return _structure_only(problem, structure)
+    from tmm_cli.pressure import find_pressure
     from tmm_cli.strokes import find_strokes, output_link, places, resisted
 
     kernels = assemble(linkage, structure)
@@ -109,11 +116,13 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     named = roles(linkage, turning_links(linkage, kernels, way))
     dead = find_dead(linkage, kernels, way)
     results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
+    results = replace(results, pressure=find_pressure(linkage, kernels, way, motion, problem.pressure_limits))
     return results if stage == "kinematics" else with_forces(results)
 
 
 def with_forces(results: Results) -> Results:
     """Add loads, the force plan and the lever to kinematics."""
+    from tmm_cli.forces.energy import energy
     from tmm_cli.forces.lever import lever
     from tmm_cli.forces.loads import applied
     from tmm_cli.forces.plan import power, react
@@ -122,7 +131,17 @@ def with_forces(results: Results) -> Results:
     assert motion is not None
     loads = applied(motion, results.strokes)
     reactions = react(motion, results.structure, loads)
-    return replace(results, loads=loads, reactions=reactions, lever=lever(motion, loads, power(motion, reactions)))
+    rubbed = None
+    if results.linkage.friction:
+        from tmm_cli.forces.friction import rub
+
+        rubbed = rub(motion, results.structure, loads, reactions)
+        loads, reactions = rubbed.loads, rubbed.reactions
+    drivers = power(motion, reactions)
+    return replace(
+        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed,
+        energy=energy(motion, loads, drivers),
+    )  # fmt: skip
 
 
 def at_positions(results: Results, q: Real) -> Motion:
@@ -148,7 +167,9 @@ def turning_links(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> 
     turned = {d.link: way.full and d.kind == "turn" for d in linkage.cranks}
     hung = [d for d in kernels if any(linkage.hinged_to_frame(link) for link in d.group.links)]
     if hung and way.full:
-        motion = move(linkage, kernels, np.linspace(way.start, way.end, 721), Law(way.start, 1.0, 0.0, 1))
+        motion = move(
+            linkage, kernels, np.linspace(way.start, way.end, 720 * way.turns + 1), Law(way.start, 1.0, 0.0, 1)
+        )
         for dyad in hung:
             for link in dyad.group.links:
                 angle = np.unwrap(np.angle(motion.poses[link].z))

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from tmm_cli.groups.base import Kernel
+from tmm_cli.cycle import MOST, turns_of_cycle
+from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.newton import Newton
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
+from tmm_cli.roots import HALVINGS, least, roots
 from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
 DEAD = 1e-6  # a margin below this, refined, is a dead position
-HALVINGS = 60  # from a step of the scan to the last bit
 
 
 @dataclass(frozen=True)
@@ -28,12 +31,18 @@ class Limit:
 
 @dataclass(frozen=True)
 class Range:
-    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider)."""
+    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
+
+    turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
+    False when no such number was found.
+    """
 
     start: float
     end: float
     full: bool
     limits: tuple[Limit, ...] = ()
+    turns: int = 1
+    repeats: bool = True
 
 
 @dataclass(frozen=True)
@@ -48,15 +57,17 @@ class DeadPosition:
 def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     """The driver's way about the sketch, its limits to the last bit."""
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
-    half = np.pi if turns else 4 * max((d.size for d in kernels), default=1.0)
-    steps = np.linspace(-half, half, SCAN + 1)
+    cycle = cycle_of(linkage, kernels) if turns else 1
+    number = cycle or 1
+    half = np.pi * number if turns else 4 * max((d.size for d in kernels), default=1.0)
+    steps = np.linspace(-half, half, SCAN * number + 1)
     law = Law(at, 1.0, 0.0, 1)
     side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law).placements]
     scan = move(linkage, kernels, at + steps, law)
     steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
     lost = _lost(move(linkage, kernels, at + steps, law), side)
     if not bool(np.any(lost)):
-        return Range(at - half, at + half, turns)
+        return Range(at - half, at + half, turns, turns=number, repeats=cycle is not None)
     blocked = np.flatnonzero(np.any(lost, axis=0))
     middle = int(np.argmin(np.abs(steps)))
 
@@ -72,12 +83,22 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     first = limit(int(below[-1]), -1) if below.size else None
     last = limit(int(above[0]), 1) if above.size else None
     if turns and first is None and last is not None:  # the gap straddles the scan's end
-        first = limit_from(last, blocked, steps, at, limit)
+        first = limit_from(last, blocked, steps, (at, 2 * half), limit)
     if turns and last is None and first is not None:
-        last = limit_from(first, blocked, steps, at, limit)
+        last = limit_from(first, blocked, steps, (at, 2 * half), limit)
     start = first.place if first else at - half
     end = last.place if last else at + half
     return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
+    """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
+    turns = turns_of_cycle(linkage)
+    for kernel in kernels:
+        track = kernel.track if isinstance(kernel, Newton) else None
+        if track is not None and track.closed and turns is not None:
+            turns = math.lcm(turns, round((track.q[-1] - track.q[0]) / (2 * np.pi)))
+    return turns if turns is not None and turns <= MOST else None
 
 
 def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: Motion, number: int) -> Real:
@@ -93,7 +114,7 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: Motion, number
     def slack(q: Real) -> Real:
         return -move(linkage, kernels[: number + 1], q, Law(0.0, 1.0, 0.0, 1)).placements[number].gap
 
-    return np.array([_least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
+    return np.array([least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
 
 
 def _lost(motion: Motion, side: list[float]) -> Real:
@@ -107,18 +128,21 @@ def _lost(motion: Motion, side: list[float]) -> Real:
     return found
 
 
-def limit_from(known: Limit, blocked: Real, steps: Real, at: float, limit: Callable[[int, int], Limit]) -> Limit:
-    """The other limit when all blocked places lie on one side of the sketch: a turn away."""
+def limit_from(
+    known: Limit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], Limit]
+) -> Limit:
+    """The other limit when all blocked places lie on one side of the sketch: a cycle away."""
+    at, cycle = about
     if known.place > at:
         other = limit(int(blocked[-1]), -1)
-        return Limit(other.place - 2 * np.pi, other.group)
+        return Limit(other.place - cycle, other.group)
     other = limit(int(blocked[0]), 1)
-    return Limit(other.place + 2 * np.pi, other.group)
+    return Limit(other.place + cycle, other.group)
 
 
 def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tuple[DeadPosition, ...]:
     """Dead positions inside the driver's way (its limits are dead too and are not repeated here)."""
-    q = np.linspace(way.start, way.end, SCAN + 1)
+    q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
     law = Law(way.start, 1.0, 0.0, 1)
     motion = move(linkage, kernels, q, law)
     found = []
@@ -131,9 +155,10 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tupl
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
         for place in places:
-            best, least = _least(partial(_margin, linkage, kernels, number), place - steps, place + steps)
-            if least < DEAD and (way.full or way.start + steps < best < way.end - steps):
-                found.append(DeadPosition(best, dyad.group.title, least))
+            best, left = least(partial(_margin, linkage, kernels, number), place - steps, place + steps)
+            if left < DEAD and (way.full or way.start + steps < best < way.end - steps):
+                best = _pinned(linkage, kernels[: number + 1], best, steps)
+                found.append(DeadPosition(best, dyad.group.title, left))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
@@ -142,11 +167,21 @@ def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, q: Real)
     return np.where(motion.placed, motion.placements[number].margin, 0.0)
 
 
-def _least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:
-    """Place and value of the least of a function with one minimum: nine places at once, the best third kept."""
-    for _ in range(HALVINGS // 2):
-        places = np.linspace(low, high, 9)
-        best = int(np.argmin(function(places)))
-        low, high = places[max(best - 1, 0)], places[min(best + 1, 8)]
-    middle = np.array([(low + high) / 2])
-    return float(middle[0]), float(function(middle)[0])
+def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
+    """A dead position inside the way to the last bit: there the gap of the group stops growing.
+
+    The least of a quantity is known to half the digits only, the root of its rate to all of them.
+    """
+    last = kernels[-1]
+    if not isinstance(last, Dyad):
+        return place
+
+    def closing(q: Real) -> Real:
+        before = move(linkage, kernels[:-1], q, Law(0.0, 1.0, 0.0, 1))
+        return last.closing(last.closed(before.poses), before.poses, before.first)
+
+    low, high = np.array([place - step]), np.array([place + step])
+    with np.errstate(all="ignore"):
+        if not np.sign(closing(low))[0] * np.sign(closing(high))[0] < 0:
+            return place
+        return float(roots(closing, low, high)[0])

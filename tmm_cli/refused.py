@@ -14,19 +14,11 @@ class Refused(Exception):  # noqa: N818  a refusal is a result, named for what i
 
 
 class WrongMobility(Refused):
-    """The linkage and its one driver do not fit: mobility is not one, or the driver cannot move it."""
+    """The linkage and its drivers do not fit: mobility is not their number, or they cannot move it."""
 
     def __init__(self, structure: Structure) -> None:
         super().__init__(f"W = {structure.mobility}")
         self.structure = structure
-
-
-class NotSolvable(Refused):
-    """A group for which there is no kernel."""
-
-    def __init__(self, group: Group) -> None:
-        super().__init__(group.title)
-        self.group = group
 
 
 class NoAssembly(Refused):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,8 @@ import numpy as np
 from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.quality import HALVINGS, SCAN, Range
+from tmm_cli.quality import SCAN, Range
+from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
 
@@ -31,13 +31,14 @@ class Strokes:
     """Strokes of the output link in a turn of the driver, beginning with the working one; empty when it has none.
 
     kind: the output slides (m), or swings (rad). k is the time of the working strokes over that of the idle ones at
-    constant speed. rule: why that stroke is the working one.
+    constant speed. rule: why that stroke is the working one. cycle: how far the driver goes until they repeat (rad).
     """
 
     link: str
     kind: str
     strokes: tuple[Stroke, ...]
     rule: str
+    cycle: float = 2 * np.pi
 
     @property
     def working(self) -> tuple[Stroke, ...]:
@@ -58,7 +59,7 @@ class Strokes:
         """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
         inside = np.zeros(np.shape(q), dtype=bool)
         for stroke in self.working:
-            way = np.mod(sense * (q - stroke.start) + 1e-9, 2 * np.pi) - 1e-9
+            way = np.mod(sense * (q - stroke.start) + 1e-9, self.cycle) - 1e-9
             inside |= way < stroke.length - 1e-9
         return inside
 
@@ -96,7 +97,8 @@ def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resi
     kind = "slide" if linkage.slides_on_frame(link) else "swing"
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
-    q = np.linspace(way.start, way.end, SCAN + 1)
+    q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
+    cycle = 2 * np.pi * way.turns
     slope = output_run(move(linkage, kernels, q, law), link)[1]
     signs = np.sign(slope)
     change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
@@ -106,16 +108,16 @@ def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resi
     def slope_at(x: Real) -> Real:
         return output_run(move(linkage, kernels, x, law), link)[1]
 
-    turns = _roots(slope_at, q[change], q[change + 1])
+    turns = roots(slope_at, q[change], q[change + 1])
     # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
     turns = turns[np.abs(slope_at(turns)) < 1e-6 * np.nanmax(np.abs(slope))]
-    turns = np.mod(turns, 2 * np.pi)
-    turns = np.sort(np.where(2 * np.pi - turns < 1e-12, 0.0, turns))
-    again = np.diff(turns, append=turns[:1] + 2 * np.pi) < 1e-9  # found at both ends of the scan
+    turns = np.mod(turns, cycle)
+    turns = np.sort(np.where(cycle - turns < 1e-12, 0.0, turns))
+    again = np.diff(turns, append=turns[:1] + cycle) < 1e-9  # found at both ends of the scan
     turns = turns[~again][::sense]
     if turns.size < 2:
         return Strokes(link, kind, (), "")
-    lengths = np.mod(sense * (np.roll(turns, -1) - turns), 2 * np.pi)
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
     runs = _runs(linkage, kernels, turns, lengths, link, kind)
     lows = output_run(move(linkage, kernels, turns, law), link)[0]
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
@@ -127,7 +129,7 @@ def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resi
     if not any(s.working for s in strokes):  # the output stands still but for rounding
         return Strokes(link, kind, (), "")
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
-    return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule)
+    return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
 
 
 def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:
@@ -149,16 +151,6 @@ def _runs(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, lengths: R
     if kind == "swing":
         run = np.unwrap(run, axis=1)
     return run[:, -1] - run[:, 0]
-
-
-def _roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Roots between places where a function has different signs, by halving all intervals at once."""
-    sign_low = np.sign(function(low))
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        same = np.sign(function(middle)) == sign_low
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return (low + high) / 2
 
 
 def resisted(linkage: Linkage, link: str | None) -> float:
@@ -191,7 +183,7 @@ def places(request: Request, way: Range, strokes: Strokes | None, sense: int) ->
         start = request.start
         if start == "working stroke":
             start = strokes.strokes[0].start if strokes and strokes.strokes else way.start + np.pi
-        return start + sense * (2 * np.pi * steps / request.count)
+        return start + sense * (2 * np.pi * way.turns * steps / request.count)
     share = (steps + 0.5) / request.count
     if sense < 0:
         share = 1 - share

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.forces.loads import Applied
+from tmm_cli.forces.applied import Applied
 from tmm_cli.motion import Motion
 from tmm_cli.vectors import Real, Vector, dot
 

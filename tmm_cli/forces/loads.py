@@ -2,40 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
 import numpy as np
 
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.springs import spring_loads
 from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
 from tmm_cli.strokes import Strokes, output_run
-from tmm_cli.vectors import Real, Vector
-
-
-@dataclass(frozen=True)
-class Applied:
-    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position."""
-
-    name: str
-    kind: Literal["weight", "inertia", "load"]
-    link: str
-    at: complex
-    force: Vector
-    moment: Real
-    couple_name: str = ""
-
-    @property
-    def has_force(self) -> bool:
-        return bool(np.any(self.force != 0))
-
-    @property
-    def has_moment(self) -> bool:
-        return bool(np.any(self.moment != 0))
+from tmm_cli.vectors import Real
 
 
 def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
-    """Everything that acts on each moving link, in the order of the links. Massless links carry nothing."""
+    """All that acts on each moving link but friction, in the order of the links. Massless links carry nothing."""
     linkage = motion.linkage
     still = np.zeros(np.shape(motion.q))
     found = []
@@ -48,6 +26,7 @@ def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
             moment = -link.inertia * motion.link(name).epsilon
             found.append(Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}"))
     found += [_given(load, motion, strokes) for load in linkage.loads]
+    found += [load for spring in linkage.springs for load in spring_loads(spring, motion)]
     order = {name: k for k, name in enumerate(linkage.links)}
     return tuple(sorted(found, key=lambda a: order[a.link]))
 
@@ -70,7 +49,8 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
-        return np.mod(driver.sense * (motion.q - start) + 1e-12, 2 * np.pi) - 1e-12
+        cycle = strokes.cycle if strokes else 2 * np.pi
+        return np.mod(driver.sense * (motion.q - start) + 1e-12, cycle) - 1e-12
     assert strokes is not None and first is not None
     run: Real = output_run(motion, strokes.link)[0] - first.low
     if strokes.kind == "swing":

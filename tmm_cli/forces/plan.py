@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.forces.loads import Applied
+from tmm_cli.forces.applied import Applied
 from tmm_cli.groups.base import Held, Wrench
 from tmm_cli.linkage import FRAME, Driver, Linkage
 from tmm_cli.motion import Motion

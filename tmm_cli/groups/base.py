@@ -90,6 +90,8 @@ class Kernel(ABC):
     group: Group
     size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
 
+    near: ClassVar[float] = 0.05  # a margin below this is said to be near a dead position
+
     @abstractmethod
     def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
         """Places of its links at the driver's places q; where it cannot be assembled the nearest it comes (see gap)."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -86,8 +87,8 @@ class Walker:
         """How far two states are apart: lengths against the group's size, angles in rad."""
         return float(max(np.max(np.abs(one.x - other.x)) / self.kernel.size, np.max(np.abs(one.turn - other.turn))))
 
-    def leg(self, start: _Node, end: float) -> tuple[list[_Node], bool]:
-        """Nodes from one on to the place `end`, and whether it was reached; if not, the last node is the limit."""
+    def leg(self, start: _Node, end: float) -> tuple[list[_Node], Literal["reached", "limit", "lost"]]:
+        """Nodes from one on to the place `end`, and how it ended; a limit is the last node."""
         nodes, here = [], start
         way = end - start.q
         least = LEAST_STEP * abs(way)
@@ -104,10 +105,10 @@ class Walker:
             step = (q - here.q) / 2
             if abs(step) < least:
                 limit = self.limit(here, float(np.sign(way)))
-                if limit is not None:
-                    nodes.append(limit)
-                return nodes, False
-        return nodes, True
+                if limit is None:
+                    return nodes, "lost"
+                return [*nodes, limit], "limit"
+        return nodes, "reached"
 
     def limit(self, last: _Node, sense: float) -> _Node | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
@@ -197,16 +198,18 @@ class Walker:
         up, above = self.leg(middle, at + half)
         down, below = self.leg(middle, at - half)
         nodes = [*reversed(down), middle, *up]
-        if not (turns and above and below):
-            return _track(nodes, False, (below and not turns, above and not turns))
+        ends = (below, above)
+        if not (turns and ends == ("reached", "reached")):
+            open_ends = (below == "reached" and not turns, above == "reached" and not turns)
+            return _track(nodes, False, open_ends, (below == "limit", above == "limit"))
         for turn in range(1, TURNS + 1):
             if self.returned(nodes[0].state, nodes[-1].state):
-                return _track(nodes, True, (False, False))
+                return _track(nodes, True)
             if turn < TURNS:
                 more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
                 nodes += more
-                if not above:
-                    break
+                if above != "reached":
+                    return _track(nodes, False, (True, False), (False, above == "limit"))
         return _track(nodes, False, (True, True))
 
     def returned(self, one: State, other: State) -> bool:
@@ -235,10 +238,15 @@ def _moved(state: State, step: Real, size: float) -> State:
     return State(state.x + size * (parts[..., 0] + 1j * parts[..., 1]), state.turn + parts[..., 2])
 
 
-def _track(nodes: list[_Node], closed: bool, open_ends: tuple[bool, bool]) -> Track:
+def _track(
+    nodes: list[_Node],
+    closed: bool,
+    open_ends: tuple[bool, bool] = (False, False),
+    limits: tuple[bool, bool] = (False, False),
+) -> Track:
     def stacked(part: str) -> State:
         states = [getattr(node, part) for node in nodes]
         return State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
 
     first, second = stacked("first"), stacked("second")
-    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends)
+    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits)

@@ -23,7 +23,7 @@ from tmm_cli.pairs import PAIRS
 from tmm_cli.pairs.base import Constraint, Drives, Grip
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
-from tmm_cli.vectors import Real, unit
+from tmm_cli.vectors import Real, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
 NEAR = 1e-9  # a step below this squares to less than rounding
@@ -39,6 +39,8 @@ class Newton(Kernel):
     track: Track | None = None
     passive: bool = False
     order: Mapping[str, int] = field(default_factory=dict)
+
+    near = 0.005  # of singular values: a well-shaped triad has 0.1
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Newton:
@@ -202,16 +204,39 @@ class Newton(Kernel):
             for k in range(len(self.group.links))
         )
 
+    def _apart(self, everything: Mapping[str, Pose], found: Real) -> list[Wrench] | None:
+        """Forces on the group's links that follow from those of the teeth and do no work; None when there are none."""
+        total = {link: _nothing(np.shape(found)[:-1]) for link in self.group.links}
+        row, any_at_all = 0, False
+        for constraint in self.constraints:
+            here = [found[..., row + k] for k in range(len(constraint.lengths))]
+            row += len(here)
+            apart = constraint.apart(everything, here)
+            if apart is None:
+                continue
+            any_at_all = True
+            point, force = apart
+            for link, sense in ((constraint.links[1], 1.0), (constraint.links[0], -1.0)):
+                if link in total:
+                    arm = point - everything[link].x
+                    total[link] += Wrench(sense * force, sense * cross(arm, force))
+        return list(total.values()) if any_at_all else None
+
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
-        """The transposed equations; the forces of teeth at their pitch points."""
+        """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
-        pushes = self._fill(
-            [c.pushes(everything) for c in self.constraints], np.shape(at.det), at.det.dtype.type
-        )  # fmt: skip
-        borne = [part for wrench in on for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
-        load = np.stack(np.broadcast_arrays(*borne), axis=-1) * self._columns()
-        found = solve(np.swapaxes(pushes, -1, -2), -load)
-        found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+        pushes = self._fill([c.pushes(everything) for c in self.constraints], np.shape(at.det), at.det.dtype.type)
+        turned = np.swapaxes(pushes, -1, -2)
+
+        def under(wrenches: Sequence[Wrench]) -> Real:
+            borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
+            found = solve(turned, -np.stack(np.broadcast_arrays(*borne), axis=-1) * self._columns())
+            return np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+
+        found = under(on)
+        more = self._apart(everything, found)
+        if more is not None:
+            found = under([wrench + extra for wrench, extra in zip(on, more, strict=True)])
         held: list[Held] = []
         row = 0
         for constraint in self.constraints:
@@ -226,6 +251,10 @@ class Newton(Kernel):
             driver.link: found[..., row - len(self.group.drivers) + k] for k, driver in enumerate(self.group.drivers)
         }
         return Holding(tuple(held[:outer]), tuple(held[outer : outer + inner]), drives)
+
+
+def _nothing(shape: tuple[int, ...]) -> Wrench:
+    return Wrench(np.zeros(shape, complex), np.zeros(shape))
 
 
 def _turned_round(held: Held) -> Held:

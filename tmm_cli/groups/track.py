@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,7 +23,8 @@ class Track:
     """States at growing places q of the driver with their first and second derivatives by q.
 
     closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the track
-    ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above).
+    ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
+    first, the last node is a place where the driver turns back; derivatives are infinite there.
     """
 
     q: Real
@@ -31,6 +33,13 @@ class Track:
     second: State
     closed: bool
     open_ends: tuple[bool, bool] = (False, False)
+    limits: tuple[bool, bool] = (False, False)
+
+    @cached_property
+    def _bend(self) -> Real:
+        """Size of the second derivative at each node."""
+        bend: Real = np.max(np.abs(self.second.x), axis=-1) + np.max(np.abs(self.second.turn), axis=-1)
+        return bend
 
     def start(self, q: Real) -> tuple[State, Real]:
         """A state near that at each place q, from the nearest node, and the gap: how far q is beyond the track's ends.
@@ -42,17 +51,29 @@ class Track:
         whole = np.floor((q - low) / cycle) if self.closed else np.zeros(np.shape(q))
         within = np.clip(q - whole * cycle, low, high)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
-        node = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
+        left = right - 1
+        # the node from which the second derivative carries least far: near a limit that is the one farther from it
+        bend = self._bend
+        from_left = bend[left] * (within - self.q[left]) ** 2 <= bend[right] * (within - self.q[right]) ** 2
+        node = np.where(from_left, left, right)
         step = (within - self.q[node])[..., None]
         turns = self.states.turn[-1] - self.states.turn[0] if self.closed else np.zeros(self.states.turn.shape[-1])
+        near_limit = (self.limits[0] & (left == 0)) | (self.limits[1] & (right == len(self.q) - 1))
+        limit = np.where(left == 0, 0, len(self.q) - 1)
+        inner = np.where(left == 0, right, left)
+        way = np.abs(self.q[limit] - self.q[inner])
+        share = np.sqrt(np.abs(self.q[limit] - within) / np.where(way > 0, way, 1.0))[..., None]
 
-        def taylor(value: Vector, first: Vector, second: Vector) -> Vector:
-            here: Vector = value[node] + step * (first[node] + step / 2 * second[node])
+        def at(value: Vector, first: Vector, second: Vector) -> Vector:
+            taylor = value[node] + step * (first[node] + step / 2 * second[node])
+            # at a limit the group moves as the root of the way that is left to the driver
+            root = value[limit] + (value[inner] - value[limit]) * share
+            here: Vector = np.where(near_limit[..., None], root, taylor)
             return here
 
         state = State(
-            taylor(self.states.x, self.first.x, self.second.x),
-            taylor(self.states.turn, self.first.turn, self.second.turn) + whole[..., None] * turns,
+            at(self.states.x, self.first.x, self.second.x),
+            at(self.states.turn, self.first.turn, self.second.turn) + whole[..., None] * turns,
         )
         if self.closed:
             return state, np.full(np.shape(q), -1.0)

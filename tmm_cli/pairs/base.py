@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tmm_cli.groups.state import Held, Pose, Rate
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, Vector
 
 if TYPE_CHECKING:
     from tmm_cli.linkage import Linkage
@@ -83,3 +83,7 @@ class Constraint(ABC):
     @abstractmethod
     def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
         """The reaction on the pair's second link."""
+
+    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector] | None:
+        """Point and force (N, on the second link) that follow from the multipliers and do no work; None for most."""
+        return None

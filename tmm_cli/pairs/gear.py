@@ -80,4 +80,15 @@ class Gear(Constraint):
 
     def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
         point, line = self.pitch(poses)
-        return Held(1j * line * multipliers[0], at=point)
+        _, radial = self.apart(poses, multipliers)
+        return Held(1j * line * multipliers[0] + radial, at=point)
+
+    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
+        """Teeth push an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one.
+
+        So the force on j is from axis i to axis j in an outer mesh and the other way in an inner one, whichever is the
+        smaller.
+        """
+        point, line = self.pitch(poses)
+        sense = 1.0 if self.mesh.ratio < 0 else -1.0
+        return point, sense * line * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)

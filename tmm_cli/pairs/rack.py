@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tmm_cli.groups.state import Held
 from tmm_cli.linkage import Mesh, Slide
 from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
@@ -78,4 +80,11 @@ class Rack(Constraint):
 
     def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
         point, along = self.pitch(poses)
-        return Held(along * multipliers[0], at=point)
+        _, radial = self.apart(poses, multipliers)
+        return Held(along * multipliers[0] + radial, at=point)
+
+    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
+        """Teeth push the rack away from the wheel's axis."""
+        point, along = self.pitch(poses)
+        away = -1j * along * np.sign(self.mesh.ratio)
+        return point, away * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)

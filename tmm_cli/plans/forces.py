@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tmm_cli.forces.loads import Applied
+from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.plans.record import Kind, NamedVector, Plan, reaction_name
 

@@ -11,7 +11,10 @@ from pydantic import ValidationError
 
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Output, Request, Sketch, Slide
 from tmm_cli.problem import schema
+from tmm_cli.problem.build_drivers import build_drivers
 from tmm_cli.problem.build_loads import build_loads, with_masses
+from tmm_cli.problem.build_meshes import build_meshes
+from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
@@ -19,13 +22,9 @@ from tmm_cli.problem.record import Problem
 from tmm_cli.problem.sense import Sense, check_name, direction
 from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
-    ACCELERATION,
     ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_SPEED,
     LENGTH,
     NUMBER,
-    SPEED,
     UnitSystem,
 )
 
@@ -73,16 +72,35 @@ class _Builder:
         slides = self.slides(links)
         hinges = self.hinges(links)
         nothing_stray(shape, self.tree.data, links, hinges, slides)
-        driver = self.driver(links, hinges, slides)
-        linkage = Linkage(links, hinges, slides, driver, self.sketch(links, driver), output=self.output(links))
+        drivers = build_drivers(shape, links, hinges, slides, self.sense)
+        meshes = build_meshes(shape, links, hinges, slides, self.sense)
+        outputs = self.outputs(links)
+        driver = drivers[0]
+        linkage = Linkage(
+            links, hinges, slides, driver, self.sketch(links, driver), output=outputs[0] if outputs else None,
+            others=drivers[1:], meshes=meshes, outputs=outputs,
+        )  # fmt: skip
         linkage = with_masses(linkage, shape, self.sense)
-        linkage = replace(linkage, loads=build_loads(linkage, shape, self.sense))
+        linkage = replace(
+            linkage, loads=build_loads(linkage, shape, self.sense), springs=build_springs(linkage, shape, self.sense)
+        )
+        linkage = replace(linkage, friction=build_friction(linkage, shape, self.sense))
         limit = self.sense.positive(shape.checks.lever, NUMBER, ("checks", "lever"), zero=True)
+        allowed, given = self.allowed()
         file = self.tree.file
         return Problem(
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
-            limit, shape.description, file, self.tree,
+            limit, shape.description, file, allowed, given, self.tree,
         )  # fmt: skip
+
+    def allowed(self) -> tuple[tuple[float, float], tuple[bool, bool]]:
+        """Largest pressure angles on sliding and turning links, and whether the file says them."""
+        angles, said = list(Problem.pressure_limits), [False, False]
+        for number, key in enumerate(("pressure_sliding", "pressure_turning")):
+            value = getattr(self.shape.checks, key)
+            if value is not None:
+                angles[number], said[number] = self.sense.positive(value, ANGLE, ("checks", key)), True
+        return (angles[0], angles[1]), (said[0], said[1])
 
     def links(self) -> dict[str, Link]:
         frame = {}
@@ -229,39 +247,6 @@ class _Builder:
                 owners.setdefault(point, []).append(name)
         return tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
 
-    def driver(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> Driver:
-        given = self.shape.driver
-        link = self.sense.known(given.link, {n: 0 for n in links if n != FRAME}, ("driver", "link"), "link")
-        pivots = [h.point for h in hinges if FRAME in h.links and link in h.links]
-        runs = [s for s in slides if {s.carrier, s.runner} == {FRAME, link}]
-        if not pivots and not runs:
-            raise ProblemError(
-                "the driver is neither hinged to the frame nor slides on it",
-                path=("driver", "link"), found=quote(link),
-                allowed=", ".join(
-                    [n for h in hinges if FRAME in h.links for n in h.links if n != FRAME]
-                    + [s.runner for s in slides if s.carrier == FRAME]
-                ),
-            )  # fmt: skip
-        turns = bool(pivots)
-        speed = self.sense.number(given.speed, ANGULAR_SPEED if turns else SPEED, ("driver", "speed"))
-        acceleration = self.sense.number(
-            given.acceleration, ANGULAR_ACCELERATION if turns else ACCELERATION, ("driver", "acceleration")
-        )
-        clockwise = given.turns == "cw"
-        if speed < 0 and "turns" in given.model_fields_set:
-            raise ProblemError(
-                "a negative speed and a sense of rotation say the sense twice", path=("driver", "speed"),
-                found=str(given.speed), allowed="a positive speed with turns: ccw or cw",
-            )  # fmt: skip
-        sense = -1 if clockwise or speed < 0 else 1
-        if given.end is not None:
-            self.sense.known(given.end, links[link].points, ("driver", "end"), f"point of link {link}")
-        return Driver(
-            link, "turn" if turns else "slide", pivots[0] if turns else runs[0].name, abs(speed),
-            acceleration if speed >= 0 else -acceleration, sense, given.balance, given.end or "",
-        )  # fmt: skip
-
     def sketch(self, links: dict[str, Link], driver: Driver) -> Sketch:
         given = dict(self.shape.sketch)
         wanted = ANGLE if driver.kind == "turn" else LENGTH
@@ -288,12 +273,13 @@ class _Builder:
                 )  # fmt: skip
         return Sketch(at, points, angles)
 
-    def output(self, links: dict[str, Link]) -> Output | None:
-        given = self.shape.output
-        if given is None:
-            return None
-        link = self.sense.known(given.link, {n: 0 for n in links if n != FRAME}, ("output",), "link")
-        return Output(link, given.working)
+    def outputs(self, links: dict[str, Link]) -> tuple[Output, ...]:
+        moving = {n: 0 for n in links if n != FRAME}
+        found = []
+        for number, given in enumerate(self.shape.output):
+            path: Path = ("output", number) if len(self.shape.output) > 1 else ("output",)
+            found.append(Output(self.sense.known(given.link, moving, path, "link"), given.working))
+        return tuple(found)
 
     def request(self, driver: Driver) -> Request:
         given = self.shape.positions

@@ -82,6 +82,9 @@ ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
 ANGULAR_ACCELERATION: Final = Dimension(0, 0, -2, 1)
 STIFFNESS: Final = Dimension(0, 1, -2)
+TORSION: Final = Dimension(2, 1, -2, -1)
+DAMPING: Final = Dimension(0, 1, -1)
+TORSION_DAMPING: Final = Dimension(2, 1, -1, -1)
 
 KINDS: Final[Mapping[str, Kind]] = {
     "number": Kind(NUMBER, "", "0.5 or 50 %"),
@@ -97,6 +100,9 @@ KINDS: Final[Mapping[str, Kind]] = {
     "angular speed": Kind(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
     "angular acceleration": Kind(ANGULAR_ACCELERATION, "rad/s^2", "5 rad/s^2"),
     "stiffness": Kind(STIFFNESS, "N/m", "800 N/m"),
+    "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
+    "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
+    "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +16,8 @@ class Problem:
 
     name: of the file, without its ending; lever_limit: allowed difference of the lever, a share of one; titles: the
     file's own names of links; source: what errors found later are located with (a Tree), if there is one.
+    pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
+    them (then to exceed them is a failed check).
     """
 
     name: str
@@ -25,4 +28,6 @@ class Problem:
     lever_limit: float = 0.05
     description: str = ""
     file: str = ""
+    pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
+    limits_set: tuple[bool, bool] = (False, False)
     source: Any = field(default=None, compare=False, repr=False)

@@ -17,12 +17,11 @@ from tmm_cli.refused import (
     NoAssembly,
     NoStrokes,
     NoSuchPosition,
-    NotSolvable,
     Refused,
     Undecided,
     WrongMobility,
 )
-from tmm_cli.structure.assur import ROMAN, Structure
+from tmm_cli.structure.assur import Structure
 
 ANY = object()
 MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
@@ -32,6 +31,14 @@ MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     (("links", ANY, "slides"), schema.Slide),
     (("links", ANY, "slides", ANY), schema.Slide),
     (("driver",), schema.Driver),
+    (("driver", ANY), schema.Driver),
+    (("gears", ANY), schema.Gear),
+    (("racks", ANY), schema.Rack),
+    (("cams", ANY), schema.Cam),
+    (("cams", ANY, "law", ANY), schema.CamPiece),
+    (("springs", ANY), schema.Spring),
+    (("friction",), schema.Friction),
+    (("friction", "pairs", ANY), schema.PairFriction),
     (("masses", ANY), schema.Mass),
     (("loads", ANY), schema.Load),
     (("loads", ANY, "force"), schema.Tabulated),
@@ -177,29 +184,23 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
     match error:
         case WrongMobility(structure=structure):
             return _mobility(structure)
-        case NotSolvable(group=group):
-            return ProblemError(
-                f"links {', '.join(group.links)} make a group that this version cannot solve",
-                path=("links", group.links[0]), found=f"class {ROMAN[group.grade]}, {group.type}",
-                allowed="groups of class II: RRR, RRP, RPR, PRP, RPP", key=True,
-            )  # fmt: skip
         case NoAssembly(group=group, gap=gap):
             short = f"{units.from_si(gap, LENGTH):.6g} {units.symbol(LENGTH)} short of closing"
             if group.type in ("PRP", "RPP"):
                 short = "their guides are parallel"
             return ProblemError(
-                f"links {' and '.join(group.links)} cannot be assembled with the driver at {place}",
+                f"links {_and(group.links)} cannot be assembled with the driver at {place}",
                 path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
             )  # fmt: skip
         case Undecided(group=group, choices=choices) if choices:
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())
             return ProblemError(
-                f"the sketch does not say which way round links {' and '.join(group.links)} are assembled",
+                f"the sketch does not say which way round links {_and(group.links)} are assembled",
                 path=("sketch",), allowed=f"with the driver at {place}, {ways}", key=True,
             )  # fmt: skip
         case Undecided(group=group):
             return ProblemError(
-                f"links {' and '.join(group.links)} are in their dead position in the sketch", path=("sketch", "at"),
+                f"links {_and(group.links)} are in their dead position in the sketch", path=("sketch", "at"),
                 found=place, allowed="another place of the driver, where the two assemblies differ",
             )  # fmt: skip
         case Misfit(name=name, sketched=sketched, found=value):
@@ -241,3 +242,7 @@ def _mobility(structure: Structure) -> ProblemError:
 
 def _listed(links: tuple[str, ...]) -> str:
     return f"link {links[0]} is" if len(links) == 1 else f"links {', '.join(links)} are"
+
+
+def _and(links: tuple[str, ...]) -> str:
+    return ", ".join(links[:-1]) + f" and {links[-1]}" if len(links) > 1 else links[0]

@@ -109,14 +109,95 @@ class Link(Strict):
 
 
 class Driver(Strict):
-    """The input: a crank on the frame, or a slider on the frame that is driven (cylinder)."""
+    """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
 
     link: Name
+    on: Name = Field(default="0", description="the link that it is driven from: the frame, or the cylinder of a piston")
+    at: Value | None = Field(default=None, description="its place in the sketch, for drivers after the first")
     speed: Value = Field(description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s)")
     acceleration: Value = Field(default=0, description="in the sense of motion; the speed is that of position 0")
     turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
     balance: Literal["moment", "force"] = Field(default="moment", description="what balances the crank")
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
+
+
+class Gear(Strict):
+    """Two toothed wheels in mesh, hinged to a common carrier."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
+    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
+    teeth: list[int] | None = Field(default=None, description="numbers of teeth of both")
+    radii: list[Value] | None = Field(default=None, description="radii of both pitch circles")
+    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
+    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
+    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
+    offset: Value = Field(
+        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
+    )
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class Rack(Strict):
+    """A wheel that rolls on a rack."""
+
+    wheel: Name
+    rack: Name = Field(description="the link with the rack; it slides on the carrier")
+    carrier: Name = Field(default="0", description="the link that holds both")
+    radius: Value = Field(description="of the wheel's pitch circle")
+    side: Literal["left", "right"] | None = Field(
+        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
+    )
+    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class CamPiece(Strict):
+    """A part of a cam's turn."""
+
+    over: Value = Field(description="angle of the cam")
+    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
+    law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
+
+
+class Cam(Strict):
+    """A cam on the frame and its follower, by the follower's law of motion."""
+
+    cam: Name
+    follower: Name = Field(description="it slides on the frame, or swings about a hinge on it")
+    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
+    start: Value = Field(default=0, description="angle of the cam where the first piece starts")
+    offset: Value = Field(default=0, description="run (or angle) of the follower there")
+
+
+class Spring(Strict):
+    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
+    at: list[Place] | None = Field(
+        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
+    )
+    rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
+    torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
+    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
+    preload: Value = Field(
+        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
+    )
+    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
+
+
+class PairFriction(Strict):
+    """Friction in one pair."""
+
+    coefficient: Value | None = None
+    radius: Value | None = Field(default=None, description="of the journal of a hinge")
+
+
+class Friction(Strict):
+    """Coulomb friction in pairs. Without this block nothing of it is computed."""
+
+    coefficient: Value = Field(default=0, description="in every pair that is not named")
+    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
+    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
 
 
 class Mass(Strict):
@@ -180,6 +261,10 @@ def _output(found: Any) -> Any:
     return Output.model_validate(found) if isinstance(found, dict) else Output(link=_name(found))
 
 
+def _outputs(found: Any) -> Any:
+    return [_output(item) for item in found] if isinstance(found, list) else [_output(found)]
+
+
 class Positions(Strict):
     """Which positions are computed. They are numbered from 0 in the driver's sense."""
 
@@ -193,6 +278,8 @@ class Checks(Strict):
     """Limits above which a run says so and ends with exit code 1."""
 
     lever: Value = Field(default="5 %", description="difference of the Zhukovsky lever from the force plan")
+    pressure_sliding: Value | None = Field(default=None, description="largest pressure angle on a sliding link; 30 deg")
+    pressure_turning: Value | None = Field(default=None, description="largest pressure angle on a turning link; 45 deg")
 
 
 class File(Strict):
@@ -206,7 +293,12 @@ class File(Strict):
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)
-    driver: Driver
+    driver: Driver | list[Driver] = Field(description="the input; several as a list, when W > 1")
+    gears: dict[Name, Gear] = Field(default_factory=dict, max_length=100)
+    racks: dict[Name, Rack] = Field(default_factory=dict, max_length=100)
+    cams: dict[Name, Cam] = Field(default_factory=dict, max_length=100)
+    springs: dict[Name, Spring] = Field(default_factory=dict, max_length=100)
+    friction: Friction | None = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
         description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
@@ -214,8 +306,8 @@ class File(Strict):
     masses: dict[Name, Mass] = Field(default_factory=dict)
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
-    output: Annotated[Any, BeforeValidator(_output), WithJsonSchema({"anyOf": [*_NAMES, {"$comment": "Output"}]})] = (
-        Field(default=None, description="a link, or {link, working}")
-    )
+    output: Annotated[
+        Any, BeforeValidator(_outputs), WithJsonSchema({"anyOf": [*_NAMES, {"$comment": "Output"}, {"type": "array"}]})
+    ] = Field(default=[], max_length=20, description="a link, or {link, working}, or several of them in a list")
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)

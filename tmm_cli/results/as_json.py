@@ -6,11 +6,12 @@ Arrays have one entry a position, null where a position cannot be reached or is 
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.forces.plan import Reaction, Reactions
+from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.linkage import Driver
 from tmm_cli.motion import Motion, Point
 from tmm_cli.pipeline import Results
@@ -65,6 +66,8 @@ def to_json(results: Results) -> dict[str, Any]:
                 for i in results.lever.items
             ],
         }  # fmt: skip
+    if results.energy is not None:
+        found["energy"] = _energy(results)
     found["warnings"] = list(warnings(results))
     return {key: plain(value) for key, value in found.items()}
 
@@ -79,7 +82,8 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
         ],
         "pairs": [{"name": p.name, "kind": p.kind, "links": [p.i, p.j], "point": p.point} for p in structure.pairs],
         "n": len(structure.links),
-        "p1": len(structure.pairs),
+        "p1": len(structure.pairs) - structure.higher,
+        "p2": structure.higher,
         "contours": structure.contours,
         "formula": structure.formula,
         "class": ROMAN[structure.mechanism_class],
@@ -106,6 +110,12 @@ def _range(results: Results) -> dict[str, Any]:
             "range": [way.start, way.end],
             "limits": [{"at": limit.place, "group": limit.group} for limit in way.limits],
         },
+        "turns": way.turns,
+        "pressure": [
+            {"group": p.group, "link": p.link, "pair": p.pair, "slides": p.slides, "largest": p.largest, "at": p.place,
+             "allowed": p.allowed, "holds": p.holds, "transmission": p.transmission, "gain": p.gain, "angles": p.angles}
+            for p in results.pressure
+        ],
         "dead_positions": [{"at": d.place, "group": d.group, "margin": d.margin} for d in results.dead],
         "output": None if strokes is None else {
             "link": strokes.link,
@@ -168,7 +178,6 @@ def _xy(vector: Vector) -> dict[str, Any]:
 
 
 def _forces(reactions: Reactions, results: Results) -> dict[str, Any]:
-    balance = reactions.balance
     return {
         "loads": [
             {"name": load.name, "kind": load.kind, "link": load.link, "force": _xy(load.force), "moment": load.moment}
@@ -176,14 +185,31 @@ def _forces(reactions: Reactions, results: Results) -> dict[str, Any]:
         ],
         "reactions": {r.pair.name: _reaction(r) for r in reactions.all},
         "compound_hinges": _pins(reactions, results),
-        "balancing": {
-            "kind": balance.kind,
-            "moment": balance.moment,
-            "force": balance.force,
-            "vector": _xy(balance.vector),
-            "at": _xy(balance.at),
-        },
+        "balancing": _balancing(reactions.balance),
+        "drivers": {b.driver.link: _balancing(b) for b in reactions.balances},
     }
+
+
+def _balancing(balance: Balance) -> dict[str, Any]:
+    return {
+        "kind": balance.kind,
+        "moment": balance.moment,
+        "force": balance.force,
+        "vector": _xy(balance.vector),
+        "at": _xy(balance.at),
+    }
+
+
+def _energy(results: Results) -> dict[str, Any]:
+    found = results.energy
+    assert found is not None
+    energy: dict[str, Any] = {field.name: getattr(found, field.name) for field in fields(found)}
+    if results.friction is not None and results.motion is not None:
+        rubbed = results.friction
+        energy["efficiency"] = rubbed.efficiency(results.motion)
+        energy["locked"] = rubbed.locked
+        energy["friction_work"] = {pair: rubbed.total(pair, results.motion) for pair in rubbed.work}
+    return energy
 
 
 def _reaction(r: Reaction) -> dict[str, Any]:
@@ -204,7 +230,7 @@ def _pins(reactions: Reactions, results: Results) -> dict[str, Any]:
     for hinge in results.linkage.hinges:
         if len(hinge.links) < 3:
             continue
-        pairs = [r for r in reactions.all if r.pair.slide is None and r.pair.point == hinge.point]
+        pairs = [r for r in reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
         found[hinge.point] = {
             link: _xy(np.sum([r.onto(link) for r in pairs if link in (r.on, r.by)], axis=0)) for link in hinge.links
         }

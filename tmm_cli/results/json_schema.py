@@ -58,11 +58,14 @@ def result_schema() -> dict[str, Any]:
             "dead_positions": _list("inside the driver's way", _object(
                 "a dead position", at=_number("place of the driver"), group=_text("the group"),
                 margin=_number("what is left of its margin there"))),
+            "turns": _number("turns of the driver after which everything repeats"),
+            "pressure": _pressure(),
             "output": _output(),
             "positions": _positions(),
             "kinematics": _kinematics(),
             "forces": _forces(),
             "lever": _lever(),
+            "energy": _energy(),
             "warnings": _list("sentences", {"type": "string"}),
             "files": _list("written beside this file", {"type": "string"}),
         },
@@ -73,7 +76,8 @@ def _structure() -> dict[str, Any]:
     names = {"type": "string"}
     return _object(
         "links, pairs and Assur groups",
-        mobility=_number("Chebyshev, W = 3n - 2 p1"), n=_number("moving links"), p1=_number("lower pairs"),
+        mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
+        p2=_number("higher pairs"),
         contours=_number("independent contours K = p - n"), formula=_text("formula of structure"),
         **{"class": _text("class of the mechanism")},
         links=_list("moving links", _object(
@@ -81,7 +85,8 @@ def _structure() -> dict[str, Any]:
             label=_text("the file's own name"), points=_list("its points", names))),
         pairs=_list("pairs", _object(
             "a pair", name=_text("point or guide; a compound hinge's further pairs have primes"),
-            kind=_text("R or P"), links=_list("first and second link", names), point=_text("hinge or running point"))),
+            kind=_text("R turning, P sliding, G wheels, K rack, C cam"),
+            links=_list("first and second link", names), point=_text("hinge or running point"))),
         groups=_list("in solving order", _object(
             "an Assur group", name=_text("II(2,3)"), links=_list("links", names), **{"class": _text("roman")},
             order=_number("number of leads"), type=_text("RRR, RRP, RPR, PRP, RPP"),
@@ -153,10 +158,40 @@ def _forces() -> dict[str, Any]:
             couple=_series("guides: couple, reduced to the running point, N m"),
             arm=_series("guides: where the force acts, along the guide from the running point, m"))),
         compound_hinges=_map("force of the pin on each link", _map("by link", _vector("N"))),
-        balancing=_object(
-            "what balances the driver", kind=_text("moment or force: which the frame's reaction belongs to"),
-            moment=_series("N m; null for a driven slider"), force=_series("on the crank's end across it, or along, N"),
-            vector=_vector("the force, N"), at=_vector("where it acts, m")),
+        balancing=_balancing("what balances the first driver"),
+        drivers=_map("what balances each driver, by its link", _balancing("a driver")),
+    )  # fmt: skip
+
+
+def _balancing(text: str) -> dict[str, Any]:
+    return _object(
+        text, kind=_text("moment or force: which the frame's reaction belongs to"),
+        moment=_series("N m; null for a driven slider"), force=_series("on the crank's end across it, or along, N"),
+        vector=_vector("the force, N"), at=_vector("where it acts, m"),
+    )  # fmt: skip
+
+
+def _pressure() -> dict[str, Any]:
+    return _list("driven links of the groups", _object(
+        "where and how a link is driven", group=_text("the group"), link=_text("driven link"), pair=_text("driven in"),
+        slides=_flag("slides on what holds it, else turns"), largest=_number("largest pressure angle, rad"),
+        at=_number("place of the driver there"), allowed=_number("rad"), holds=_flag("within what is allowed"),
+        transmission=_number("least transmission angle, rad"), gain=_number("force increase, 1/cos of the largest"),
+        angles=_series("pressure angle, rad")))  # fmt: skip
+
+
+def _energy() -> dict[str, Any]:
+    return _object(
+        "power balance, and the mechanism reduced to its first driver",
+        inertia=_series("reduced moment of inertia, kg m2, or mass, kg"), slope=_series("its derivative by the driver"),
+        moment=_series("reduced moment of all loads but inertia, N m, or force, N"),
+        kinetic=_series("kinetic energy, J"),
+        rate=_series("its rate, W"), drivers=_series("power of the drivers, W"), weights=_series("of weights, W"),
+        loads=_series("of loads, W"), friction=_series("of friction, W"),
+        balance=_series("what is left of all powers, against the largest"),
+        efficiency=_number("with friction: over the positions"),
+        locked=_list("locked by friction", {"type": "boolean"}),
+        friction_work=_map("work of friction over the positions, J, by pair", _number("J")),
     )  # fmt: skip
 
 

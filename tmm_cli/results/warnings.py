@@ -15,11 +15,10 @@ from tmm_cli.vectors import dot
 from tmm_cli.words import say
 
 if TYPE_CHECKING:
-    from tmm_cli.forces.loads import Applied
+    from tmm_cli.forces.applied import Applied
     from tmm_cli.linkage import Load
 
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
-NEAR = 0.05  # a margin (sine of the transmission angle) below which a position is said to be near a dead one
 
 
 def warnings(results: Results) -> Iterable[str]:
@@ -58,11 +57,22 @@ def warnings(results: Results) -> Iterable[str]:
         yield say("warning.stopped", link=results.linkage.driver.link, number=stopped[0])
     for dyad, at in zip(motion.kernels, motion.placements, strict=True):
         margin = np.where(motion.moving, at.margin, np.inf)
-        if margin.size and np.min(margin) < NEAR:
+        if margin.size and np.min(margin) < dyad.near:
             k = int(np.argmin(margin))
             yield say(
                 "warning.near", number=results.numbers[k], group=dyad.group.title, margin=f"{float(margin[k]):.2g}"
             )
+    if not way.repeats:
+        yield say("warning.cycle")
+    for pressure in results.pressure:
+        if results.problem.limits_set[0 if pressure.slides else 1] and not pressure.holds:
+            largest, allowed = (f"{units.from_si(v, ANGLE):.6g} {units.symbol(ANGLE)}" for v in
+                                (pressure.largest, pressure.allowed))  # fmt: skip
+            yield say("warning.pressure", link=pressure.link, largest=largest, allowed=allowed)
+    if results.friction is not None and np.any(results.friction.locked):
+        k = int(np.argmax(results.friction.locked))
+        pair = results.structure.pair(results.friction.pair[k])
+        yield say("warning.locked", number=results.numbers[k], pair=pair.name, i=pair.i, j=pair.j)
     for load in results.loads:
         if load.kind == "load" and _drives(results, load):
             yield say("warning.drives", load=load.name)
@@ -84,9 +94,9 @@ def warnings(results: Results) -> Iterable[str]:
 
 def _drives(results: Results, load: Applied) -> bool:
     """Whether a load of the working stroke helps the motion at every position where it acts: it should resist."""
-    given = {x.name: x for x in results.linkage.loads}[load.name]
+    given = {x.name: x for x in results.linkage.loads}.get(load.name)
     motion = results.motion
-    if not given.working_stroke_only or motion is None:
+    if given is None or not given.working_stroke_only or motion is None:
         return False
     power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
     reach = max((d.size for d in results.kernels), default=1.0) if results.linkage.driver.kind == "turn" else 1.0

@@ -14,10 +14,12 @@ from tmm_cli.results.table import Table
 REPORTS: tuple[tuple[str, str], ...] = (
     ("structure", "structure"),
     ("quality", "motion"),
+    ("pressure", "motion"),
     ("cycle", "motion"),
     ("kinematics", "motion"),
     ("forces", "reactions"),
     ("lever", "lever"),
+    ("energy", "energy"),
 )
 
 

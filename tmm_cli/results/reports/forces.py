@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.forces.loads import Applied
+from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results

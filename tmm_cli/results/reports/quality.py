@@ -18,6 +18,8 @@ def tables(results: Results) -> Iterable[Table]:
         return
     place = ANGLE if results.linkage.driver.kind == "turn" else LENGTH
     rows: list[tuple[str, Any, Dimension]] = []
+    if way.turns > 1:
+        rows.append((say("quality.turns"), way.turns, NUMBER))
     if not way.full:
         rows += [(say("quality.from"), way.start, place), (say("quality.to"), way.end, place)]
     if strokes is not None and strokes.strokes:
@@ -27,6 +29,7 @@ def tables(results: Results) -> Iterable[Table]:
         for stroke in strokes.strokes:
             name = say("quality.working" if stroke.working else "quality.idle")
             rows.append((say("quality.start", stroke=name), stroke.start, place))
+            rows.append((say("quality.low", link=strokes.link), stroke.low, run))
             rows.append((say("quality.length", stroke=name), stroke.length, place))
     rows += [(say("quality.dead", group=dead.group), dead.place, place) for dead in results.dead]
     if rows:

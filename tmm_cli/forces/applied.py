@@ -1,0 +1,31 @@
+"""One thing that acts on a link besides reactions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.vectors import Real, Vector
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position."""
+
+    name: str
+    kind: Literal["weight", "inertia", "load", "friction"]
+    link: str
+    at: complex
+    force: Vector
+    moment: Real
+    couple_name: str = ""
+
+    @property
+    def has_force(self) -> bool:
+        return bool(np.any(self.force != 0))
+
+    @property
+    def has_moment(self) -> bool:
+        return bool(np.any(self.moment != 0))

@@ -1,0 +1,41 @@
+"""What springs, and cylinders that only push, do to the two links that they join."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.forces.applied import Applied
+from tmm_cli.linkage import Spring
+from tmm_cli.motion import Motion
+from tmm_cli.vectors import Real, dot
+
+
+def spring_loads(spring: Spring, motion: Motion) -> Iterable[Applied]:
+    """The equal and opposite loads of a spring; on the frame they are left out."""
+    still = np.zeros(np.shape(motion.q))
+    if spring.turns:
+        pull = _twist(spring, motion)
+        pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
+    else:
+        i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
+        way = j.x - i.x
+        length = np.abs(way)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            along = np.where(length > 0, way / length, 0.0)
+        longer = dot(along, j.v - i.v)
+        pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
+        pairs = ((spring.j, spring.at_j, -pull * along, still), (spring.i, spring.at_i, pull * along, still))
+    for link, at, force, moment in pairs:
+        if link in motion.linkage.moving:
+            name = spring.name if link == spring.j or spring.j not in motion.linkage.moving else f"{spring.name}'"
+            yield Applied(name, "load", link, at, force, moment, name)
+
+
+def _twist(spring: Spring, motion: Motion) -> Real:
+    """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
+    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.exp(-1j * spring.free)
+    speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
+    moment: Real = spring.preload + spring.rate * np.angle(turned) + spring.damping * speed
+    return moment
