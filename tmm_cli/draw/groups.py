@@ -35,7 +35,7 @@ from tmm_cli.words import say
 
 LEAST, A_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
 A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it; with more, each has its own sheet
-LINE, PAD, GAP = 4.6, 17.0, 6.0  # mm: a line of a caption, room about a group, between two groups
+LINE, PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
 STUB = 8.0  # mm of what a lead would be joined to
 
 
@@ -46,15 +46,22 @@ def groups(results: Results) -> Iterable[tuple[str, Figure]]:
         return
     motion, k = found
     scene = Scene(results.linkage, results.structure, motion.poses, k)
-    every, place, taken = parts(results.structure), where(results, motion, k), set()
+    yield from sheets_apart(results.problem.title, where(results, motion, k), scene, results.roles)
+
+
+def sheets_apart(
+    title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
+) -> Iterable[tuple[str, Figure]]:
+    """The sheets with the stems of their files."""
+    every, taken = parts(scene.structure), set()
     if len(every) <= A_SHEET:
-        yield "groups", side_by_side(results.problem.title, place, scene, every, results.roles).finish()
+        yield "groups", side_by_side(title, place, scene, every, roles).finish()
         return
     for index, part in enumerate(every):
         stem = _stem(part)
         stem = f"{stem}-{index}" if stem in taken else stem
         taken.add(stem)
-        yield stem, side_by_side(results.problem.title, place, scene, [part], results.roles).finish()
+        yield stem, side_by_side(title, place, scene, [part], roles).finish()
 
 
 def _stem(part: Part) -> str:
@@ -91,7 +98,7 @@ def side_by_side(
             first = line == 0
             sheet.text(at, text, 11 if first else 8.5, colour=part.colour if first else DARK,
                        weight="bold" if first else "normal")  # fmt: skip
-        _part(sheet, scene, part)
+        _part(sheet, scene, part, PAD[rows > 1])
         boxes += sheet.ground.boxes
     whole.boxes += boxes
     sheet.ground = whole
@@ -113,17 +120,17 @@ def caption(part: Part, roles: Mapping[str, str], width: float, driving: Pair | 
             say("groups.inner_pairs", pairs=", ".join(f"{p.name} ({p.i}-{p.j})" for p in group.inner)),
             say("groups.outer_pairs", pairs=", ".join(f"{p.name} ({p.i}-{p.j})" for p in group.outer)),
         ]
-    fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ") for text in words]
-    return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines[:4])]
+    fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ", max_lines=4) for text in words]
+    return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
 
 
-def _part(sheet: Sheet, scene: Scene, part: Part) -> None:
+def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     """One part in the field that the ground of the sheet has."""
     structure = scene.structure
     outer = part.group.outer if part.group else ()
     own = tuple(p for p in structure.pairs if p.i in (*part.links, FRAME) and p.j in (*part.links, FRAME))
     inner = part.group.inner if part.group else own
-    scene = fitted(sheet, scene, part.links, sheet.ground.low, sheet.ground.high, PAD, LEAST + A_LINK * len(part.links))
+    scene = fitted(sheet, scene, part.links, sheet.ground.low, sheet.ground.high, pad, LEAST + A_LINK * len(part.links))
     size = symbol_size(sheet, scene, part.links)
     forms = {link: form(sheet, scene, link) for link in part.links}
     for shape in forms.values():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -41,7 +42,7 @@ from tmm_cli.words import say
 PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
 LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link
 ROW = 5.4  # mm of a line of the legend
-PLACES = 48  # of the driver that are looked at when the sketch hides one pair behind another
+PLACES, MANY = 47, 40  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
 HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
 
 
@@ -80,9 +81,10 @@ def at_sketch(results: Results) -> tuple[Motion, int] | None:
     None when the linkage cannot be assembled there.
     """
     linkage, structure = results.linkage, results.structure
-    if len(results.dyads) != len(structure.groups) or results.way is None:
+    if results.way is None:
         return None
-    places = np.linspace(results.way.start, results.way.end, PLACES + 1)
+    others = PLACES if len(structure.pairs) <= MANY else 0
+    places = np.linspace(results.way.start, results.way.end, others + 2)
     motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]))
     if not bool(motion.placed[0]):
         return None
@@ -102,10 +104,7 @@ def _clearness(scene: Scene, motion: Motion) -> Real:
     # a guide on the frame may be drawn anywhere along itself
     pairs = [p for p in scene.structure.pairs if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
     spots = np.array([[s.at(p) for p in pairs] for s in scenes])
-    bars = np.array([
-        [(ends[n], ends[n + 1]) for link in moving for ends in [s.joints(link)] for n in range(len(ends) - 1)]
-        for s in scenes
-    ])  # fmt: skip
+    bars = np.array([[part for link in moving for part in pairwise(s.spine(link))] for s in scenes])
     size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
     gaps = [np.abs(spots[:, a] - spots[:, b]) for a in range(spots.shape[1]) for b in range(a)]
     for a in range(spots.shape[1]):
@@ -218,8 +217,11 @@ def grounds(sheet: Sheet, scene: Scene, pairs: Iterable[Pair], size: float) -> N
     """The frame at every pair that it has, with its number."""
     fixed = [p for p in pairs if FRAME in (p.i, p.j)]
     for pair in fixed:
-        if pair.slide is not None and pair.slide.carrier == FRAME:
-            sheet.label(FRAME, rails(sheet, sheet.on(scene.at(pair)), scene.along(pair.slide), size), 9, DARK, "italic")
+        if pair.slide is None:
+            continue
+        at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
+        end = rails(sheet, at, along, size) if pair.slide.carrier == FRAME else at + along * size * BOX[0] / 2
+        sheet.label(FRAME, end, 9, DARK, "italic")
     for at, _ in together((sheet.on(scene.at(p)), p) for p in fixed if p.kind == "R"):
         sheet.label(FRAME, support(sheet, at, size), 9, DARK, "italic")
 
@@ -285,7 +287,9 @@ class Legend:
         width = paper - 2 * MARGIN
         left = min(0.5 * width, 14 + max(extent(Label(self.words(part), 0j, 9, DARK))[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
-        lines = [line for fact in self.facts for line in textwrap.wrap(fact, chars, subsequent_indent="   ")[:4]]
+        lines = [
+            line for fact in self.facts for line in textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4)
+        ]
         return left, len(self.parts), lines
 
     def words(self, part: Part) -> str:

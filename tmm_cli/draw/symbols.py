@@ -75,6 +75,10 @@ class Scene:
         carried = [p for p in self.of(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 
+    def spine(self, link: str) -> list[complex]:
+        """All that a link is joined by, one after the other: its hinges, its stones, those that run on it."""
+        return [*self.joints(link), *(stone for stone, _ in self.guides(link))]
+
     def ends(self, link: str) -> list[complex]:
         """Named points of a link: those on its guide show how long it is."""
         return [self.place(link, local) for local in self.linkage.links[link].points.values()]
@@ -183,10 +187,17 @@ class Form:
         if abs(end - start) < ON_LINE:
             return start
         along = (end - start) / abs(end - start)
-        runs = sorted({0.0, abs(end - start), *(float(dot(along, j - start)) for j in self.joints)})
+        joined = (*self.joints, *(bar.base for bar in self.bars))
+        runs = sorted({0.0, abs(end - start), *(float(dot(along, j - start)) for j in joined)})
         runs = [r for r in runs if 0 <= r <= abs(end - start)]
         gap = max(range(len(runs) - 1), key=lambda n: runs[n + 1] - runs[n])
         return start + along * (runs[gap] + runs[gap + 1]) / 2
+
+    @property
+    def room(self) -> float:
+        """Distance of the middle of its plate from the nearest edge, mm."""
+        edges = zip(self.hull, (*self.hull[1:], self.hull[0]), strict=True)
+        return min(abs(float(cross(q - p, self.middle - p))) / abs(q - p) for p, q in edges)
 
     def through(self, place: complex) -> complex | None:
         """The direction of a bar that goes on beyond a hinge on both sides, if there is one."""
@@ -227,11 +238,11 @@ def form(sheet: Sheet, scene: Scene, link: str) -> Form:
     if loose and bars:
         bar, near, foot = _nearest(bars, loose)
         bar.take(foot)
-        if len(loose) == 1:
+        if len(loose) > 1 and bar.holds:
+            loose.append(foot)
+        else:
             struts.append((near, foot))
             welds.append((foot, near - foot, _longer(bar, foot)))
-        else:
-            loose.append(foot)
     hull = tuple(_flat(outline(loose))) if len(loose) > 1 else ()
     boxes = tuple(sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link)
     return Form(tuple(joints), boxes, hull, tuple(bars), tuple(struts), tuple(welds))
@@ -252,7 +263,7 @@ def _flat(hull: Sequence[complex]) -> Sequence[complex]:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
     along = (end - start) / abs(end - start)
-    return hull if max(abs(cross(along, p - start)) for p in hull) > 1.2 else (start, end)
+    return hull if max(abs(cross(along, p - start)) for p in hull) > 1.1 * HINGE else (start, end)
 
 
 def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
@@ -329,8 +340,8 @@ def box(sheet: Sheet, at: complex, along: complex, colour: str, size: float, *, 
         sheet.area(corners, "white", "none", 0.0, 4)
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
     if colour == DARK:
-        for corner, other in ((corners[1], corners[2]), (corners[0], corners[3])):
-            hatch(sheet, corner, other, along if corner == corners[0] else -along)
+        hatch(sheet, corners[1], corners[0], 1j * along)
+        hatch(sheet, corners[2], corners[3], -1j * along)
 
 
 def hinge(
@@ -378,7 +389,7 @@ def quiet(
     def cost(way: complex) -> float:
         run, off = dot(way, crowd), np.abs(cross(way, crowd))
         turned = abs(np.angle(way / wish))
-        return float(np.count_nonzero((run > from_) & (run < reach) & (off < 0.45 * reach))) + 0.8 * turned
+        return float(np.count_nonzero((run > from_) & (run < reach) & (off < 0.45 * reach))) + 2.0 * turned
 
     turns = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8)
     return min(ways or [wish * complex(unit(np.pi / 8 * n)) for n in turns], key=cost)
@@ -435,7 +446,7 @@ def fit(sheet: Sheet, places: Sequence[complex], low: complex, high: complex, pa
 def number(sheet: Sheet, link: str, shape: Form, colour: str) -> None:
     """The number of a link: on its plate, or beside its bar."""
     label = Label(link, shape.middle, 11, colour, "italic")
-    if len(shape.hull) < 3 or not np.isfinite(label.anchor):
+    if len(shape.hull) < 3 or shape.room < 3.2 or not np.isfinite(label.anchor):
         sheet.labels.append(label)
         return
     width, height = extent(label)
