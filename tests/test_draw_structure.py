@@ -197,7 +197,7 @@ def test_a_hinge_beside_a_guide_is_joined_to_it_square():
     shape = form(sheet, OFFSET, "3")
     ((start, end),) = shape.struts
     assert ((end - start) * np.conj(shape.bars[0].along)).real == pytest.approx(0, abs=1e-9)
-    assert len(shape.welds) == 1
+    assert len(shape.welds) == 2  # at the guide, and at the hinge: one link, not two
 
 
 def test_a_link_goes_on_beyond_a_hinge_in_its_middle():

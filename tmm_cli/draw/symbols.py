@@ -243,6 +243,8 @@ def form(sheet: Sheet, scene: Scene, link: str) -> Form:
         else:
             struts.append((near, foot))
             welds.append((foot, near - foot, _longer(bar, foot)))
+            # at a hinge, bars of one link would look like two links without a mark
+            welds += [(near, foot - near, other - near) for other in loose if other != near]
     hull = tuple(_flat(outline(loose))) if len(loose) > 1 else ()
     boxes = tuple(sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link)
     return Form(tuple(joints), boxes, hull, tuple(bars), tuple(struts), tuple(welds))
@@ -322,7 +324,8 @@ def body(sheet: Sheet, shape: Form, colour: str) -> None:
                 sheet.ground.line(start + shift, end + shift)
     for at, one, other in shape.welds:
         if min(abs(one), abs(other)) > 0.5:
-            legs = [min(WELD, abs(leg)) * leg / abs(leg) for leg in (one, other)]
+            reach = WELD + (HINGE if any(abs(at - joint) < ON_LINE for joint in shape.joints) else 0.0)
+            legs = [min(reach, abs(leg)) * leg / abs(leg) for leg in (one, other)]
             sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
 
 
