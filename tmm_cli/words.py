@@ -286,6 +286,27 @@ ENGLISH: dict[str, str] = {
     "draw.reactions": "Reactions over the cycle; dots: computed positions",
     "draw.outer": "reactions of the frame",
     "draw.inner": "between moving links",
+    # structural scheme and groups apart
+    "scheme.title": "Structural scheme, {place} (not to scale)",
+    "scheme.at_crank": "crank at {place}",
+    "scheme.at_slider": "driver at {place}",
+    "scheme.primary": "{title}: primary mechanism (driver and frame)",
+    "scheme.group": "{title}: class {roman}, order {order}, {type}",
+    "scheme.more": "... and {count} parts more",
+    "scheme.formula": "Formula of structure: {formula}",
+    "scheme.links": "n = {n} moving links, p₁ = {p1} lower pairs ({r} turning, {p} sliding), p₂ = {p2} higher pairs",
+    "scheme.mobility": "W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}",
+    "scheme.class": "Mechanism of class {roman}",
+    "scheme.compound": "Compound hinge {points}: a circle for every pair",
+    "groups.sheet": "Assur groups apart, {place}; dashed: what the leads are joined to",
+    "groups.kind": "class {roman}, order {order}, type {type}",
+    "groups.primary": "primary mechanism: driver and frame",
+    "groups.links": "links: {links}",
+    "groups.driving_pair": "driving pair: {pair}",
+    "groups.inner_pairs": "inner pairs: {pairs}",
+    "groups.outer_pairs": "outer pairs: {pairs}",
+    "groups.lead": "{pair} (to {link})",
+    "groups.not_drawn": "not drawn: the groups of {problem} cannot be assembled at the sketch",
 }
 
 

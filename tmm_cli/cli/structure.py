@@ -2,10 +2,49 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Files, Json, Out, each, report, solved
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tmm_cli.cli.common import Files, Json, Out, each, report, say, solved
+
+if TYPE_CHECKING:
+    from tmm_cli.pipeline import Results
+
+Drawings = Annotated[
+    bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")
+]
 
 
-def structure(files: Files, as_json: Json = False, out: Out = None) -> None:
+def structure(files: Files, as_json: Json = False, out: Out = None, drawings: Drawings = False) -> None:
     """Mobility, pairs, Assur groups in solving order, formula of structure, names of links."""
     names = ("structure", "links", "pairs", "groups")
-    each(files, lambda file: report(solved(file, "structure", None), names, as_json, out), as_json=as_json)
+
+    def work(file: str) -> int:
+        results = solved(file, "structure", None)
+        code = report(results, names, as_json, None if drawings else out)
+        if drawings:
+            _draw(results, out)
+        return code
+
+    each(files, work, as_json=as_json)
+
+
+def _draw(results: Results, out: Path | None) -> None:
+    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
+    from tmm_cli.draw import files as drawn
+    from tmm_cli.results.files import folder_name, write_whole
+    from tmm_cli.results.output import write_results
+    from tmm_cli.words import say as words
+
+    pictures = dict(drawn(results))
+    if not pictures:
+        say(words("groups.not_drawn", problem=results.problem.name))
+    if out is not None:
+        say(f"written: {write_results(results, out, pictures.items())}")
+    elif pictures:
+        folder = Path("outputs") / folder_name(results.problem.name)
+        for name, content in pictures.items():
+            write_whole(folder / name, content)
+        say(f"written: {folder}")

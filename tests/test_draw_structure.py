@@ -1,0 +1,306 @@
+"""The structural scheme and the groups apart: every link, pair, lead and group is there, legible, inside the sheet."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import re
+
+import numpy as np
+import pytest
+from test_commands import PROBLEMS, ROOT, SHAPER, subprocess, sys, tmm
+
+from tmm_cli import load, solve
+from tmm_cli.draw import sheets
+from tmm_cli.draw.groups import _stem as stem_of
+from tmm_cli.draw.groups import groups, sheets_apart, side_by_side
+from tmm_cli.draw.structure import Legend, at_sketch, parts, scheme, structure
+from tmm_cli.draw.symbols import HINGE, Scene, form
+from tmm_cli.groups.base import Pose
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+from tmm_cli.structure.assur import analyse
+
+MM = 25.4
+
+
+def scene(points, links, slides=(), driver="O", turn=0.4):
+    """A linkage drawn at the given places (mm): every link's axes are turned by some angle and start somewhere.
+
+    slides: name, carrier, runner, place of the running point, angle of the guide (deg).
+    """
+    poses = {name: (1e-3 * (7 * n - 3j * n), cmath.exp(1j * turn * n)) for n, name in enumerate(links)}
+
+    def local(name, place):
+        origin, z = poses[name]
+        return (place * 1e-3 - origin) / z
+
+    bodies = {name: Link(name, {p: local(name, points[p]) for p in own.split()}) for name, own in links.items()}
+    hinges = [Hinge(p, tuple(n for n, body in bodies.items() if p in body.points)) for p in points]
+    guided = [
+        Slide(
+            name, one, other, local(one, at), math.radians(angle) - cmath.phase(poses[one][1]), local(other, at),
+            cmath.phase(poses[other][1] / poses[one][1]),
+        )
+        for name, one, other, at, angle in slides
+    ]  # fmt: skip
+    linkage = Linkage(
+        bodies, tuple(h for h in hinges if len(h.links) > 1), tuple(guided), Driver("1", "turn", driver, 1.0),
+        Sketch(0.0),
+    )  # fmt: skip
+    moved = {name: Pose(np.array([origin]), np.array([z])) for name, (origin, z) in poses.items()}
+    return Scene(linkage, analyse(linkage), moved)
+
+
+TRIAD = scene(
+    {"O": 0j, "A": 40 + 30j, "B": 120 + 60j, "C": 190 + 40j, "D": 160 + 120j, "E": 210 - 40j, "F": 250 + 140j},
+    {FRAME: "O E F", "1": "O A", "2": "A B", "3": "B C D", "4": "C E", "5": "D F"},
+)
+SLIDING_TRIAD = scene(
+    {"O": 0j, "A": 40 + 30j, "B": 120 + 60j, "C": 190 + 40j, "D": 160 + 120j, "E": 210 - 40j},
+    {FRAME: "O E", "1": "O A", "2": "A B", "3": "B C D", "4": "C E", "5": "D"},
+    [("x", FRAME, "5", 160 + 120j, 20)],
+)
+CONTOUR = scene(
+    {"O": 0j, "A": 40 + 30j, "B": 120 + 20j, "C": 120 + 100j, "D": 220 + 100j, "E": 220 + 20j, "F": 270 + 70j},
+    {FRAME: "O F", "1": "O A", "2": "A B C", "3": "C D", "4": "D E F", "5": "B E"},
+)
+OFFSET = scene(
+    {"O": 0j, "A": 40 + 30j, "C": -20 - 100j, "D": 60 + 60j, "E": 140 + 70j},
+    {FRAME: "O C", "1": "O A", "2": "A", "3": "C D", "4": "D E", "5": "E"},
+    [("a", "3", "2", 40 + 30j, 75), ("x", FRAME, "5", 140 + 70j, 0)],
+)
+GUIDE_ON_THE_LINK = scene(
+    {"O": 0j, "A": 40 + 30j, "B": 150 + 60j},
+    {FRAME: "O", "1": "O A", "2": "A B", "3": "B"},
+    [("x", "3", FRAME, 200 + 60j, 0)],
+)
+CROSS = scene(
+    {"O": 0j, "C": 80 + 10j},
+    {FRAME: "O C", "1": "O", "2": "", "3": "C"},
+    [("a", "2", "1", -20 + 40j, 80), ("b", "2", "3", 90 + 20j, -10)],
+)
+HAND_MADE = {
+    "triad": TRIAD, "sliding triad": SLIDING_TRIAD, "class IV": CONTOUR, "offset guide": OFFSET,
+    "guide on the link": GUIDE_ON_THE_LINK, "two guides on one link": CROSS,
+}  # fmt: skip
+
+
+def of_file(path):
+    results = solve(load(str(path)), "structure")
+    motion, k = at_sketch(results)
+    return Scene(results.linkage, results.structure, motion.poses, k)
+
+
+def chain(number):
+    """A crank and a row of dyads, each on the compound hinge of the one before."""
+    points, links = {"O": 0j, "A": 20 + 30j}, {FRAME: "O", "1": "O A"}
+    before = "A"
+    for n in range(number):
+        points |= {f"B{n}": 60 + 60 * n + 1j * (50 + 10 * (n % 2)), f"D{n}": 70 + 60 * n - 30j}
+        links[FRAME] += f" D{n}"
+        links |= {f"{2 * n + 2}": f"{before} B{n}", f"{2 * n + 3}": f"B{n} D{n}"}
+        before = f"B{n}"
+    return scene(points, links)
+
+
+def written(figure):
+    """Texts with their true boxes, mm."""
+    figure.canvas.draw()
+    size = MM / figure.dpi
+    for text in figure.axes[0].texts:
+        box = text.get_window_extent()
+        yield text.get_text(), (box.x0 * size, box.x1 * size, box.y0 * size, box.y1 * size)
+
+
+def texts(figure):
+    return [text.get_text() for text in figure.axes[0].texts]
+
+
+def legible(figure):
+    """Every text inside the sheet and none on another one."""
+    width, height = (MM * inches for inches in figure.get_size_inches())
+    found = list(written(figure))
+    for n, (text, (left, right, low, high)) in enumerate(found):
+        assert left > 8 and low > 8 and right < width - 8 and high < height - 8, text
+        for other, (a, b, c, d) in found[:n]:
+            across, up = min(right, b) - max(left, a), min(high, d) - max(low, c)
+            assert across < 0.3 or up < 0.6, (text, other)
+
+
+@pytest.mark.parametrize("drawn", [*PROBLEMS, *HAND_MADE], ids=lambda d: d if isinstance(d, str) else d.stem)
+def test_sheets_are_legible_and_show_every_link_pair_and_group(drawn):
+    here = HAND_MADE[drawn] if isinstance(drawn, str) else of_file(drawn)
+    every = parts(here.structure)
+    whole = scheme("title", "crank at 30 deg", here).finish()
+    apart = side_by_side("title", "crank at 30 deg", here, every).finish()
+    for figure in (whole, apart):
+        legible(figure)
+        assert set(here.structure.links) <= set(texts(figure))
+    names = {name for text in texts(whole) for name in text.split(", ")}
+    assert {p.name for p in here.structure.pairs} <= names
+    assert any(here.structure.formula.replace("->", "→") in text for text in texts(whole))
+    assert {part.title for part in every} <= set(texts(apart))
+    leads = {name for text in texts(apart) for name in text.split(", ")}
+    for group in here.structure.groups:
+        for pair in group.outer:
+            assert f"{pair.name} (to {pair.i if pair.j in group.links else pair.j})" in leads
+
+
+@pytest.mark.parametrize("drawn", [*PROBLEMS, *HAND_MADE], ids=lambda d: d if isinstance(d, str) else d.stem)
+def test_every_line_and_circle_is_inside_the_sheet(drawn):
+    here = HAND_MADE[drawn] if isinstance(drawn, str) else of_file(drawn)
+    for figure in (scheme("t", "", here).finish(), side_by_side("t", "", here, parts(here.structure)).finish()):
+        width, height = (MM * inches for inches in figure.get_size_inches())
+        for line in figure.axes[0].lines:
+            x, y = (np.asarray(v, dtype=float) for v in line.get_data())
+            assert np.all((x > 8) & (x < width - 8) & (y > 8) & (y < height - 8))
+
+
+def test_the_legend_counts_mobility_after_chebyshev():
+    facts = Legend(analyse(load(str(ROOT / "problems" / "six-bar.yaml")).linkage)).facts
+    assert "n = 5 moving links, p₁ = 7 lower pairs (6 turning, 1 sliding), p₂ = 0 higher pairs" in facts
+    assert "W = 3n − 2p₁ − p₂ = 3·5 − 2·7 − 0 = 1" in facts
+    assert "Mechanism of class II" in facts
+    assert "Compound hinge B: a circle for every pair" in facts
+
+
+def test_a_compound_hinge_has_a_circle_for_every_pair():
+    from matplotlib.patches import Circle
+
+    figure = scheme("title", "", of_file(ROOT / "problems" / "six-bar.yaml")).finish()
+    circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
+    assert len(circles) == 6  # turning pairs
+    assert len({(round(c.center[0], 3), round(c.center[1], 3)) for c in circles}) == 5
+
+
+def test_the_driver_and_every_group_have_colours_of_their_own():
+    colours = [part.colour for part in parts(chain(6).structure)]
+    assert len(set(colours)) == 7
+
+
+def test_a_ternary_link_is_a_plate_and_a_binary_one_a_bar():
+    from tmm_cli.draw.sheet import Sheet
+
+    sheet = Sheet("", "", [0j, 0.25 + 0.15j])
+    assert len(form(sheet, TRIAD, "3").hull) == 3
+    assert len(form(sheet, TRIAD, "2").hull) == 2
+    ends = form(sheet, TRIAD, "2").hull
+    assert abs(ends[0] - ends[1]) * sheet.mu == pytest.approx(abs(80 + 30j) / 1000)
+
+
+def test_a_hinge_beside_a_guide_is_joined_to_it_square():
+    from tmm_cli.draw.sheet import Sheet
+
+    sheet = Sheet("", "", [0j, 0.25 + 0.15j])
+    shape = form(sheet, OFFSET, "3")
+    ((start, end),) = shape.struts
+    assert ((end - start) * np.conj(shape.bars[0].along)).real == pytest.approx(0, abs=1e-9)
+    assert len(shape.welds) == 2  # at the guide, and at the hinge: one link, not two
+
+
+def test_a_link_goes_on_beyond_a_hinge_in_its_middle():
+    from tmm_cli.draw.sheet import Sheet
+
+    here = of_file(ROOT / "problems" / "whitworth.yaml")
+    sheet = Sheet("", "", here.extent(here.structure.links))
+    pivot = next(p for p in here.structure.pairs if p.name == "C")
+    assert form(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
+    assert form(sheet, here, "1").through(sheet.on(here.at(pivot))) is None
+
+
+def test_symbols_shrink_where_pairs_are_near_one_another():
+    from matplotlib.patches import Circle
+
+    near = scene(
+        {"O": 0j, "A": 6 + 4j, "B": 230 + 30j, "C": 260 - 60j},
+        {FRAME: "O C", "1": "O A", "2": "A B", "3": "B C"},
+    )
+    figure = scheme("title", "", near).finish()
+    circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
+    o, a = sorted(circles, key=lambda c: c.center[0])[:2]
+    assert o.radius < HINGE
+    assert math.dist(o.center, a.center) > o.radius + a.radius
+    legible(figure)
+
+
+def test_many_groups_have_sheets_of_their_own():
+    found = dict(sheets_apart("title", "", chain(8)))
+    assert list(found)[:3] == ["group-I-0-1", "group-II-2-3", "group-II-4-5"]
+    assert len(found) == 9
+    for figure in found.values():
+        legible(figure)
+    assert [stem for stem, _ in sheets_apart("title", "", chain(5))] == ["groups"]
+
+
+def test_links_may_have_any_names():
+    odd = scene(
+        {"O": 0j, "A": 40 + 30j, "B": 120 + 60j, "D": 160 + 0j},
+        {FRAME: "O D", "1": "O A", "../шатун $x_1$": "A B", "a/b": "D B"},
+    )
+    part = parts(odd.structure)[1]
+    assert re.fullmatch(r"[\w-]+", stem_of(part), re.ASCII)
+    legible(scheme("title", "", odd).finish())
+
+
+def test_where_the_sketch_hides_a_pair_another_place_of_the_driver_is_drawn():
+    def drawn_at(at):
+        text = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
+        text = text.replace("output: 3", f"sketch: {{at: {at} deg}}\noutput: 3")
+        motion, k = at_sketch(solve(build(read_text(text, "x.yaml")), "structure"))
+        return math.degrees(motion.q[k])
+
+    assert drawn_at(40) == pytest.approx(40)
+    assert abs(math.cos(math.radians(drawn_at(90)))) > 0.2  # at 90 deg the slotted slider would cover the crank
+
+
+def test_what_cannot_be_assembled_is_not_drawn(tmp_path):
+    text = SHAPER.read_text(encoding="utf-8").replace("DE: 210", "DE: 1")
+    problem = tmp_path / "apart.yaml"
+    problem.write_text(text, encoding="utf-8")
+    results = solve(load(str(problem)), "structure")
+    assert at_sketch(results) is None
+    assert list(structure(results)) == list(groups(results)) == []
+    done = tmm("structure", problem, "--drawings", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "not drawn: the groups of apart cannot be assembled at the sketch" in done.stderr
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_tmm_structure_draws_only_when_asked(tmp_path):
+    done = tmm("structure", SHAPER, "--drawings", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "outputs" / "shaper"
+    assert {p.name for p in folder.iterdir()} == {"structure.png", "structure.svg", "groups.png", "groups.svg"}
+    assert (folder / "groups.png").read_bytes().startswith(b"\x89PNG")
+    done = tmm("structure", SHAPER, "--drawings", "-o", tmp_path / "mine")
+    names = {p.name for p in (tmp_path / "mine" / "shaper").iterdir()}
+    assert {"structure.png", "structure.svg", "groups.png", "groups.svg", "pairs.csv", "result.json"} <= names
+    code = (
+        "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
+        "from tmm_cli.cli.app import app\n"
+        "try: app()\n"
+        "except SystemExit: print('matplotlib' in sys.modules, file=sys.stderr)"
+    )
+    for option, imported in (((), "False"), (("--drawings", "-o", str(tmp_path)), "True")):
+        done = subprocess.run(
+            [sys.executable, "-c", code, "structure", str(SHAPER), *option], capture_output=True, text=True, cwd=ROOT
+        )
+        assert done.stderr.strip().splitlines()[-1] == imported
+
+
+def test_drawings_of_the_structure_leave_what_a_run_has_written(tmp_path):
+    problem = ROOT / "problems" / "sine.yaml"
+    assert tmm("run", problem, "--no-drawings", cwd=tmp_path).returncode == 0
+    before = {p.name for p in (tmp_path / "outputs" / "sine").iterdir()}
+    assert tmm("structure", problem, "--drawings", cwd=tmp_path).returncode == 0
+    assert before < {p.name for p in (tmp_path / "outputs" / "sine").iterdir()}
+
+
+def test_a_run_draws_them_too_and_the_same_each_time():
+    results = solve(load(str(SHAPER)), "kinematics")
+    stems = [stem for stem, _ in sheets(results)]
+    assert stems[:2] == ["structure", "groups"]
+    again = dict(structure(results)) | dict(groups(results))
+    assert texts(again["structure"]) == texts(dict(structure(results))["structure"])
