@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_chain
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.reader import Tree, decimal_comma_hint
 from tmm_cli.problem.record import Problem
@@ -27,6 +27,9 @@ from tmm_cli.structure.assur import ROMAN, Structure
 ANY = object()
 MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     ((), schema.File),
+    (("structure",), schema_chain.SpatialStructure),
+    (("structure", "spatial"), schema_chain.Spatial),
+    (("structure", "spatial", "pairs", ANY), schema_chain.SpatialPair),
     (("guides", ANY), schema.Guide),
     (("links", ANY), schema.Link),
     (("links", ANY, "slides"), schema.Slide),
@@ -94,6 +97,8 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
     data = _at(tree.data, path)
     if kind == "extra_forbidden":
         names = _keys(path[:-1])
+        if len(path) == 1 and "structure" in tree.data:
+            names = list(schema_chain.SpatialFile.model_fields)
         key = str(path[-1])
         return ProblemError(
             "unknown key", path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
