@@ -122,7 +122,8 @@ def test_a_file_chooses() -> None:
          "\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n  did you mean 'deg'?"),
         ({"lenght": "mm"}, "lenght: unknown key\n  found:   'lenght'"
          "\n  allowed: length, angle, time, mass, force, moment, "
-         "inertia, speed, acceleration, angular speed, angular acceleration, stiffness"
+         "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
+         "torsional stiffness, damping, torsional damping"
           "\n  did you mean 'length'?"),
     ],
 )  # fmt: skip

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_cli.problem.record import Problem
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "load", "solve"]
+__all__ = ["__version__", "load", "redrive", "solve"]
 
 
 def load(path: str) -> Problem:
@@ -40,6 +40,19 @@ def solve(
 
     try:
         return compute(problem, stage, positions)
+    except Refused as error:
+        from tmm_cli.problem.refusals import refusal
+
+        raise refusal(error, problem) from None
+
+
+def redrive(problem: Problem, link: str) -> Problem:
+    """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError."""
+    from tmm_cli.drive import redriven
+    from tmm_cli.refused import Refused
+
+    try:
+        return redriven(problem, link)
     except Refused as error:
         from tmm_cli.problem.refusals import refusal
 

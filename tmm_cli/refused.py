@@ -62,3 +62,11 @@ class NoStrokes(Refused):
     def __init__(self, link: str | None, path: tuple[str, ...]) -> None:
         super().__init__(".".join(path))
         self.link, self.path = link, path
+
+
+class NotOnFrame(Refused):
+    """A link that cannot drive from the frame; allowed: those that can."""
+
+    def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
+        super().__init__(link)
+        self.link, self.allowed = link, allowed

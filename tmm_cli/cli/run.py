@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, say, show, solved
+from tmm_cli.cli.chains import report_chain, solved_any
+from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, say, show
 
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
@@ -24,11 +25,14 @@ def run(
     """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
 
     def work(file: str) -> int:
+        from tmm_cli.chain import ChainResults
         from tmm_cli.results.as_json import to_json
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
-        results = solved(file, "forces", position)
+        results = solved_any(file, "forces", position)
+        if isinstance(results, ChainResults):  # without dimensions there is its structure only
+            return report_chain(results, as_json, out, quiet=len(files) > 1)
         folder = write_results(results, out, drawn(results) if drawings else ())
         if as_json:
             emit_json(to_json(results))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, each, report, say, solved
+from tmm_cli.cli.chains import report_chain, solved_any
+from tmm_cli.cli.common import Files, Json, Out, each, report, say
 
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
@@ -17,12 +18,24 @@ Drawings = Annotated[
 ]
 
 
-def structure(files: Files, as_json: Json = False, out: Out = None, drawings: Drawings = False) -> None:
-    """Mobility, pairs, Assur groups in solving order, formula of structure, names of links."""
-    names = ("structure", "links", "pairs", "groups")
+Driver = Annotated[
+    str | None,
+    typer.Option("--driver", metavar="LINK", help="Drive this link instead: other groups.", show_default=False),
+]
+
+
+def structure(
+    files: Files, as_json: Json = False, out: Out = None, drawings: Drawings = False, driver: Driver = None
+) -> None:
+    """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
+    names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
-        results = solved(file, "structure", None)
+        from tmm_cli.chain import ChainResults
+
+        results = solved_any(file, "structure", None, driver)
+        if isinstance(results, ChainResults):
+            return report_chain(results, as_json, out)
         code = report(results, names, as_json, None if drawings else out)
         if drawings:
             _draw(results, out)

@@ -37,8 +37,20 @@ def load(path: str) -> Problem:
     return build(read_file(path))
 
 
+def is_chain(tree: Tree) -> bool:
+    """Whether the file gives a chain by pairs alone (structure.spatial) and no planar linkage."""
+    part = tree.data.get("structure")
+    named = isinstance(part, dict) and "spatial" in part
+    return named or ("structure" in tree.data and "links" not in tree.data)
+
+
 def build(tree: Tree) -> Problem:
     """A problem from a file that has been read."""
+    if is_chain(tree):
+        raise ProblemError(
+            "a chain given by pairs alone has no dimensions: there is only its structure", path=("structure",),
+            allowed="tmm structure, tmm run, tmm check", key=True,
+        ).located(tree.file, tree)  # fmt: skip
     try:
         shape = schema.File.model_validate(tree.data)
     except ValidationError as error:

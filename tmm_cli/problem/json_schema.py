@@ -5,15 +5,25 @@ from __future__ import annotations
 from typing import Any
 
 from tmm_cli.problem.schema import File, OnLine, Output, Tabulated
+from tmm_cli.problem.schema_chain import SpatialFile
 
 
 def file_schema() -> dict[str, Any]:
     """Made by pydantic from the shape; models that have validators of their own around them are put in by name."""
     schema = File.model_json_schema(by_alias=True)
     definitions = schema.setdefault("$defs", {})
-    for model in (OnLine, Output, Tabulated):
-        definitions.setdefault(model.__name__, model.model_json_schema(by_alias=True))
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_referred(schema)}
+    for model in (OnLine, Output, Tabulated, SpatialFile):
+        inner = model.model_json_schema(by_alias=True)
+        for name, definition in inner.pop("$defs", {}).items():
+            definitions.setdefault(name, definition)
+        definitions.setdefault(model.__name__, inner)
+    whole = {
+        "$defs": schema.pop("$defs"),
+        "if": {"required": ["structure"]},
+        "then": {"$ref": "#/$defs/SpatialFile"},
+        "else": schema,
+    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_referred(whole)}
 
 
 def _referred(part: Any) -> Any:

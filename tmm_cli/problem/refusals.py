@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_chain
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.reader import Tree, decimal_comma_hint
 from tmm_cli.problem.record import Problem
@@ -17,6 +17,7 @@ from tmm_cli.refused import (
     NoAssembly,
     NoStrokes,
     NoSuchPosition,
+    NotOnFrame,
     Refused,
     Undecided,
     WrongMobility,
@@ -26,6 +27,9 @@ from tmm_cli.structure.assur import Structure
 ANY = object()
 MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     ((), schema.File),
+    (("structure",), schema_chain.SpatialStructure),
+    (("structure", "spatial"), schema_chain.Spatial),
+    (("structure", "spatial", "pairs", ANY), schema_chain.SpatialPair),
     (("guides", ANY), schema.Guide),
     (("links", ANY), schema.Link),
     (("links", ANY, "slides"), schema.Slide),
@@ -101,6 +105,8 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
     data = _at(tree.data, path)
     if kind == "extra_forbidden":
         names = _keys(path[:-1])
+        if len(path) == 1 and "structure" in tree.data:
+            names = list(schema_chain.SpatialFile.model_fields)
         key = str(path[-1])
         return ProblemError(
             "unknown key", path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
@@ -212,6 +218,11 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             return ProblemError(
                 "there is no such position", path=("positions",), found=str(number), allowed=f"0 to {count - 1}"
             )
+        case NotOnFrame(link=link, allowed=allowed):
+            return ProblemError(
+                "this link cannot drive: it is not joined to the frame", path=("links",), found=quote(link),
+                allowed=", ".join(allowed), near=nearest(link, list(allowed)), key=True,
+            )  # fmt: skip
         case NoStrokes(link=link, path=path):
             what = "no output is joined to the frame" if link is None else f"link {link} has no ends of its stroke"
             return ProblemError("there is no working stroke", path=path, found=what, allowed="see output:")

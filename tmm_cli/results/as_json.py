@@ -11,15 +11,21 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.chain import ChainResults
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.linkage import Driver
 from tmm_cli.motion import Motion, Point
 from tmm_cli.pipeline import Results
+from tmm_cli.problem.chain import ChainProblem
+from tmm_cli.problem.record import Problem
+from tmm_cli.results.as_space import chain_json, space_json
 from tmm_cli.results.reports.cycle import state
 from tmm_cli.results.reports.kinematics import mass_centres, named_points
 from tmm_cli.results.warnings import warnings
 from tmm_cli.strokes import output_link
 from tmm_cli.structure.assur import ROMAN, Structure
+from tmm_cli.structure.contours import classification, contours
+from tmm_cli.structure.redundancy import space
 from tmm_cli.vectors import Vector
 
 FORMAT = 1
@@ -41,13 +47,16 @@ def plain(value: Any) -> Any:
     return value
 
 
-def to_json(results: Results) -> dict[str, Any]:
+def to_json(results: Results | ChainResults) -> dict[str, Any]:
     """The whole content of result.json as plain data."""
+    if isinstance(results, ChainResults):
+        return {"tmm": FORMAT, "problem": _problem(results.problem), "chain": chain_json(results.chain), "warnings": []}
     problem = results.problem
     found: dict[str, Any] = {
         "tmm": FORMAT,
-        "problem": {"name": problem.name, "title": problem.title, "description": problem.description},
+        "problem": _problem(problem),
         "structure": _structure(results.structure, results),
+        "space": _space(results),
     }
     if results.motion is not None:
         found |= _range(results)
@@ -72,6 +81,15 @@ def to_json(results: Results) -> dict[str, Any]:
     return {key: plain(value) for key, value in found.items()}
 
 
+def _problem(problem: Problem | ChainProblem) -> dict[str, Any]:
+    return {"name": problem.name, "title": problem.title, "description": problem.description}
+
+
+def _space(results: Results) -> dict[str, Any]:
+    structure = results.structure
+    return space_json(space(results.linkage, structure), contours(structure.pairs, structure.links))
+
+
 def _structure(structure: Structure, results: Results) -> dict[str, Any]:
     links = results.linkage.links
     return {
@@ -85,6 +103,7 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
         "p1": len(structure.pairs) - structure.higher,
         "p2": structure.higher,
         "contours": structure.contours,
+        "classification": list(classification(structure)),
         "formula": structure.formula,
         "class": ROMAN[structure.mechanism_class],
         "groups": [

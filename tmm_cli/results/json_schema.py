@@ -48,12 +48,14 @@ def result_schema() -> dict[str, Any]:
         "description": "SI and radians. Arrays have one entry a position; null: not reached, or dead. "
         "Per unit of the driver's motion: rad for a crank, m for a driven slider.",
         "type": "object",
-        "required": ["tmm", "problem", "structure", "warnings"],
+        "required": ["tmm", "problem", "warnings"],
         "properties": {
             "tmm": {"description": "version of this format", "const": FORMAT},
             "problem": _object("what was computed", name=_text("of the file"), title=_text("title"),
                                description=_text("description")),
             "structure": _structure(),
+            "space": _space(),
+            "chain": _chain(),
             "driver": _driver(),
             "dead_positions": _list("inside the driver's way", _object(
                 "a dead position", at=_number("place of the driver"), group=_text("the group"),
@@ -78,7 +80,9 @@ def _structure() -> dict[str, Any]:
         "links, pairs and Assur groups",
         mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
         p2=_number("higher pairs"),
-        contours=_number("independent contours K = p - n"), formula=_text("formula of structure"),
+        contours=_number("independent contours K = p - n"),
+        classification=_list("closed or open; elementary, simple, complex; of one type or several", names),
+        formula=_text("formula of structure"),
         **{"class": _text("class of the mechanism")},
         links=_list("moving links", _object(
             "a link", name=_text("its key in the file"), role=_text("crank, rocker, coupler, ..."),
@@ -91,6 +95,56 @@ def _structure() -> dict[str, Any]:
             "an Assur group", name=_text("II(2,3)"), links=_list("links", names), **{"class": _text("roman")},
             order=_number("number of leads"), type=_text("RRR, RRP, RPR, PRP, RPP"),
             inner=_list("inner pairs", names), outer=_list("outer pairs", names))),
+    )  # fmt: skip
+
+
+def _count() -> dict[str, Any]:
+    return {
+        "mobility": _number("Somov-Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5"),
+        "n": _number("moving links"),
+        **{f"p{i}": _number(f"pairs with {i} freedoms") for i in range(1, 6)},
+        "K": _number("independent contours"),
+    }
+
+
+def _contours() -> dict[str, Any]:
+    names = {"type": "string"}
+    return _list(
+        "independent contours",
+        _object(
+            "a contour", links=_list("from the one nearest the frame round", names), pairs=_list("between them", names)
+        ),
+    )
+
+
+def _space() -> dict[str, Any]:
+    names = {"type": "string"}
+    return _object(
+        "the planar linkage counted in space", **_count(), contours=_contours(), wanted=_number("mobility Wo"),
+        local=_number("local mobility Wm"), redundant=_number("redundant constraints q = Wo + Wm - W"),
+        replacements=_list("pairs to give more freedoms, so that q = 0; null: none found", _object(
+            "a pair", pair=_text("name"), links=_list("first and second link", names), was=_text("kind"),
+            kind=_text("kind it is to have"), freedoms=_number("of that kind"))) | {"type": ["array", "null"]},
+        proposed=_object("the same count with them", **_count(), local=_number("Wm"), redundant=_number("q"))
+        | {"type": ["object", "null"]},
+    )  # fmt: skip
+
+
+def _chain() -> dict[str, Any]:
+    names = {"type": "string"}
+    return _object(
+        "a chain given by pairs alone", **_count(), form=_text("open, closed, or mixed: with open branches"),
+        contours=_contours(), branches=_list("links in no contour", names),
+        pairs=_list("pairs", _object(
+            "a pair", name=_text("name"), links=_list("first and second link", names), freedoms=_number("1 to 5"),
+            kind={"description": "null when only freedoms are given", "type": ["string", "null"]},
+            **{"class": _number("number of its constraints")})),
+        local_freedoms=_list("found from the kinds of pairs", _object(
+            "one of them", links=_list("that move alone", names), freedoms=_number("how many"),
+            pairs=_list("that hold them", names))),
+        local=_number("local mobility Wm, as given or as found"), wanted=_number("mobility Wo, as given"),
+        redundant=_number("q = Wo + Wm - W"), output={"description": "link held", "type": ["string", "null"]},
+        manoeuvrability=_number("mobility with the output held"),
     )  # fmt: skip
 
 

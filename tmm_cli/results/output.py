@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from tmm_cli.chain import ChainResults
 from tmm_cli.pipeline import Results
 from tmm_cli.results.as_json import to_json
 from tmm_cli.results.files import csv_bytes, folder_name, json_bytes, listed, write_whole
 from tmm_cli.results.reports import tables
 
 
-def write_results(results: Results, out: Path, more: Iterable[tuple[str, bytes]] = ()) -> Path:
+def write_results(results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = ()) -> Path:
     """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
 
     All is computed and drawn first: a refusal or an interruption before the end leaves the folder as it was.

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from tmm_cli.chain import ChainResults
 from tmm_cli.pipeline import Results
 from tmm_cli.results.table import Table
 
 # file here, and the part of Results that it needs: a report of a stage that did not run is not even imported
 REPORTS: tuple[tuple[str, str], ...] = (
     ("structure", "structure"),
+    ("space", "structure"),
+    ("chain", "chain"),
     ("quality", "motion"),
     ("pressure", "motion"),
     ("cycle", "motion"),
@@ -23,10 +26,10 @@ REPORTS: tuple[tuple[str, str], ...] = (
 )
 
 
-def tables(results: Results) -> tuple[Table, ...]:
+def tables(results: Results | ChainResults) -> tuple[Table, ...]:
     """Every table of the results."""
     found: list[Table] = []
     for name, part in REPORTS:
-        if getattr(results, part) is not None:
+        if getattr(results, part, None) is not None:
             found += import_module(f"{__name__}.{name}").tables(results)
     return tuple(found)

@@ -8,6 +8,7 @@ from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.results.table import Column, Table
 from tmm_cli.structure.assur import ROMAN
+from tmm_cli.structure.contours import classification
 from tmm_cli.words import say
 
 
@@ -27,6 +28,7 @@ def tables(results: Results) -> Iterable[Table]:
         ),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
+        (say("structure.chain"), ", ".join(say(f"class.{word}") for word in classification(structure))),
         (say("structure.class"), ROMAN[structure.mechanism_class]),
     )
     yield Table(

@@ -1,0 +1,584 @@
+"""Structure in space: counts by hand, redundant constraints and what takes them away, contours, error messages."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import numpy as np
+import pytest
+import random_linkages
+from test_commands import PROBLEMS, ROOT, tmm
+
+from tmm_cli import load, solve
+from tmm_cli.chain import count_chain
+from tmm_cli.linkage import FRAME
+from tmm_cli.problem.build import build
+from tmm_cli.problem.build_chain import build_chain, load_chain
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.structure.assur import analyse
+from tmm_cli.structure.contours import classification, contours
+from tmm_cli.structure.redundancy import CHOICES, rank_of, space, spatial_chain
+from tmm_cli.structure.spatial import KINDS, Chain, SpatialPair, examine
+
+LETTERS = {"R": "turning", "P": "sliding", "H": "screw", "C": "cylindrical", "U": "universal", "S": "spherical",
+           "E": "planar", "L": "cylinder on plane", "B": "sphere on plane"}  # fmt: skip
+CLASS_III = """tmm: 1
+points: {O: [0, 0], D: [300, 0], G: [200, 300]}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: {A: [0, 0], B: [200, 0], E: [100, 120]}}
+  3: {points: [D, B], length: 150}
+  4: {points: [E, F], length: 120}
+  5: {points: [G, F], length: 90}
+driver: {link: 5, speed: 1 rad/s}
+"""
+
+
+def chain(text):
+    """A chain from words like "R01 S12": kind and both links."""
+    pairs = [SpatialPair(f"{word}{k}", word[1], word[2], KINDS[LETTERS[word[0]]], LETTERS[word[0]])
+             for k, word in enumerate(text.split())]  # fmt: skip
+    links = dict.fromkeys(link for p in pairs for link in (p.i, p.j) if link != FRAME)
+    return Chain(tuple(links), tuple(pairs))
+
+
+def loop(kinds):
+    """One closed contour with these pairs, the first and the last on the frame."""
+    last = len(kinds) - 1
+    return chain(" ".join(f"{kind}{k}{0 if k == last else k + 1}" for k, kind in enumerate(kinds)))
+
+
+# ---------------------------------------------------------------- mobility by hand
+
+
+@pytest.mark.parametrize(
+    "kinds, mobility, local, redundant",
+    [
+        ("RRRR", -2, 0, 3),  # planar and spherical four-bars, Bennett's linkage: the count sees one and the same
+        ("RRRP", -2, 0, 3),  # crank-slider
+        ("RSSR", 2, 1, 0),  # the coupler turns about its own line
+        ("RSCR", 1, 0, 0),
+        ("RSSP", 2, 1, 0),
+        ("RCCC", 1, 0, 0),
+        ("RUSR", 1, 0, 0),
+        ("RUR", -2, 0, 3),  # universal joint between two shafts: their axes must meet
+        ("RRRRRRR", 1, 0, 0),  # the general 7R chain
+        ("RRRRR", -1, 0, 2),  # Goldberg's
+        ("RRRRRR", 0, 0, 1),  # Bricard's, Sarrus'
+        ("HRP", -3, 0, 4),  # screw and nut
+        ("RESP", 2, 1, 0),  # plate and ball: turns about the plate's normal through the ball's centre
+        ("REER", 2, 1, 0),  # two plates: slides along both
+    ],
+)
+def test_closed_chains_by_hand(kinds, mobility, local, redundant):
+    found = examine(loop(kinds), wanted=1)
+    assert (found.mobility, found.local_mobility, found.redundant) == (mobility, local, redundant)
+    assert (found.form, len(found.contours)) == ("closed", 1)
+    assert len(found.contours[0].links) == len(kinds)
+
+
+def stewart(leg):
+    """Six legs between frame and platform "p"; S and C stand for ball and sliding tube with turning."""
+    pairs, links = [], []
+    for k in range(6):
+        bodies = [FRAME, *(f"{k}{part}" for part in range(len(leg) - 1)), "p"]
+        links += bodies[1:-1]
+        pairs += [SpatialPair(f"{kind}{k}{n}", bodies[n], bodies[n + 1], KINDS[LETTERS[kind]], LETTERS[kind])
+                  for n, kind in enumerate(leg)]  # fmt: skip
+    return Chain((*links, "p"), tuple(pairs))
+
+
+@pytest.mark.parametrize("leg, mobility, local", [("SPS", 12, 6), ("UPS", 6, 0), ("SCS", 18, 12), ("SHS", 12, 6)])
+def test_stewart_platforms_move_in_six_ways_and_their_legs_turn_on_their_own(leg, mobility, local):
+    found = examine(stewart(leg), wanted=6)
+    assert (len(found.chain.links), found.chain.mobility) == (13, mobility)
+    assert found.local_mobility == local
+    assert found.redundant == 0
+    assert (len(found.contours), found.form) == (5, "closed")
+
+
+def test_a_leg_of_a_stewart_platform_turns_as_one():
+    found = examine(stewart("SPS"))
+    assert [part.links for part in found.local] == [(f"{k}0", f"{k}1") for k in range(6)]
+    assert {part.freedoms for part in found.local} == {1}
+
+
+@pytest.mark.parametrize(
+    "text, mobility, held",
+    [
+        ("S01 R12 S23", 7, 1),  # an arm
+        ("R01 R12 R23 R34 R45 R56", 6, 0),  # six turning pairs reach every place, one way only
+        ("R01 R12 R23 R34 R45 R56 R67", 7, 1),
+        ("P01 P12 P23", 3, -3),
+        ("S01 S12", 6, 0),
+    ],
+)
+def test_manoeuvrability_is_mobility_with_the_output_held(text, mobility, held):
+    arm = chain(text)
+    found = examine(arm, output=arm.links[-1])
+    assert (found.form, found.mobility, found.manoeuvrability) == ("open", mobility, held)
+    assert found.manoeuvrability == mobility - 6
+
+
+def test_an_elbow_that_swings_is_no_local_freedom_but_a_rod_that_turns_is():
+    arm = examine(chain("S01 R12 S23"), output="3")
+    assert (arm.local, arm.idle_manoeuvrability) == ((), 0)
+    rods = examine(chain("R01 S12 S23 R34 S45"), output="5")
+    assert rods.local_mobility == 1
+    strut = examine(chain("S01 P12 S23"), output="3")
+    assert (strut.manoeuvrability, strut.idle_manoeuvrability) == (1, 1)
+
+
+def test_what_dimensions_alone_could_decide_is_not_called_local():
+    assert examine(loop("RSCR")).local == ()  # local only if the ball lay on the axis
+    assert examine(chain("R01 S12")).local == ()  # an open end
+    assert examine(chain("S01 S01")).local == ()  # a door: that is what it is for
+
+
+def test_a_ball_between_two_plates_keeps_all_but_two_of_its_freedoms():
+    found = examine(chain("B01 B12 P02"))
+    assert [(part.links, part.freedoms) for part in found.local] == [(("1",), 4)]
+    assert found.mobility == 5
+
+
+def test_contours_are_short_and_start_near_the_frame():
+    found = examine(chain("R01 R12 R23 R30 R34 R45 P50 R56"))
+    assert [c.title for c in found.contours] == ["0-1-2-3-0", "0-3-4-5-0"]
+    assert (found.form, found.branches) == ("mixed", ("6",))
+    doubled = examine(chain("R01 R01 P12"))
+    assert [(c.title, c.pairs) for c in doubled.contours] == [("0-1-0", ("R010", "R011"))]
+    # a contour of two cells side by side that does not run through the frame
+    assert [c.title for c in examine(chain("R01 R12 R23 R34 R41")).contours] == ["1-2-3-4-1"]
+
+
+def test_every_chain_has_as_many_independent_contours_as_pairs_more_than_links():
+    random = np.random.default_rng(7)
+    for _ in range(40):
+        n = int(random.integers(2, 12))
+        names = [FRAME, *(f"{k}" for k in range(1, n + 1))]
+        ends = [(names[random.integers(0, k)], names[k]) for k in range(1, n + 1)]
+        ends += [tuple(names[k] for k in random.choice(n + 1, 2, replace=False)) for _ in range(random.integers(0, 8))]
+        pairs = tuple(SpatialPair(f"P{k}", i, j, 1, "turning") for k, (i, j) in enumerate(ends))
+        found = contours(pairs, names[1:])
+        assert len(found) == len(pairs) - n
+        matrix = np.zeros((len(found), len(pairs)), dtype=int)
+        by_name = {p.name: p for p in pairs}
+        for row, contour in zip(matrix, found, strict=True):
+            assert len(set(contour.links)) == len(contour.links) == len(contour.pairs)
+            for k, name in enumerate(contour.pairs):
+                here, after = contour.links[k], contour.links[(k + 1) % len(contour.links)]
+                assert {by_name[name].i, by_name[name].j} == {here, after}
+                row[int(name[1:])] = 1
+        assert np.linalg.matrix_rank(matrix) == len(found)
+
+
+# ---------------------------------------------------------------- planar linkages in space
+
+
+def screws(pair, kind, poses):
+    """Motions that a pair of a planar linkage leaves in space, columns (omega, velocity of the drawing's origin)."""
+
+    def turn(place, axis):
+        return np.concatenate([axis, np.cross(place, axis)])
+
+    def run(axis):
+        return np.concatenate([np.zeros(3), axis])
+
+    def spatial(z):
+        return np.array([z.real, z.imag, 0.0])
+
+    origin, z = poses[pair.i]
+    up = np.array([0.0, 0.0, 1.0])
+    if pair.slide is None:
+        place = spatial(origin + z * pair.local)
+        axes = np.eye(3)
+        return np.column_stack({
+            "turning": [turn(place, up)],
+            "cylindrical": [turn(place, up), run(up)],
+            "spherical": [turn(place, axis) for axis in axes],
+        }[kind])  # fmt: skip
+    along = spatial(z * np.exp(1j * pair.slide.direction))
+    place, across = spatial(origin + z * pair.slide.through), np.cross(up, along)
+    return np.column_stack({
+        "sliding": [run(along)],
+        "cylindrical": [run(along), turn(place, along)],
+        "planar": [run(along), run(up), turn(place, across)],
+    }[kind])  # fmt: skip
+
+
+class Placed:
+    """A pair with the place of its hinge in the axes of its first link."""
+
+    def __init__(self, linkage, pair):
+        self.i, self.slide = pair.i, pair.slide
+        self.local = 0j if pair.slide else linkage.local(pair.i, pair.point)
+
+
+def jacobian(linkage, structure, poses, kinds):
+    """All conditions in space on the motions of all links, in the file's own position."""
+    links = structure.links
+    blocks = []
+    for pair in structure.pairs:
+        free = screws(Placed(linkage, pair), kinds.get(pair.name, CHOICES[pair.kind][0]), poses)
+        conditions = np.linalg.svd(free)[0][:, np.linalg.matrix_rank(free) :].T
+        block = np.zeros((len(conditions), 6 * len(links)))
+        for link, sign in ((pair.i, 1), (pair.j, -1)):
+            if link in links:
+                at = 6 * links.index(link)
+                block[:, at : at + 6] = sign * conditions
+        blocks.append(block)
+    return np.vstack(blocks)
+
+
+def proposal(found):
+    return {r.pair.name: r.kind for r in found.replacements}
+
+
+@pytest.mark.parametrize("file", PROBLEMS, ids=lambda p: p.stem)
+def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(file):
+    results = solve(load(str(file)), "kinematics")
+    linkage, structure, motion = results.linkage, results.structure, results.motion
+    found = space(linkage, structure)
+    kinds = proposal(found)
+    assert (found.redundant, found.redundant_then) == (3 * structure.contours, 0)
+    for k in np.flatnonzero(motion.moving)[::2]:
+        poses = {
+            name: tuple(complex(np.broadcast_to(part, motion.q.shape)[k]) for part in (pose.x, pose.z))
+            for name, pose in motion.poses.items()
+        }
+        as_is = jacobian(linkage, structure, poses, {})
+        assert len(as_is) - np.linalg.matrix_rank(as_is, tol=1e-9) == found.redundant
+        then = jacobian(linkage, structure, poses, kinds)
+        assert np.linalg.matrix_rank(then, tol=1e-9) == len(then)
+        # W is what can move: the mechanism, and links by themselves
+        assert then.shape[1] - len(then) == found.proposed.mobility == 1 + found.rank.local
+        # no pair on the frame has been touched
+        assert not any(FRAME in (r.pair.i, r.pair.j) for r in found.replacements)
+
+
+def six_bar():
+    linkage = load(str(ROOT / "problems" / "six-bar.yaml")).linkage
+    return linkage, analyse(linkage)
+
+
+def test_the_six_bar_of_the_source_has_six_redundant_constraints():
+    linkage, structure = six_bar()
+    assert (structure.mobility, spatial_chain(structure, {}).mobility) == (1, -5)
+    assert space(linkage, structure).redundant == 6
+    assert rank_of(linkage, structure, {}).redundant == 6
+
+
+def test_seven_constraints_fewer_as_in_the_source_leave_a_rod_that_turns_about_itself():
+    """Both ends of rod 4 spherical, and the coupler on a spherical and a cylindrical pair."""
+    linkage, structure = six_bar()
+    kinds = {"A": "spherical", "B": "cylindrical", "B''": "spherical", "F": "spherical"}
+    rank = rank_of(linkage, structure, kinds)
+    assert (rank.redundant, rank.free, rank.local) == (0, 1, 1)
+    then = spatial_chain(structure, kinds)
+    assert then.mobility == 2 == 1 + 1
+    assert then.mobility - spatial_chain(structure, {}).mobility == 7
+    assert [part.links for part in examine(then).local] == [("4",)]
+
+
+def test_the_source_also_names_what_is_proposed_the_pin_that_two_hinges_share_becomes_cylindrical():
+    found = space(*six_bar())
+    assert proposal(found) == {"A": "spherical", "B": "cylindrical", "B''": "cylindrical", "F": "spherical"}
+    assert (found.proposed.mobility, found.rank.local, found.redundant_then) == (1, 0, 0)
+
+
+@pytest.mark.parametrize(
+    "kinds, redundant, free",
+    [
+        ({}, 3, 0),
+        ({"A": "spherical"}, 1, 0),
+        ({"A": "spherical", "B": "cylindrical"}, 0, 0),
+        ({"A": "spherical", "B": "spherical"}, 0, 1),
+        ({"A": "cylindrical", "B": "cylindrical"}, 2, 1),  # one says again that the coupler does not tilt
+    ],
+)
+def test_of_a_four_bar_the_rank_sees_what_the_count_alone_does_not(kinds, redundant, free):
+    linkage = load(str(ROOT / "problems" / "crank-rocker.yaml")).linkage
+    structure = analyse(linkage)
+    rank = rank_of(linkage, structure, kinds)
+    assert (rank.redundant, rank.free) == (redundant, free)
+    # what is free out of the plane and what is held twice differ by the count
+    assert 1 + rank.free - rank.redundant == spatial_chain(structure, kinds).mobility
+
+
+def test_a_stone_hinged_on_the_line_of_its_guide_cannot_be_held_by_a_ball_and_a_round_guide():
+    """The ball and the round guide both say how high the hinge is, so one of them says it in vain."""
+    linkage = load(str(ROOT / "problems" / "slotted-lever.yaml")).linkage
+    structure = analyse(linkage)
+    rank = rank_of(linkage, structure, {"A": "spherical", "A'": "cylindrical"})
+    assert (rank.redundant, rank.free, rank.local) == (1, 1, 1)
+    assert spatial_chain(structure, {"A": "spherical", "A'": "cylindrical"}).mobility == 1  # the count sees nothing
+    assert proposal(space(linkage, structure)) == {"A": "spherical", "A'": "planar"}
+
+
+def fewest(linkage, structure):
+    """Changed pairs and freedoms of the best proposal, by trying everything."""
+    moving = [p for p in structure.pairs if FRAME not in (p.i, p.j)]
+    best = None
+    for chosen in itertools.product(*(CHOICES[p.kind] for p in moving)):
+        kinds = {p.name: kind for p, kind in zip(moving, chosen, strict=True)}
+        changed = [k for p, k in zip(moving, chosen, strict=True) if k != CHOICES[p.kind][0]]
+        score = (len(changed), sum(KINDS[k] for k in changed))
+        if best is None or score < best:
+            rank = rank_of(linkage, structure, kinds)
+            if not rank.redundant and rank.free == rank.local:
+                best = score
+    return best
+
+
+@pytest.mark.parametrize("kind", random_linkages.TYPES)
+def test_no_proposal_for_one_group_has_fewer_changes_or_fewer_freedoms(kind):
+    for seed in range(6):
+        linkage = random_linkages.linkage(seed, (kind,))
+        structure = analyse(linkage)
+        if any(p.i == FRAME and p.j in g.links for g in structure.groups for p in g.outer):
+            found = space(linkage, structure)
+            score = None if found.replacements is None else (
+                len(found.replacements), sum(r.freedoms for r in found.replacements)
+            )  # fmt: skip
+            assert score == fewest(linkage, structure)
+
+
+def test_a_group_of_class_iii_is_served_too_and_no_proposal_is_shorter():
+    linkage = build(read_text(CLASS_III, "iii.yaml")).linkage
+    structure = analyse(linkage)
+    found = space(linkage, structure)
+    assert (found.redundant, found.redundant_then) == (6, 0)
+    assert (len(found.replacements), sum(r.freedoms for r in found.replacements)) == fewest(linkage, structure)
+
+
+def test_every_random_linkage_gets_a_proposal_unless_a_part_of_it_is_a_truss_on_the_frame():
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        kinds = tuple(str(k) for k in random.choice(random_linkages.TYPES, int(random.integers(1, 5))))
+        linkage = random_linkages.linkage(seed, kinds)
+        structure = analyse(linkage)
+        still = {FRAME}
+        for group in structure.groups:
+            if all({p.i, p.j} - set(group.links) <= still for p in group.outer):
+                still |= set(group.links)
+        found = space(linkage, structure)
+        assert (found.replacements is None) == (len(still) > 1), (seed, kinds)
+        if found.replacements is not None:
+            assert (found.redundant, found.redundant_then) == (3 * len(kinds), 0)
+            assert len(found.replacements) == 2 * len(kinds)
+
+
+def test_words_of_the_classification():
+    words = {file.stem: classification(analyse(load(str(file)).linkage)) for file in PROBLEMS}
+    assert words["crank-slider"] == ("closed", "simple")
+    assert words["shaper"] == ("closed", "complex", "several types")
+    alone = "tmm: 1\npoints: {O: [0, 0]}\nlinks: {1: {points: [O, A], length: 1}}\ndriver: {link: 1, speed: 1 rad/s}\n"
+    linkage = build(read_text(alone.replace("[O, A], length: 1", "{O: [0, 0], A: [1, 0]}"), "alone.yaml")).linkage
+    assert classification(analyse(linkage)) == ("open", "elementary")
+    assert space(linkage, analyse(linkage)).replacements == ()
+    twice = analyse(random_linkages.linkage(1, ("RRR", "RRR")))
+    assert classification(twice) == ("closed", "complex", "same type")
+
+
+# ---------------------------------------------------------------- files
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("spatial-six-bar", {"mobility": 2, "local_mobility": 1, "redundant": 0, "form": "closed"}),
+        ("manipulator-open", {"mobility": 7, "manoeuvrability": 1, "form": "open", "redundant": None}),
+        ("manipulator-closed", {"mobility": 3, "manoeuvrability": 1, "form": "closed"}),
+        ("swashplate", {"mobility": 9, "local_mobility": 5, "redundant": 0, "form": "closed"}),
+    ],
+)
+def test_problems_given_by_pairs_alone(name, expected):
+    file = ROOT / "problems" / f"{name}.yaml"
+    assert "Property to see:" in file.read_text(encoding="utf-8")
+    found = count_chain(load_chain(str(file))).chain
+    assert {key: getattr(found, key) for key in expected} == expected
+
+
+PAIRS = "{A: {between: [0, 1], kind: turning}, B: {between: [1, 2], kind: spherical}}"
+
+
+def spatial(text, head="tmm: 1\nstructure:\n  spatial:\n"):
+    return build_chain(read_text(head + "".join(f"    {line}\n" for line in text.split("\n")), "x.yaml"))
+
+
+def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
+    for links in ("", "links: 2\n", "links: [1, 2]\n"):
+        assert spatial(f"{links}pairs: {PAIRS}").chain.links == ("1", "2")
+    assert spatial(f"pairs: {PAIRS}\nlocal: {{1: 1, 2: 2}}").local == 3
+    told = count_chain(spatial(f"pairs: {PAIRS}\nlocal: 2\nwanted: 1")).chain
+    assert (told.local_mobility, told.redundant) == (2, 1 + 2 - 4)
+    assert spatial("pairs: {A: {between: [0, 1], freedoms: 4}}").chain.mobility == 4
+
+
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        (
+            "pairs: {A: {between: [0, 1], kind: sferical}}",
+            "x.yaml:4:40: structure.spatial.pairs.A.kind: this word is not known here\n"
+            "  found:   'sferical'\n"
+            "  allowed: turning, sliding, screw, cylindrical, spherical with a pin, universal, spherical, planar, "
+            "sphere in cylinder, cylinder on plane, sphere on plane\n"
+            "  did you mean 'spherical'?",
+        ),
+        (
+            "links: [1, 2]\npairs: {A: {between: [0, 1], kind: turning}}",
+            "x.yaml:4:16: structure.spatial.links[1]: this link is joined to nothing\n"
+            "  found:   '2'\n"
+            "  allowed: a link that a pair names",
+        ),
+        (
+            "pairs: {A: {between: [1, 1], kind: turning}}",
+            "x.yaml:4:26: structure.spatial.pairs.A.between: a pair joins two different links\n"
+            "  found:   '1' twice\n"
+            "  allowed: [1, 2]",
+        ),
+        (
+            "links: [arm, hand]\npairs: {A: {between: [0, arm], kind: screw}, B: {between: [arm, hnad], kind: screw}}",
+            "x.yaml:5:69: structure.spatial.pairs.B.between[1]: there is no link of that name\n"
+            "  found:   'hnad'\n"
+            "  allowed: 0, arm, hand\n"
+            "  did you mean 'hand'?",
+        ),
+        (
+            "pairs: {A: {between: [0, 1], kind: turning}, B: {between: [2, 3], kind: turning}}",
+            "x.yaml:4:50: structure.spatial.pairs.B: this pair joins links that no way of pairs joins to the frame\n"
+            "  found:   links 2, 3\n"
+            "  allowed: a pair of one of them with link 0, or with a link that hangs on it",
+        ),
+        (
+            "pairs: {A: {between: [0, 1, 2], kind: turning}}",
+            "x.yaml:4:26: structure.spatial.pairs.A.between: two links [1, 2] are wanted\n"
+            "  found:   a list of 3\n"
+            "  allowed: the two links; the frame is 0",
+        ),
+        (
+            "pairs: {A: {between: [0, 1]}}",
+            "x.yaml:4:13: structure.spatial.pairs.A: the kind of this pair is missing\n"
+            "  allowed: turning, sliding, screw, cylindrical, spherical with a pin, universal, spherical, planar, "
+            "sphere in cylinder, cylinder on plane, sphere on plane",
+        ),
+        (
+            "pairs: {A: {between: [0, 1], kind: turning, freedoms: 1}}",
+            "x.yaml:4:49: structure.spatial.pairs.A.freedoms: the kind says the freedoms already\n"
+            "  found:   turning, 1\n"
+            "  allowed: kind or freedoms",
+        ),
+        (
+            "pairs: {A: {between: [0, 1], freedoms: 6}}",
+            "x.yaml:4:44: structure.spatial.pairs.A.freedoms: at most 5 is wanted\n"
+            "  found:   6\n"
+            "  allowed: instead of kind: 1 to 5 freedoms",
+        ),
+        (
+            f"pairs: {PAIRS}\noutput: 3",
+            "x.yaml:5:13: structure.spatial.output: there is no moving link of that name\n"
+            "  found:   '3'\n"
+            "  allowed: 1, 2",
+        ),
+        (
+            f"pairs: {PAIRS}\nlocal: {{3: 1}}",
+            "x.yaml:5:13: structure.spatial.local.3: there is no moving link of that name\n"
+            "  found:   '3'\n"
+            "  allowed: 1, 2",
+        ),
+        (
+            f"links: 1000\npairs: {PAIRS}",
+            "x.yaml:4:12: structure.spatial.links: how many links there are, or a list of their names: a whole number "
+            "from 1 to 100 is wanted\n"
+            "  found:   1000\n"
+            "  allowed: moving links, names or how many; those of the pairs when left out",
+        ),
+        (
+            f"links: [0, 1]\npairs: {PAIRS}",
+            "x.yaml:4:13: structure.spatial.links[0]: 0 is the frame\n"
+            "  found:   a moving link 0\n"
+            "  allowed: another number",
+        ),
+        (
+            f"pairs: {PAIRS}\nwnated: 1",
+            "x.yaml:5:5: structure.spatial.wnated: unknown key\n"
+            "  found:   'wnated'\n"
+            "  allowed: links, pairs, output, local, wanted\n"
+            "  did you mean 'wanted'?",
+        ),
+    ],
+)  # fmt: skip
+def test_mistakes_are_told_where_they_are(text, message):
+    with pytest.raises(ProblemError) as error:
+        spatial(text)
+    assert str(error.value) == message
+
+
+def test_a_slip_beside_or_in_the_name_of_the_block_is_told_in_terms_of_such_a_file():
+    with pytest.raises(ProblemError) as error:
+        build_chain(read_text(f"tmm: 1\nstructure: {{spacial: {{pairs: {PAIRS}}}}}\n", "x.yaml"))
+    assert str(error.value) == "x.yaml:2:1: structure.spatial: the key `spatial` is missing"
+    with pytest.raises(ProblemError) as error:
+        spatial(f"pairs: {PAIRS}", "tmm: 1\ndriver: {link: 1}\nstructure:\n  spatial:\n")
+    assert str(error.value) == (
+        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, title, description, structure"
+    )
+
+
+def test_a_block_with_nothing_in_it_is_a_bad_chain_and_no_planar_linkage(tmp_path):
+    file = tmp_path / "x.yaml"
+    file.write_text("tmm: 1\nstructure:\n", encoding="utf-8")
+    done = tmm("structure", file)
+    assert done.returncode == 2
+    assert "structure: keys with values are wanted" in done.stderr
+
+
+def test_untrusted_chains_are_bounded():
+    with pytest.raises(ProblemError, match="this is too long: at most 300"):
+        spatial("pairs:\n" + "\n".join(f"  A{k}: {{between: [0, {k % 90 + 1}], kind: turning}}" for k in range(301)))
+    with pytest.raises(ProblemError, match="there are too many links"):
+        spatial("pairs:\n" + "\n".join(f"  A{k}: {{between: [0, {k + 1}], kind: turning}}" for k in range(101)))
+
+
+# ---------------------------------------------------------------- commands
+
+
+def test_tmm_structure_shows_chains_and_tells_planar_linkages_their_redundant_constraints():
+    told = tmm("structure", "problems/spatial-six-bar.yaml").stdout
+    assert "6*5 - 5*3 - 4*1 - 3*3 = 2" in told and "1 + 1 - 2 = 0" in told
+    assert "turns about the line of both centres" in told
+    told = tmm("structure", "problems/six-bar.yaml").stdout
+    assert "1 + 0 - (-5) = 6" in told and "0-3-4-5-0" in told
+    assert "complex: the driver and several groups" in told
+    held = tmm("structure", "problems/manipulator-open.yaml", "--json")
+    assert json.loads(held.stdout)["chain"]["manoeuvrability"] == 1
+
+
+def test_what_needs_dimensions_says_that_there_are_none():
+    for command in ("kinematics", "forces", "explain"):
+        done = tmm(command, "problems/swashplate.yaml")
+        assert done.returncode == 2
+        assert "structure: a chain given by pairs alone has no dimensions: there is only its structure" in done.stderr
+
+
+def test_run_writes_the_structure_of_a_chain_and_check_compares_it(tmp_path):
+    done = tmm("run", "problems/swashplate.yaml", "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    names = {path.name for path in (tmp_path / "swashplate").iterdir()}
+    assert names == {"structure.csv", "pairs.csv", "contours.csv", "local.csv", "result.json"}
+    assert tmm("check", "problems/swashplate.yaml", "problems/manipulator-open.yaml").returncode == 0
+
+
+def test_results_of_chains_and_of_space_follow_the_schema():
+    from test_commands import described
+
+    schema = json.loads(tmm("schema", "--result").stdout)
+    for name in ("swashplate", "manipulator-open", "six-bar"):
+        result = json.loads(tmm("structure", f"problems/{name}.yaml", "--json").stdout)
+        assert set(schema["required"]) <= set(result)
+        described(result, schema, "")
+    files = json.loads(tmm("schema").stdout)
+    assert files["then"]["$ref"].removeprefix("#/$defs/") in files["$defs"]

@@ -1,0 +1,52 @@
+"""Commands on a file that gives a chain by pairs alone: there is only its structure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tmm_cli.cli.common import OK, console, emit_json, say
+
+if TYPE_CHECKING:
+    from tmm_cli.chain import ChainResults
+    from tmm_cli.pipeline import Results, Stage
+
+
+def solved_any(
+    file: str, stage: Stage, positions: Sequence[int] | None, driver: str | None = None
+) -> Results | ChainResults:
+    """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError."""
+    from tmm_cli.problem.build import build, is_chain
+    from tmm_cli.problem.reader import read_file
+
+    tree = read_file(file)
+    if is_chain(tree):
+        from tmm_cli.chain import count_chain
+        from tmm_cli.problem.build_chain import build_chain
+
+        return count_chain(build_chain(tree))
+    from tmm_cli import redrive, solve
+
+    problem = build(tree)
+    return solve(problem if driver is None else redrive(problem, driver), stage, positions)
+
+
+def report_chain(results: ChainResults, as_json: bool, out: Path | None, *, quiet: bool = False) -> int:
+    """Show the count as tables (unless quiet) or JSON and write the files if asked; the exit code."""
+    from tmm_cli.results.reports import tables
+    from tmm_cli.results.terminal import show
+
+    if as_json:
+        from tmm_cli.results.as_json import to_json
+
+        emit_json(to_json(results))
+    elif not quiet:
+        screen = console()
+        for table in tables(results):
+            show(table, results.problem.units, screen)
+    if out is not None:
+        from tmm_cli.results.output import write_results
+
+        say(f"written: {write_results(results, out)}")
+    return OK

@@ -1,0 +1,47 @@
+"""The same linkage with another driver: its Assur groups are others then."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tmm_cli.assembly import assemble, source
+from tmm_cli.linkage import FRAME, Driver, Linkage, Sketch
+from tmm_cli.problem.record import Problem
+from tmm_cli.refused import NotOnFrame, Refused
+from tmm_cli.structure.assur import analyse
+
+
+def redriven(problem: Problem, link: str) -> Problem:
+    """Driven by a link on the frame instead of the first driver, in the assembly of the sketch.
+
+    Where the linkage cannot be assembled with its own driver the new one's place in the sketch is not known; the
+    structure does not need it. Raises NotOnFrame.
+    """
+    linkage = problem.linkage
+    pivots = [h.point for h in linkage.hinges if FRAME in h.links and link in h.links]
+    runs = [s.name for s in linkage.slides if {s.carrier, s.runner} == {FRAME, link}]
+    if link == FRAME or not (pivots or runs):
+        on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
+        raise NotOnFrame(link, tuple(on_frame))
+    driver = Driver(link, "turn" if pivots else "slide", (pivots or runs)[0], linkage.driver.rate)
+    sketch = _sketch(linkage, driver)
+    request = replace(problem.request, places=(), start=0.0)
+    return replace(problem, linkage=replace(linkage, driver=driver, sketch=sketch), request=request)
+
+
+def _sketch(linkage: Linkage, driver: Driver) -> Sketch:
+    try:
+        kernels = assemble(linkage, analyse(linkage))
+    except Refused:
+        return linkage.sketch
+    motion = source(linkage, kernels, np.array([linkage.sketch.at]))
+    points = {
+        point: complex(motion.named(point).x[0]) for n in linkage.moving for point in linkage.links[n].points
+        if point not in linkage.links[FRAME].points
+    }  # fmt: skip
+    angles = {name: float(np.angle(motion.poses[name].z)[0]) for name in linkage.moving}
+    if driver.kind == "slide":
+        return Sketch(float(motion.slide(linkage.slide(driver.joint)).run[0]), points, angles)
+    return Sketch(angles[driver.link], points, angles)

@@ -1,0 +1,116 @@
+"""Independent contours of a chain, and how a linkage is classed by them and by its groups.
+
+A contour is independent when it has a pair that no other of the list has: K = p - n of them, one for every pair that
+is left over when a tree of pairs has reached all links. The tree is grown from the frame, nearest links first, so the
+contours are short and run through the frame where they can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from tmm_cli.linkage import FRAME
+
+if TYPE_CHECKING:
+    from tmm_cli.structure.assur import Structure
+
+
+class Joint(Protocol):
+    """Whatever joins two links: a planar pair or a pair in space."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def i(self) -> str: ...
+    @property
+    def j(self) -> str: ...
+
+
+@dataclass(frozen=True)
+class Contour:
+    """A closed contour: its links in order, from the one nearest the frame on, and the pairs between them."""
+
+    links: tuple[str, ...]
+    pairs: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        """0-1-2-3-0."""
+        return "-".join((*self.links, self.links[0]))
+
+
+def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...]:
+    """Independent contours of the links that pairs join to the frame; `links` says in which order they are named."""
+    way, left = _tree(pairs)
+    rank = {link: number for number, link in enumerate((FRAME, *links))}
+    found = []
+    for pair in left:
+        one, other = _path(pair.i, way), _path(pair.j, way)
+        while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0] and one[-2][1] is other[-2][1]:
+            one.pop()
+            other.pop()
+        if (rank[_second(one, other)], len(one) == 1) > (rank[_second(other, one)], len(other) == 1):
+            one, other = other, one
+        # down the one path from the link both have in common, over the pair, back up the other
+        names = [link for link, _ in reversed(one)] + [link for link, _ in other[:-1]]
+        joints = [p.name for _, p in reversed(one[:-1]) if p] + [pair.name] + [p.name for _, p in other[:-1] if p]
+        found.append(Contour(tuple(names), tuple(joints)))
+    return tuple(sorted(found, key=lambda c: [rank[link] for link in c.links]))
+
+
+def classification(structure: Structure) -> tuple[str, ...]:
+    """Words for a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
+
+    Elementary: the driver alone; simple: one group on it; complex: two groups or more.
+    """
+    chain = "closed" if structure.contours > 0 else "open"
+    if not structure.groups:
+        return (chain, "elementary") if len(structure.links) == 1 else (chain,)
+    if len(structure.groups) == 1:
+        return (chain, "simple")
+    types = {(group.grade, group.order, group.type) for group in structure.groups}
+    return (chain, "complex", "several types" if len(types) > 1 else "same type")
+
+
+def reached(pairs: Sequence[Joint]) -> set[str]:
+    """The links that some way of pairs joins to the frame, the frame among them."""
+    return set(_tree(pairs)[0])
+
+
+Way = list[tuple[str, Joint | None]]  # links on the way to the frame, each with the pair that leads on
+
+
+def _tree(pairs: Sequence[Joint]) -> tuple[dict[str, tuple[str, Joint] | None], list[Joint]]:
+    """For every link the next one on its shortest way to the frame, and the pairs that no such way uses."""
+    joined: dict[str, list[Joint]] = {}
+    for pair in pairs:
+        joined.setdefault(pair.i, []).append(pair)
+        joined.setdefault(pair.j, []).append(pair)
+    way: dict[str, tuple[str, Joint] | None] = {FRAME: None}
+    used: set[int] = set()
+    todo = [FRAME]
+    for link in todo:  # grows while it is walked: nearest links first
+        for pair in joined.get(link, ()):
+            after = pair.j if link == pair.i else pair.i
+            if after not in way:
+                way[after] = (link, pair)
+                used.add(id(pair))
+                todo.append(after)
+    return way, [p for p in pairs if id(p) not in used and p.i in way and p.j in way]
+
+
+def _path(link: str, way: dict[str, tuple[str, Joint] | None]) -> Way:
+    path: Way = []
+    step = way[link]
+    while step is not None:
+        path.append((link, step[1]))
+        link = step[0]
+        step = way[link]
+    return [*path, (link, None)]
+
+
+def _second(path: Way, other: Way) -> str:
+    """The link after the common one, going down the path and then up the other."""
+    return path[-2][0] if len(path) > 1 else other[0][0]
