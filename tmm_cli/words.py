@@ -239,6 +239,27 @@ ENGLISH: dict[str, str] = {
     "draw.reactions": "Reactions over the cycle; dots: computed positions",
     "draw.outer": "reactions of the frame",
     "draw.inner": "between moving links",
+    # tmm schemes
+    "schemes.start": "A scheme to start from: the dimensions only assemble it. Put your own in their places.",
+    "schemes.title": "Schemes with {links} moving links, W = {mobility}",
+    "schemes.number": "scheme",
+    "schemes.formula": "formula of structure",
+    "schemes.groups": "groups",
+    "schemes.n": "links",
+    "schemes.p": "pairs",
+    "schemes.turning": "turning pairs",
+    "schemes.sliding": "sliding pairs",
+    "schemes.file": "file",
+    "schemes.count": "{count} schemes",
+    "schemes.scheme": "Scheme {number}: {formula}",
+    "schemes.chains": "Kinematic chains of {links} links, W = {mobility}: {count}",
+    "schemes.binary": "binary",
+    "schemes.ternary": "ternary",
+    "schemes.quaternary": "quaternary",
+    "schemes.with": "with {pairs} pairs",
+    "schemes.all": "chains",
+    "schemes.fractionated": "of them fractionated",
+    "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its links.",
 }
 
 
