@@ -245,13 +245,13 @@ ENGLISH: dict[str, str] = {
     "schemes.number": "scheme",
     "schemes.formula": "formula of structure",
     "schemes.groups": "groups",
-    "schemes.n": "links",
-    "schemes.p": "pairs",
+    "schemes.size": "links/pairs",
     "schemes.turning": "turning pairs",
     "schemes.sliding": "sliding pairs",
     "schemes.file": "file",
+    "schemes.none": "none: no pose was found that assembles",
     "schemes.count": "{count} schemes",
-    "schemes.scheme": "Scheme {number}: {formula}",
+    "schemes.scheme": "Scheme {number}, {formula}",
     "schemes.chains": "Kinematic chains of {links} links, W = {mobility}: {count}",
     "schemes.binary": "binary",
     "schemes.ternary": "ternary",
@@ -259,7 +259,8 @@ ENGLISH: dict[str, str] = {
     "schemes.with": "with {pairs} pairs",
     "schemes.all": "chains",
     "schemes.fractionated": "of them fractionated",
-    "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its links.",
+    "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its "
+    "links.",
 }
 
 

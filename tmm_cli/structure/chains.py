@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, permutations
+from itertools import combinations, pairwise, permutations
 
 from tmm_cli.structure.isomorphism import Form, canonical
 
@@ -196,7 +196,7 @@ def _grown(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: 
         for count in numbers:
             path = [i, *range(after, after + count), j]
             after += count
-            pairs += [(min(a, b), max(a, b)) for a, b in zip(path, path[1:], strict=False)]
+            pairs += [(min(a, b), max(a, b)) for a, b in pairwise(path)]
     assert after == links
     return Chain(links, tuple(sorted(pairs)))
 

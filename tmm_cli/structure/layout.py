@@ -1,9 +1,8 @@
 """A pose for a scheme: links put down assembled first, then the dimensions that fit them, in whole millimetres.
 
-Everything is in mm and degrees here, as the file says them that is written of it; an angle in radians is called turn.
-The crank stands at CRANK_AT and is short, so that it has a chance to turn fully. Many poses are tried from one seed; they
-are put in order by the transmission angles of their groups and the lengths of their links. Only the numbers come from
-chance: the same scheme has the same poses always.
+Everything is in mm and degrees here, as in the problem file; an angle in radians is called turn. The crank stands at
+CRANK_AT and is short, so that it has a chance to turn fully. Many poses are tried from one seed, so that a scheme has
+the same poses always; they are put in order by the transmission angles of their groups and the lengths of their links.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ class Layout:
 
 def layouts(scheme: Scheme, seed: int = 1) -> tuple[Layout, ...]:
     """Poses of a scheme with one crank, the best first."""
-    random = Random(seed)  # noqa: S311
+    random = Random(seed)
     found = (_Sheet(scheme, random).layout() for _ in range(TRIALS))
     return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
 

@@ -52,8 +52,7 @@ class GroupType:
 
 
 def _dyad(name: str) -> GroupType:
-    a, inner, b = name
-    return GroupType(name, 2, 2, ((0, 1, _kind(inner)),), ((0, _kind(a)), (1, _kind(b))))
+    return GroupType(name, 2, 2, ((0, 1, _kind(name[1])),), ((0, _kind(name[0])), (1, _kind(name[2]))))
 
 
 def _kind(letter: str) -> Kind:
