@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import random
@@ -10,14 +11,17 @@ from collections import Counter
 from itertools import combinations, permutations
 
 import pytest
+from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.schemes import named_types
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.schemes import named_types, schemes_table
 from tmm_cli.results.skeleton import skeleton
+from tmm_cli.results.terminal import show
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.chains import Chain, chains
 from tmm_cli.structure.isomorphism import canonical
@@ -247,6 +251,16 @@ def test_a_file_that_was_changed_is_not_written_over(tmp_path):
     assert done.returncode == 2 and "scheme-02-II-RRP.yaml" in done.stderr
     assert mine.read_text(encoding="utf-8") == "mine"
     assert len(list(tmp_path.iterdir())) == 2  # none of the others was written either
+
+
+def test_a_narrow_terminal_breaks_the_table_of_schemes_and_cuts_nothing():
+    console = Console(width=60, record=True, file=io.StringIO(), highlight=False)
+    found = schemes(5, 1, ("RRR",))
+    show(schemes_table(found, 5, 1, None), UnitSystem(), console)
+    text = console.export_text()
+    assert all(len(line) <= 60 for line in text.splitlines())
+    assert all(f"{i}-{j}" in text for scheme in found for i, j, _ in scheme.joints)
+    assert "0-1 1-2 0-3 2-3 3-4 2-5 4-5" in text
 
 
 def test_the_command_counts_chains_by_assortment():
