@@ -11,6 +11,7 @@ from tmm_cli.structure.schemes import Scheme
 from tmm_cli.words import say
 
 CANDIDATES = 24  # poses that are solved before the best of them is taken
+FEW = 6  # the same, of schemes with groups that are not solved in closed form
 
 
 @dataclass(frozen=True)
@@ -25,13 +26,19 @@ class Skeleton:
 def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
     """The first good pose, or that with the fewest warnings; None when no pose can be assembled."""
     best: Skeleton | None = None
-    for layout in layouts(scheme)[:CANDIDATES]:
+    count = CANDIDATES if _closed(scheme) else FEW
+    for layout in layouts(scheme)[:count]:
         found = _tried(problem_text(scheme, layout, title), scheme)
         if found is not None and (best is None or _badness(found) < _badness(best)):
             best = found
         if best is not None and _badness(best) == (False, 0):
             break
     return best
+
+
+def _closed(scheme: Scheme) -> bool:
+    """Whether all groups are of class II, each with a solution in closed form."""
+    return all(group.type.grade == 2 for group in scheme.groups)
 
 
 def _badness(found: Skeleton) -> tuple[bool, int]:
@@ -49,7 +56,7 @@ def _tried(text: str, scheme: Scheme) -> Skeleton | None:
     try:
         results = solve(problem)
     except ProblemError:
-        if all(group.type.grade == 2 for group in scheme.groups):
+        if _closed(scheme):
             return None
         solve(problem, "structure")
         return Skeleton(text, False, 0)
