@@ -238,7 +238,9 @@ def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     assert "inertia couples of links 3" in told
 
 
-@pytest.mark.parametrize("command", ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema"])
+@pytest.mark.parametrize(
+    "command", ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes"]
+)
 def test_every_command_has_help_and_stands_in_the_readme(command):
     done = tmm(command, "--help")
     assert done.returncode == 0 and len(done.stdout) > 100

@@ -60,7 +60,9 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     cycle = cycle_of(linkage, kernels) if turns else 1
     number = cycle or 1
     half = np.pi * number if turns else 4 * max((d.size for d in kernels), default=1.0)
-    steps = np.linspace(-half, half, SCAN * number + 1)
+    low, high = _looked_at(kernels, at, half)
+    steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
+    steps = np.unique(np.append(steps, 0.0))
     law = Law(at, 1.0, 0.0, 1)
     side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law).placements]
     scan = move(linkage, kernels, at + steps, law)
@@ -89,6 +91,16 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     start = first.place if first else at - half
     end = last.place if last else at + half
     return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
+    """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
+    low, high = -half, half
+    for kernel in kernels:
+        track = kernel.track if isinstance(kernel, Newton) else None
+        if track is not None and not track.closed and True not in track.open_ends:
+            low, high = min(low, 1.001 * (track.q[0] - at)), max(high, 1.001 * (track.q[-1] - at))
+    return float(low), float(high)
 
 
 def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
@@ -130,9 +142,14 @@ def _lost(motion: Motion, side: list[float]) -> Real:
 
 def limit_from(
     known: Limit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], Limit]
-) -> Limit:
-    """The other limit when all blocked places lie on one side of the sketch: a cycle away."""
+) -> Limit | None:
+    """The other limit when all blocked places lie on one side of the sketch: a cycle away.
+
+    None when they go on to the end of what was looked at.
+    """
     at, cycle = about
+    if int(blocked[-1 if known.place > at else 0]) in (0, len(steps) - 1):
+        return None
     if known.place > at:
         other = limit(int(blocked[-1]), -1)
         return Limit(other.place - cycle, other.group)

@@ -362,6 +362,28 @@ ENGLISH: dict[str, str] = {
     "local.planar": "slides along both planes",
     "local.planar+spherical": "turns about the normal of the plane through the centre",
     "local.count": "moves with its neighbours held",
+    # tmm schemes
+    "schemes.start": "A scheme to start from: the dimensions only assemble it. Put your own in their places.",
+    "schemes.title": "Schemes with {links} moving links, W = {mobility}",
+    "schemes.number": "scheme",
+    "schemes.formula": "formula of structure",
+    "schemes.groups": "groups",
+    "schemes.size": "links/pairs",
+    "schemes.turning": "turning pairs",
+    "schemes.sliding": "sliding pairs",
+    "schemes.file": "file",
+    "schemes.none": "none: no pose was found that assembles",
+    "schemes.count": "{count} schemes",
+    "schemes.scheme": "Scheme {number}, {formula}",
+    "schemes.chains": "Kinematic chains of {links} links, W = {mobility}: {count}",
+    "schemes.binary": "binary",
+    "schemes.ternary": "ternary",
+    "schemes.quaternary": "quaternary",
+    "schemes.with": "with {pairs} pairs",
+    "schemes.all": "chains",
+    "schemes.fractionated": "of them fractionated",
+    "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its "
+    "links.",
 }
 
 

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli import check, explain, forces, kinematics, new, run, schema, structure
+from tmm_cli.cli import check, explain, forces, kinematics, new, run, schema, schemes, structure
 
 app = typer.Typer(
     name="tmm",
@@ -29,6 +29,7 @@ app.command("check")(check.check)
 app.command("explain")(explain.explain)
 app.command("new")(new.new)
 app.command("schema")(schema.schema)
+app.command("schemes")(schemes.schemes)
 
 
 def _version(asked: bool) -> None:

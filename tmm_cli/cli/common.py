@@ -63,7 +63,7 @@ def each(files: Sequence[str], work: Callable[[str], int], *, as_json: bool = Fa
     raise typer.Exit(worst)
 
 
-def _progress(files: Sequence[str]) -> Iterable[str]:
+def _progress(files: Sequence[Any]) -> Iterable[Any]:
     if len(files) < 2:
         return files
     from rich.console import Console

@@ -198,6 +198,13 @@ class Walker:
         up, above = self.leg(middle, at + half)
         down, below = self.leg(middle, at - half)
         nodes = [*reversed(down), middle, *up]
+        for turn in range(1, TURNS):  # where one way round is barred, the other one is gone to its end
+            if turns and below != "reached" and above == "reached":
+                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
+                nodes += more
+            elif turns and above != "reached" and below == "reached":
+                more, below = self.leg(nodes[0], at - half - 2 * half * turn)
+                nodes = [*reversed(more), *nodes]
         ends = (below, above)
         if not (turns and ends == ("reached", "reached")):
             open_ends = (below == "reached" and not turns, above == "reached" and not turns)

@@ -75,9 +75,11 @@ def _parts(table: Table, told: list[tuple[str, list[str]]], width: int) -> list[
     keys = 0
     while keys < len(told) and (table.columns[keys].dimension is None or keys == 1):
         keys += 1
-    if keys == len(told):
-        return [list(range(len(told)))]
     wide = [_least(column) + 3 for column in told]
+    if keys == len(told):  # words only: the first column tells the rows apart
+        if sum(wide) <= width + 1:
+            return [list(range(len(told)))]
+        keys = 1
     parts: list[list[int]] = []
     for k in range(keys, len(told)):
         if not parts or sum(wide[i] for i in parts[-1]) + wide[k] > width + 1:
