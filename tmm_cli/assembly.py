@@ -36,7 +36,7 @@ def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] |
     for driver in linkage.cranks:
         poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
     chosen: list[Kernel] = []
-    for group in structure.groups if groups is None else groups:
+    for group in structure.solved if groups is None else groups:
         kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen))
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)

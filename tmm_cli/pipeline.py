@@ -96,7 +96,12 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     linkage = problem.linkage
     structure = analyse(linkage)
     if not structure.sound:
-        raise WrongMobility(structure)
+        from tmm_cli.rank import by_rank  # few linkages need it
+
+        moving = by_rank(linkage, structure)
+        if moving is None:
+            raise WrongMobility(structure)
+        structure = moving
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.pressure import find_pressure

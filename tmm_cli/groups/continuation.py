@@ -117,6 +117,8 @@ class Walker:
         for.
         """
         kernel = self.kernel
+        if kernel.passive:
+            return None
         with np.errstate(all="ignore"):
             direction = _flat(last.first, kernel.size) * sense
             length = np.linalg.norm(direction)

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, spread
-from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
+from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
 from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
 from tmm_cli.groups.track import State, Track
 from tmm_cli.linkage import Linkage
@@ -27,6 +27,7 @@ from tmm_cli.vectors import Real, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
 NEAR = 1e-9  # a step below this squares to less than rounding
+DEAD = 1e-14  # a margin below this is rounding
 CONVERGED = 1e-6  # a last step above this has not converged
 
 
@@ -165,6 +166,7 @@ class Newton(Kernel):
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
         slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.turn))
         gap = np.where(lost & (gap < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), gap)
+        gap = np.where(margin < (TRUNCATED if self.passive else DEAD), np.where(gap > slack, gap, 0.0), gap)
         det = signed_determinant(matrix) * margin
         return Placement(
             tuple(own[link] for link in self.group.links), det, margin, gap * self.size, slack * self.size

@@ -99,6 +99,11 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
             for n in structure.links
         ],
         "pairs": [{"name": p.name, "kind": p.kind, "links": [p.i, p.j], "point": p.point} for p in structure.pairs],
+        "true_mobility": structure.mobility + structure.redundant,
+        "passive": [
+            {"pair": p.pair, "constraints": p.constraints, "links": list(p.links), "among": list(p.among)}
+            for p in structure.passive
+        ],
         "n": len(structure.links),
         "p1": len(structure.pairs) - structure.higher,
         "p2": structure.higher,

@@ -80,6 +80,10 @@ def _structure() -> dict[str, Any]:
         "links, pairs and Assur groups",
         mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
         p2=_number("higher pairs"),
+        true_mobility=_number("by rank, where dimensions leave more than the count"),
+        passive=_list("passive constraints", _object(
+            "conditions that only repeat others", pair=_text("pair"), constraints=_number("how many"),
+            links=_list("its links, the passive one last", names), among=_list("links that hold each other", names))),
         contours=_number("independent contours K = p - n"),
         classification=_list("closed or open; elementary, simple, complex; of one type or several", names),
         formula=_text("formula of structure"),

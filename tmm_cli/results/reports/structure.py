@@ -7,9 +7,22 @@ from collections.abc import Iterable
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.results.table import Column, Table
-from tmm_cli.structure.assur import ROMAN
+from tmm_cli.structure.assur import ROMAN, Structure
 from tmm_cli.structure.contours import classification
 from tmm_cli.words import say
+
+
+def _passive(structure: Structure) -> Iterable[tuple[str, str]]:
+    """Passive constraints and the true mobility, where the count is not the truth."""
+    if structure.passive:
+        yield say("structure.true"), str(structure.mobility + structure.redundant)
+    for passive in structure.passive:
+        i, j = passive.links
+        yield (
+            say("structure.passive"),
+            say("structure.where", count=passive.constraints, pair=passive.pair, i=i, j=j,
+                among=", ".join(passive.among)),
+        )  # fmt: skip
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -26,6 +39,7 @@ def tables(results: Results) -> Iterable[Table]:
             say("structure.W"),
             say("structure.chebyshev", n=len(structure.links), p=len(structure.pairs), w=structure.mobility),
         ),
+        *_passive(structure),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
         (say("structure.chain"), ", ".join(say(f"class.{word}") for word in classification(structure))),
