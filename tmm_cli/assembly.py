@@ -10,11 +10,10 @@ import numpy as np
 from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Dyad, Kernel, Turn
-from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move
-from tmm_cli.pairs.base import Drives
 from tmm_cli.refused import Misfit, NoAssembly, Undecided
 from tmm_cli.structure.assur import Group, Structure
 

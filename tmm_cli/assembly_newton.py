@@ -19,11 +19,10 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.continuation import Upstream, Walker
 from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
-from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
-from tmm_cli.pairs.base import Drives
 from tmm_cli.refused import NoAssembly, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.state import Accel, Placement, Pose, Rate
+from tmm_cli.groups.state import Accel, Drive, Placement, Pose, Rate
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide
-from tmm_cli.pairs.base import Drive
 from tmm_cli.vectors import Real, Vector, dot, unit
 
 

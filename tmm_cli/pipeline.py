@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.plan import Reactions
     from tmm_cli.pressure import Pressure
-    from tmm_cli.strokes import Strokes
+    from tmm_cli.strokes import Strokes, Travel
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -53,6 +53,8 @@ class Results:
     friction: Rubbed | None = None
     energy: Energy | None = None
     pressure: tuple[Pressure, ...] = ()
+    further: tuple[Strokes, ...] = ()
+    travels: tuple[Travel, ...] = ()
 
     @property
     def linkage(self) -> Linkage:
@@ -105,7 +107,7 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.pressure import find_pressure
-    from tmm_cli.strokes import find_strokes, output_link, places, resisted
+    from tmm_cli.strokes import find_strokes, find_travel, output_link, places, resisted
 
     kernels = assemble(linkage, structure)
     way = find_range(linkage, kernels)
@@ -122,6 +124,13 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     dead = find_dead(linkage, kernels, way)
     results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
     results = replace(results, pressure=find_pressure(linkage, kernels, way, motion, problem.pressure_limits))
+    outputs = [o.link for o in linkage.outputs] or [link for link in (output_link(linkage, structure.groups),) if link]
+    if way.full:
+        found = [find_strokes(linkage, kernels, way, link=link) for link in outputs[1:]]
+        results = replace(results, further=tuple(s for s in found if s is not None))
+    else:
+        travels = [find_travel(linkage, kernels, q, link) for link in outputs]
+        results = replace(results, travels=tuple(t for t in travels if t is not None))
     return results if stage == "kinematics" else with_forces(results)
 
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from tmm_cli.cycle import MOST, turns_of_cycle
 from tmm_cli.groups.base import Dyad, Kernel
-from tmm_cli.groups.newton import Newton
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.roots import HALVINGS, least, roots
@@ -97,7 +96,7 @@ def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[flo
     """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
     low, high = -half, half
     for kernel in kernels:
-        track = kernel.track if isinstance(kernel, Newton) else None
+        track = kernel.followed
         if track is not None and not track.closed and True not in track.open_ends:
             low, high = min(low, 1.001 * (track.q[0] - at)), max(high, 1.001 * (track.q[-1] - at))
     return float(low), float(high)
@@ -107,7 +106,7 @@ def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
     """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
     turns = turns_of_cycle(linkage)
     for kernel in kernels:
-        track = kernel.track if isinstance(kernel, Newton) else None
+        track = kernel.followed
         if track is not None and track.closed and turns is not None:
             turns = math.lcm(turns, round((track.q[-1] - track.q[0]) / (2 * np.pi)))
     return turns if turns is not None and turns <= MOST else None

@@ -16,11 +16,11 @@ import numpy as np
 
 from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, spread
 from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
-from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
 from tmm_cli.groups.track import State, Track
 from tmm_cli.linkage import Linkage
 from tmm_cli.pairs import PAIRS
-from tmm_cli.pairs.base import Constraint, Drives, Grip
+from tmm_cli.pairs.base import Constraint, Grip
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, cross, unit
@@ -53,6 +53,10 @@ class Newton(Kernel):
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
+
+    @property
+    def followed(self) -> Track | None:
+        return self.track
 
     @cached_property
     def by_angle(self) -> bool:

@@ -9,12 +9,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Output, Request, Sketch, Slide
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Mesh, Output, Request, Sketch, Slide
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_drivers import build_drivers
 from tmm_cli.problem.build_loads import build_loads, with_masses
-from tmm_cli.problem.build_meshes import build_meshes
-from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
@@ -85,7 +83,7 @@ class _Builder:
         hinges = self.hinges(links)
         nothing_stray(shape, self.tree.data, links, hinges, slides)
         drivers = build_drivers(shape, links, hinges, slides, self.sense)
-        meshes = build_meshes(shape, links, hinges, slides, self.sense)
+        meshes = self.meshes(links, hinges, slides)
         outputs = self.outputs(links)
         driver = drivers[0]
         linkage = Linkage(
@@ -93,10 +91,7 @@ class _Builder:
             others=drivers[1:], meshes=meshes, outputs=outputs,
         )  # fmt: skip
         linkage = with_masses(linkage, shape, self.sense)
-        linkage = replace(
-            linkage, loads=build_loads(linkage, shape, self.sense), springs=build_springs(linkage, shape, self.sense)
-        )
-        linkage = replace(linkage, friction=build_friction(linkage, shape, self.sense))
+        linkage = self.sprung(replace(linkage, loads=build_loads(linkage, shape, self.sense)))
         limit = self.sense.positive(shape.checks.lever, NUMBER, ("checks", "lever"), zero=True)
         allowed, given = self.allowed()
         file = self.tree.file
@@ -104,6 +99,23 @@ class _Builder:
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
             limit, shape.description, file, allowed, given, self.tree,
         )  # fmt: skip
+
+    def meshes(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> tuple[Mesh, ...]:
+        """Higher pairs; few files have any, and only those import what reads them."""
+        if not (self.shape.gears or self.shape.racks or self.shape.cams):
+            return ()
+        from tmm_cli.problem.build_meshes import build_meshes
+
+        return build_meshes(self.shape, links, hinges, slides, self.sense)
+
+    def sprung(self, linkage: Linkage) -> Linkage:
+        """With springs and friction, if there are any."""
+        if not self.shape.springs and self.shape.friction is None:
+            return linkage
+        from tmm_cli.problem.build_springs import build_friction, build_springs
+
+        linkage = replace(linkage, springs=build_springs(linkage, self.shape, self.sense))
+        return replace(linkage, friction=build_friction(linkage, self.shape, self.sense))
 
     def allowed(self) -> tuple[tuple[float, float], tuple[bool, bool]]:
         """Largest pressure angles on sliding and turning links, and whether the file says them."""

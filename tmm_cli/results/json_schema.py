@@ -63,6 +63,10 @@ def result_schema() -> dict[str, Any]:
             "turns": _number("turns of the driver after which everything repeats"),
             "pressure": _pressure(),
             "output": _output(),
+            "further_outputs": _list("of the others, as the first one", _output()),
+            "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
+                "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
+                high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
             "positions": _positions(),
             "kinematics": _kinematics(),
             "forces": _forces(),
