@@ -135,6 +135,8 @@ def find_strokes(
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
     q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
+    if way.full:  # one step more: at the seam of the scan rounding may hide the end of a stroke
+        q = np.append(q, q[-1] + (q[1] - q[0]))
     cycle = 2 * np.pi * way.turns
     slope = output_run(move(linkage, kernels, q, law), link)[1]
     signs = np.sign(slope)

@@ -394,6 +394,24 @@ ENGLISH: dict[str, str] = {
     "schemes.fractionated": "of them fractionated",
     "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its "
     "links.",
+    # gears, racks, cams, cylinders, springs, friction, several drivers
+    "role.wheel": "toothed wheel",
+    "role.planet": "planet",
+    "role.carrier": "carrier",
+    "role.rack": "rack",
+    "role.cam": "cam",
+    "role.follower": "follower",
+    "role.cylinder": "cylinder",
+    "role.piston": "piston",
+    "pairs.G": "toothed wheels (G)",
+    "pairs.K": "wheel and rack (K)",
+    "pairs.C": "cam and follower (C)",
+    "structure.p2": "higher pairs p2",
+    "structure.wheels": "{count} of toothed wheels",
+    "structure.racks": "{count} of wheel and rack",
+    "structure.cams": "{count} of cam and follower",
+    "structure.W2": "mobility W = 3n - 2 p1 - p2",
+    "structure.chebyshev2": "3*{n} - 2*{p} - {p2} = {w}",
 }
 
 
