@@ -66,7 +66,8 @@ class Driver:
     The base is the frame (a crank, a cylinder on the frame) or a moving link (a cylinder that swings, a drive in the
     hinge of an arm). q is the angle of the link's x axis from the base's (rad), or the run along the guide `joint` from
     its `through` point (m). `sense` is +1 or -1, and `rate` >= 0 is counted in that sense; `acceleration` too
-    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first.
+    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first; `stroke`: between which
+    places it works, if it cannot go farther.
     """
 
     link: str
@@ -79,6 +80,7 @@ class Driver:
     end: str = ""
     base: str = FRAME
     at: float = 0.0
+    stroke: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ class Range:
     """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
 
     turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
-    False when no such number was found.
+    False when no such number was found. inclusive: both ends are those of the driver's stroke, and no dead positions.
     """
 
     start: float
@@ -42,6 +42,7 @@ class Range:
     limits: tuple[Limit, ...] = ()
     turns: int = 1
     repeats: bool = True
+    inclusive: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,17 @@ class DeadPosition:
 
 
 def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
-    """The driver's way about the sketch, its limits to the last bit."""
+    """The driver's way about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
+    way = _reach(linkage, kernels)
+    stroke = linkage.driver.stroke
+    if stroke is None:
+        return way
+    low, high = (stroke[0], stroke[1]) if way.full else (max(way.start, stroke[0]), min(way.end, stroke[1]))
+    kept = tuple(limit for limit in way.limits if low <= limit.place <= high)
+    return Range(low, high, False, kept, inclusive=(low, high) == stroke)
+
+
+def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
     cycle = cycle_of(linkage, kernels) if turns else 1
     number = cycle or 1

@@ -213,7 +213,8 @@ def _mean(load: Load) -> float:
 def places(request: Request, way: Range, strokes: Strokes | None, sense: int) -> Real:
     """The driver's places that are asked for (rad or m); position 0 is the zero.
 
-    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost.
+    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost; over the
+    stroke of a driver they go from end to end.
     """
     if request.places:
         return np.array(request.places)
@@ -223,7 +224,7 @@ def places(request: Request, way: Range, strokes: Strokes | None, sense: int) ->
         if start == "working stroke":
             start = strokes.strokes[0].start if strokes and strokes.strokes else way.start + np.pi
         return start + sense * (2 * np.pi * way.turns * steps / request.count)
-    share = (steps + 0.5) / request.count
+    share = steps / max(request.count - 1, 1) if way.inclusive else (steps + 0.5) / request.count
     if sense < 0:
         share = 1 - share
     return way.start + (way.end - way.start) * share

@@ -281,6 +281,11 @@ class _Builder:
                 "the driver's place in the sketch is missing", path=("sketch", "at"), allowed=f"at: {wanted}",
             )  # fmt: skip
         at = self.sense.number(given.pop("at"), wanted, ("sketch", "at"))
+        if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
+            raise ProblemError(
+                "the sketch shows the driver beyond its stroke", path=("sketch", "at"),
+                found=str(self.shape.sketch["at"]), allowed="a place of the stroke, or another stroke",
+            )  # fmt: skip
         owners = {p: n for n, link in links.items() for p in link.points}
         points, angles = {}, {}
         for name, value in given.items():
