@@ -236,6 +236,10 @@ class Linkage:
         """Whether the link has a hinge on the frame."""
         return any(FRAME in h.links and link in h.links for h in self.hinges)
 
+    def carriers(self, point: str) -> tuple[str, ...]:
+        """All links that have the point, moving links before the frame."""
+        return tuple(name for name in (*self.moving, FRAME) if point in self.links[name].points)
+
     def owner(self, point: str) -> str:
         """The first link that carries the point, moving links before the frame."""
         for name in (*self.moving, FRAME):

@@ -120,6 +120,7 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
             raise NoSuchPosition(number, len(q))
     law = _law(linkage, float(q[0]))
     motion = move(linkage, kernels, q[list(numbers)], law)
+    motion = _refined(problem, motion, q, numbers, law)
     named = roles(linkage, turning_links(linkage, kernels, way))
     dead = find_dead(linkage, kernels, way)
     results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
@@ -134,6 +135,18 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     return results if stage == "kinematics" else with_forces(results)
 
 
+def _refined(problem: Problem, motion: Motion, q: Real, numbers: tuple[int, ...], law: Law) -> Motion:
+    """The motion with its positions near dead ones in extended precision, where the machine has it."""
+    from tmm_cli.extended import WIDER, near_dead, refined
+
+    where = near_dead(motion)
+    if not WIDER or problem.extended is None or not np.any(where):
+        return motion
+    exact = problem.extended()
+    asked = np.array(exact.request.places) if exact.request.places else q.astype(np.longdouble)
+    return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
+
+
 def with_forces(results: Results) -> Results:
     """Add loads, the force plan and the lever to kinematics."""
     from tmm_cli.forces.energy import energy
@@ -145,6 +158,12 @@ def with_forces(results: Results) -> Results:
     assert motion is not None
     loads = applied(motion, results.strokes)
     reactions = react(motion, results.structure, loads)
+    if motion.finer is not None and motion.where is not None:
+        from tmm_cli.splice import spliced
+
+        exact = applied(motion.finer, results.strokes)
+        loads = spliced(loads, exact, motion.where)
+        reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
     rubbed = None
     if results.linkage.friction:
         from tmm_cli.forces.friction import rub

@@ -97,6 +97,10 @@ class Kernel(ABC):
         """Where its links are along the driver's way, if it had to be followed there."""
         return None
 
+    @abstractmethod
+    def again(self, linkage: Linkage) -> Kernel:
+        """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
+
     near: ClassVar[float] = 0.05  # a margin below this is said to be near a dead position
 
     @abstractmethod
@@ -155,6 +159,9 @@ class Dyad(Kernel):
         ends = (seen(group.outer[0], a), seen(group.outer[1], b))
         size = max(spread(linkage, link) for link in (a, b, *(end.known for end in ends)))
         return cls(group, size, ends, seen(group.inner[0], b), sign)
+
+    def again(self, linkage: Linkage) -> Kernel:
+        return replace(type(self).of(self.group, linkage, self.sign), winding=self.winding)
 
     def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
         at = self.closed(poses)

@@ -9,7 +9,7 @@ squares, which is exact as long as they agree.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -53,6 +53,9 @@ class Newton(Kernel):
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
+
+    def again(self, linkage: Linkage) -> Newton:
+        return replace(Newton.of(self.group, linkage), start=self.start, track=self.track)
 
     @property
     def followed(self) -> Track | None:
@@ -231,7 +234,9 @@ class Newton(Kernel):
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
-        pushes = self._fill([c.pushes(everything) for c in self.constraints], np.shape(at.det), at.det.dtype.type)
+        pushes = self._fill(
+            [c.pushes(everything) for c in self.constraints], np.shape(at.det), at.poses[0].x.real.dtype.type
+        )
         turned = np.swapaxes(pushes, -1, -2)
 
         def under(wrenches: Sequence[Wrench]) -> Real:

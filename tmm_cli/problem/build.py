@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import replace
+from functools import partial
 from pathlib import PurePath
 from typing import Any
 
@@ -17,7 +18,7 @@ from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.sense import Sense, check_name, direction
+from tmm_cli.problem.sense import Sense, check_name, direction, phase, planar
 from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
     ANGLE,
@@ -42,8 +43,8 @@ def is_chain(tree: Tree) -> bool:
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
-def build(tree: Tree) -> Problem:
-    """A problem from a file that has been read."""
+def build(tree: Tree, *, extended: bool = False) -> Problem:
+    """A problem from a file that has been read; extended: with its numbers in longdouble."""
     if is_chain(tree):
         raise ProblemError(
             "a chain given by pairs alone has no dimensions: there is only its structure", path=("structure",),
@@ -56,7 +57,7 @@ def build(tree: Tree) -> Problem:
 
         raise shape_error(error, tree) from None
     try:
-        return _Builder(shape, tree).problem()
+        return _Builder(shape, tree, extended).problem()
     except ProblemError as error:
         raise error.located(tree.file, tree) from None
 
@@ -64,10 +65,10 @@ def build(tree: Tree) -> Problem:
 class _Builder:
     """Builds the parts of one linkage in the order in which they need each other."""
 
-    def __init__(self, shape: schema.File, tree: Tree) -> None:
+    def __init__(self, shape: schema.File, tree: Tree, extended: bool) -> None:
         self.shape, self.tree = shape, tree
         try:
-            units = UnitSystem(shape.units)
+            units = _extended_units(shape.units) if extended else UnitSystem(shape.units)
         except ProblemError as error:
             raise error.at("units") from None
         try:
@@ -97,7 +98,7 @@ class _Builder:
         file = self.tree.file
         return Problem(
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
-            limit, shape.description, file, allowed, given, self.tree,
+            limit, shape.description, file, allowed, given, self.tree, partial(build, self.tree, extended=True),
         )  # fmt: skip
 
     def meshes(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> tuple[Mesh, ...]:
@@ -190,7 +191,7 @@ class _Builder:
                 "the length of this link is missing", path=(*path, "length"),
                 allowed=f"length: the distance from {given[0]} to {given[1]}",
             )  # fmt: skip
-        return {given[0]: 0j, given[1]: complex(self.sense.positive(link.length, LENGTH, (*path, "length")))}
+        return {given[0]: 0j, given[1]: planar(self.sense.positive(link.length, LENGTH, (*path, "length")), 0.0)}
 
     def slides(self, links: dict[str, Link]) -> tuple[Slide, ...]:
         for name in self.shape.guides:
@@ -253,7 +254,7 @@ class _Builder:
                     "along says through and angle already", path=(*path, "along"), allowed="one of the two"
                 )
             first, second = self.sense.two_points(guide.along, points, (*path, "along"), carrier)
-            through, angle = points[first], cmath.phase(points[second] - points[first])
+            through, angle = points[first], phase(points[second] - points[first])
         elif guide.through is not None:
             through = self.sense.place(guide.through, points, (*path, "through"), carrier)
             angle = 0.0 if guide.angle is None else self.sense.number(guide.angle, ANGLE, (*path, "angle"))
@@ -340,6 +341,12 @@ class _Builder:
             return Request(count, "working stroke", places, tuple(given.detail))
         start = self.sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))
         return Request(count, start, places, tuple(given.detail))
+
+
+def _extended_units(names: dict[str, str]) -> UnitSystem:
+    from tmm_cli.problem.extended import ExtendedUnits  # only near dead positions
+
+    return ExtendedUnits(names)
 
 
 def _two(value: list[Any], path: Path) -> list[Any]:
