@@ -237,11 +237,11 @@ def _energy(results: Results) -> dict[str, Any]:
     found = results.energy
     assert found is not None
     energy: dict[str, Any] = {field.name: getattr(found, field.name) for field in fields(found)}
-    if results.friction is not None and results.motion is not None:
-        rubbed = results.friction
-        energy["efficiency"] = rubbed.efficiency(results.motion)
-        energy["locked"] = rubbed.locked
-        energy["friction_work"] = {pair: rubbed.total(pair, results.motion) for pair in rubbed.work}
+    if results.friction is not None:
+        energy["locked"] = results.friction.locked
+    if results.losses is not None:
+        energy["efficiency"] = results.losses.efficiency
+        energy["friction_work"] = dict(results.losses.pairs)
     return energy
 
 

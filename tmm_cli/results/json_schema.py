@@ -251,9 +251,9 @@ def _energy() -> dict[str, Any]:
         rate=_series("its rate, W"), drivers=_series("power of the drivers, W"), weights=_series("of weights, W"),
         loads=_series("of loads, W"), friction=_series("of friction, W"),
         balance=_series("what is left of all powers, against the largest"),
-        efficiency=_number("with friction: over the positions"),
+        efficiency=_number("with friction: over the cycle"),
         locked=_list("locked by friction", {"type": "boolean"}),
-        friction_work=_map("work of friction over the positions, J, by pair", _number("J")),
+        friction_work=_map("work of friction over the cycle, J, by pair", _number("J")),
     )  # fmt: skip
 
 
