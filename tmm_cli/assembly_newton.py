@@ -106,7 +106,9 @@ def close_from_afar(
     return state, (last < CONVERGED) & (gap < CONVERGED)
 
 
-def all_assemblies(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1) -> list[State]:
+def all_assemblies(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
+) -> list[State]:
     """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
 
     Of a group that moves by itself at this place, some of them.
@@ -116,7 +118,7 @@ def all_assemblies(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, se
     quiet = 0
     links = len(kernel.group.links)
     while quiet < QUIET and len(found) < MOST:
-        turn = random.uniform(-np.pi, np.pi, (STARTS, links))
+        turn = random.uniform(-np.pi, np.pi, (starts, links))
         start = placed_by_angles(kernel, poses, drives, turn)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
