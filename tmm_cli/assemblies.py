@@ -1,9 +1,9 @@
 """Stage: every real assembly of each group at one place of the driver, the links before it placed as in the sketch.
 
 Groups of class II have two assemblies in closed form, or one; triads those of a polynomial (assembly_triad); groups
-whose angles follow from equations of angles alone (gear trains) have one. Of all others Newton's method from many starts
-finds what it finds, in bounded work and without a proof that there are no more. Where there is more than one, real
-assemblies come in pairs, but for dead positions, in which two of them meet.
+whose angles follow from equations of angles alone (gear trains) have one. Of all others Newton's method from many
+starts finds what it finds, in bounded work and without a proof that there are no more. Where there is more than one,
+real assemblies come in pairs, but for dead positions, in which two of them meet.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Dyad, Kernel
 from tmm_cli.groups.state import Pose
 from tmm_cli.groups.track import State
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.pairs.base import Drives
 from tmm_cli.structure.assur import Group, Structure
@@ -103,17 +103,18 @@ def find_assemblies(
     decided = {kernel.group.links for kernel in kernels}
     undecided = next((group for group in structure.groups if group.links not in decided), None)
     found, lost = [], []
+    placed = {link: motion.poses[link] for link in (FRAME, *(driver.link for driver in linkage.cranks))}
     for group in [*(kernel.group for kernel in kernels), *([undecided] if undecided else [])]:
         before = {pair.i if pair.j in group.links else pair.j for pair in group.outer}
         if all(bool(np.isfinite(motion.poses[link].x[0] + motion.poses[link].z[0])) for link in before):
-            found.append(_of_group(group, linkage, motion))
+            found.append(_of_group(group, linkage, motion, dict(placed)))
         else:
             lost.append(group)
+        placed |= {link: motion.poses[link] for link in group.links if link in motion.poses}
     return Assemblies(q, number, motion.poses, tuple(found), undecided, tuple(lost))
 
 
-def _of_group(group: Group, linkage: Linkage, motion: Motion) -> GroupAssemblies:
-    placed = {link: pose for link, pose in motion.poses.items() if link not in group.links}
+def _of_group(group: Group, linkage: Linkage, motion: Motion, placed: Mapping[str, Pose]) -> GroupAssemblies:
     if group.type in KERNELS and not group.drivers:
         dyad = KERNELS[group.type].of(group, linkage)
         listed = GroupAssemblies(group, tuple(_of_dyad(dyad, linkage, placed)), "closed form", dyad.assemblies)

@@ -384,6 +384,32 @@ ENGLISH: dict[str, str] = {
     "schemes.fractionated": "of them fractionated",
     "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its "
     "links.",
+    # all assemblies
+    "assemblies.title": "Real assemblies of {group}, {place}: {count}",
+    "assemblies.at_position": "position {number}, {where}",
+    "assemblies.at_sketch": "place of the sketch, {where}",
+    "assemblies.number": "assembly",
+    "assemblies.of": "that of",
+    "assemblies.sketch": "sketch",
+    "assemblies.margin": "margin",
+    "assemblies.angle": "angle of {link}",
+    "assemblies.x": "{point} x",
+    "assemblies.y": "{point} y",
+    "assemblies.closed": "There are no others: a group of class II is solved in closed form.",
+    "assemblies.one": "There are no others: its equations have one solution.",
+    "assemblies.polynomial": "There are no others: they are the real roots of a polynomial of degree {most}.",
+    "assemblies.many": "Found by Newton's method from many starts: it is not proved that there are no others.",
+    "assemblies.none": "At this place of the driver the group cannot be assembled.",
+    "assemblies.dead": "Where the margin is 0 the group is dead: two assemblies meet in one.",
+    "assemblies.moves": "The group moves by itself at this place: it has assemblies without end, one of them is shown.",
+    "assemblies.undecided": "the sketch does not decide which assembly {group} has; all of them are listed",
+    "assemblies.sketch_place": "while the sketch decides nothing, positions have no numbers; listed at its own place",
+    "assemblies.lost": "{group} is not listed: links that it hangs on cannot be placed there",
+    "assemblies.caption": "Real assemblies of {group}, {place}",
+    "assemblies.cell": "assembly {number}",
+    "assemblies.cell_sketch": "assembly {number}: that of the sketch",
+    "assemblies.cell_margin": "margin {margin}",
+    "assemblies.suggest": "; tmm kinematics {file} --assemblies shows them",
 }
 
 
