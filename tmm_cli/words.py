@@ -407,9 +407,8 @@ ENGLISH: dict[str, str] = {
     "assemblies.lost": "{group} is not listed: links that it hangs on cannot be placed there",
     "assemblies.caption": "Real assemblies of {group}, {place}",
     "assemblies.cell": "assembly {number}",
-    "assemblies.cell_sketch": "assembly {number}: that of the sketch",
+    "assemblies.cell_sketch": "assembly {number} (sketch)",
     "assemblies.cell_margin": "margin {margin}",
-    "assemblies.suggest": "; tmm kinematics {file} --assemblies shows them",
 }
 
 

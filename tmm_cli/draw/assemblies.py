@@ -10,10 +10,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tmm_cli.assemblies import DEAD, Assemblies, Assembly, GroupAssemblies
-from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.labels import Ground, Label
+from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, THIN, Sheet, picture, scale_text
 from tmm_cli.draw.structure import circles, colours, grounds, higher_pairs, names, sliding, spot
-from tmm_cli.draw.symbols import Scene, body, form, number, settle, symbol_size
+from tmm_cli.draw.symbols import Form, Scene, body, form, settle, symbol_size
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.plans.record import extent, round_scale
@@ -22,8 +23,9 @@ from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.words import say
 
 A_SHEET = 12  # assemblies on one
-PAD, GAP = 15.0, 5.0  # mm: room about a group for its symbols and names, between two cells
-CAPTION = 11.0  # mm of the words below a group
+PAD, GAP = 10.0, 4.0  # mm: room about a group for its symbols and names, between two cells
+CAPTION = 6.0  # mm of the words below a group
+STEPS, CLEAR = 9, 3.0  # places along a side of a plate that are tried for its number; room that it needs, mm
 SMALLEST = 0.7  # size of symbols: smaller ones cannot be read
 
 
@@ -75,25 +77,24 @@ def sheet_of(
     scenes = {
         n: Scene(results.linkage, structure, {**here.poses, **a.poses}) for n, a in enumerate(group.assemblies, 1)
     }
-    places = [p for scene in scenes.values() for p in (*scene.extent(links), *(scene.at(pair) for pair in shown))]
-    _, across, up, middle = extent([p for p in places if np.isfinite(p)] or [0j])
-    grid = _grid(len(every), across, up)
+    boxes = {n: _box(scene, links) for n, scene in scenes.items()}
+    grid = _grid(len(every), max(size.real for _, size in boxes.values()), max(size.imag for _, size in boxes.values()))
     sheet = Sheet(
         results.problem.title, say("assemblies.caption", group=group.group.title, place=place(here, results)),
         [0j, 9 + 1j if grid.paper == LANDSCAPE else 1 + 9j],
     )  # fmt: skip
     sheet.mu = grid.mu
     size = max(SMALLEST, min(symbol_size(sheet, scene, links) for scene in scenes.values()))
-    whole, boxes = sheet.ground, []
+    whole, taken = sheet.ground, []
     for index, (n, assembly) in enumerate(every):
         low = grid.corner(index)
         high = low + grid.cell
         sheet.ground = Ground(low + 1j * CAPTION, high)
-        sheet.origin = (low + 1j * CAPTION + high) / 2 - middle / sheet.mu
+        sheet.origin = (low + 1j * CAPTION + high) / 2 - boxes[n][0] / sheet.mu
         _drawn(sheet, scenes[n], group, size)
         _framed(sheet, low, high, n, assembly)
-        boxes += sheet.ground.boxes
-    whole.boxes += boxes
+        taken += sheet.ground.boxes
+    whole.boxes += taken
     sheet.ground = whole
     sheet.text(
         complex(sheet.paper[0] - MARGIN, sheet.paper[1] - MARGIN - 2), scale_text("l", sheet.mu, "m/mm"), 9, ha="right"
@@ -113,6 +114,13 @@ def _shown(structure: Structure, group: GroupAssemblies) -> tuple[Pair, ...]:
     own = set(group.group.links)
     drawn = own | {FRAME} | set(_neighbours(group))
     return tuple(p for p in structure.pairs if {p.i, p.j} <= drawn or (p.kind == "R" and p.i in own))
+
+
+def _box(scene: Scene, links: Sequence[str]) -> tuple[complex, complex]:
+    """Middle of an assembly, and its width and height, m."""
+    places = [*scene.extent(links), *(scene.at(pair) for pair in scene.structure.pairs)]
+    _, across, up, middle = extent([p for p in places if np.isfinite(p)] or [0j])
+    return middle, complex(across, up)
 
 
 def _cell(paper: tuple[float, float], columns: int, rows: int) -> complex:
@@ -147,9 +155,32 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, size: float) -> N
     grounds(sheet, scene, pairs, size)
     higher_pairs(sheet, scene, forms)
     for link, shape in forms.items():
-        number(sheet, link, shape, hue[link])
-    names(sheet, ((spot(sheet, scene, p, size), p.point if p.kind == "R" else p.name, DARK) for p in pairs if p.lower))
+        _number(sheet, link, shape, hue[link])
+    hinged = {p.point for p in pairs if p.kind == "R"}
+    named = [(p, p.point) for p in pairs if p.kind == "R"]
+    named += [(p, p.name) for p in pairs if p.slide and (p.slide.carrier == FRAME or p.point not in hinged)]
+    names(sheet, [(spot(sheet, scene, p, size), name, DARK) for p, name in named])
     settle(sheet)
+
+
+def _number(sheet: Sheet, link: str, shape: Form, colour: str) -> None:
+    """The number of a link: on its plate where it is farthest from all that is drawn there, or beside its bar."""
+    label = Label(link, shape.middle, 11, colour, "italic")
+    if len(shape.hull) > 2:
+        corners = np.array(shape.hull)
+        shares = np.array([share for share in np.ndindex(*[STEPS] * min(len(corners), 5)) if sum(share) == STEPS - 1])
+        places = shares @ corners[: shares.shape[1]] / (STEPS - 1)
+        crowd = np.concatenate(sheet.ground.points)
+        free = np.min(np.abs(places[:, None] - crowd[None, :]), axis=1)
+        best = int(np.argmax(free))
+        if free[best] > CLEAR:
+            at, (width, height) = complex(places[best]), text_extent(label)
+            sheet.ground.boxes.append(
+                (at.real - width / 2, at.real + width / 2, at.imag - height / 2, at.imag + height / 2)
+            )
+            sheet.text(at, link, label.size, colour=colour, ha="center", style=label.style)
+            return
+    sheet.labels.append(label)
 
 
 def _framed(sheet: Sheet, low: complex, high: complex, number_: int, assembly: Assembly) -> None:
@@ -158,5 +189,8 @@ def _framed(sheet: Sheet, low: complex, high: complex, number_: int, assembly: A
     mark = assembly.of_sketch
     sheet.line(corners, DARK if mark else THIN, 2.2 if mark else 0.5, z=1, blocks=False)
     words = say("assemblies.cell_sketch" if mark else "assemblies.cell", number=number_)
-    sheet.text(low + complex(3, 8), words, 10, weight="bold" if mark else "normal")
-    sheet.text(low + complex(3, 3.5), say("assemblies.cell_margin", margin=f"{assembly.margin if assembly.margin > DEAD else 0:.3g}"), 8.5)
+    sheet.text(low + complex(3, 3.5), words, 10, weight="bold" if mark else "normal")
+    margin = assembly.margin if assembly.margin > DEAD else 0
+    sheet.text(
+        complex(high.real - 3, low.imag + 3.5), say("assemblies.cell_margin", margin=f"{margin:.3g}"), 8.5, ha="right"
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 
@@ -37,7 +38,8 @@ def place(here: Assemblies, results: Results) -> str:
     units = results.problem.units
     crank = results.linkage.driver.kind == "turn"
     measure = ANGLE if crank else LENGTH
-    at = f"{round(units.from_si(here.q, measure), 9) + 0.0:.6g} {units.symbol(measure)}"
+    q = here.q % math.tau if crank else here.q
+    at = f"{round(units.from_si(q, measure), 9) + 0.0:.6g} {units.symbol(measure)}"
     where = say("scheme.at_crank" if crank else "scheme.at_slider", place=at)
     if here.number is None:
         return say("assemblies.at_sketch", where=where)
