@@ -351,6 +351,28 @@ sketch: {at: 60 deg, B: [300, 150]}
     assert count(math.pi, shorter, assemble(shorter, structure)) == (0, False)
 
 
+def test_a_group_of_class_four_is_listed_without_a_proof():
+    """Two ternary links on the crank and the frame, joined by two bars: an even number, one of them the sketch's."""
+    for seed in range(4):
+        maker = Maker(seed)
+        maker.link("1")
+        maker.hinge("O", FRAME, "1")
+        for name in "2345":
+            maker.link(name)
+        for point, *joined in ("A12", "D03", "B24", "C34", "E25", "F35"):
+            maker.hinge(point, *joined)
+        links = {name: Link(name, points) for name, points in maker.points.items()}
+        angles = {name: cmath.phase(z) for name, (_, z) in maker.poses.items() if name != FRAME}
+        hinges = tuple(Hinge(name, tuple(joined)) for name, joined in maker.hinges.items())
+        linkage = Linkage(links, hinges, (), Driver("1", "turn", "O", 1.0), Sketch(angles["1"], {}, angles))
+        structure = analyse(linkage)
+        (group,) = find_assemblies(linkage, structure, assemble(linkage, structure), linkage.sketch.at).groups
+        assert group.group.grade == 4
+        assert (group.method, group.complete, group.most) == ("many starts", False, None)
+        assert [a.of_sketch for a in group.assemblies].count(True) == 1
+        assert len(group.assemblies) % 2 == 0
+
+
 # as a user sees it
 
 

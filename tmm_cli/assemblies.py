@@ -8,7 +8,8 @@ real assemblies come in pairs, but for dead positions, in which two of them meet
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -31,7 +32,8 @@ Method = Literal["closed form", "polynomial", "angles", "many starts"]
 
 DEAD = 1e-6  # a margin below this: here two assemblies meet in one
 SAME = 1e-6  # poses this near are the same (lengths in the group's size, rad)
-STARTS, LEAST_STARTS, SMALL = 400, 24, 6  # many starts; fewer for groups of more links, as each then costs more
+STARTS, LEAST_STARTS, SMALL = 400, 60, 8  # many starts; fewer for groups of more links, as each then costs more
+ROUNDS = 4  # of many starts at most, while an odd number shows that one is missing
 MEET = 1e-4  # two assemblies this near in a dead position are one
 EXACT = 1e-9  # what is left open by a closed group (sizes, rad)
 STEP, STAYS = 0.02, 0.005  # sizes, rad: a step that shows whether a group moves by itself, and what it then keeps of it
@@ -92,6 +94,19 @@ class Assemblies:
     lost: tuple[Group, ...] = ()
 
 
+def listed(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
+    """The groups with the names of their files: assemblies-III-2-3-4-5, with the position when there are several."""
+    found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
+    for here in places:
+        for group in here.groups:
+            number = f"-{here.number:02d}" if len(places) > 1 and here.number is not None else ""
+            name = "-".join(["assemblies", group.group.title.split("(")[0], *group.group.links])
+            stem = re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80] + number
+            stem = f"{stem}-{len(found)}" if stem in found else stem
+            found[stem] = (stem, here, group)
+    return list(found.values())
+
+
 def find_assemblies(
     linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: float, number: int | None = None
 ) -> Assemblies:
@@ -117,15 +132,22 @@ def find_assemblies(
 def _of_group(group: Group, linkage: Linkage, motion: Motion, placed: Mapping[str, Pose]) -> GroupAssemblies:
     if group.type in KERNELS and not group.drivers:
         dyad = KERNELS[group.type].of(group, linkage)
-        listed = GroupAssemblies(group, tuple(_of_dyad(dyad, linkage, placed)), "closed form", dyad.assemblies)
+        found = GroupAssemblies(group, tuple(_of_dyad(dyad, linkage, placed)), "closed form", dyad.assemblies)
     else:
-        listed = _of_higher(group, linkage, placed, motion.drives)
-    sketched = {link: motion.poses[link] for link in group.links if link in motion.poses}
-    if len(sketched) < len(group.links):
-        return listed
+        found = _of_higher(group, linkage, placed, motion)
+    sketched = _sketched(group, motion)
+    if sketched is None:
+        return found
     size = max((abs(p) for link in group.links for p in linkage.links[link].points.values()), default=1.0) or 1.0
-    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME) for a in listed.assemblies]
-    return replace(listed, assemblies=tuple(marked))
+    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME) for a in found.assemblies]
+    return replace(found, assemblies=tuple(marked))
+
+
+def _sketched(group: Group, motion: Motion) -> dict[str, Pose] | None:
+    """The group's own poses in the assembly of the sketch, if it is decided and comes so far."""
+    poses = {link: motion.poses[link] for link in group.links if link in motion.poses}
+    sound = len(poses) == len(group.links) and all(np.isfinite(p.x[0] + p.z[0]) for p in poses.values())
+    return poses if sound else None
 
 
 def _apart(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
@@ -158,20 +180,20 @@ def _of_dyad(dyad: Dyad, linkage: Linkage, placed: Mapping[str, Pose]) -> Iterab
             return
 
 
-def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], drives: Drives) -> GroupAssemblies:
+def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: Motion) -> GroupAssemblies:
     """Groups of class III and higher, and those with higher pairs or drivers in them."""
     from tmm_cli.groups.linear import least_over_largest  # class II alone needs none of this
     from tmm_cli.groups.newton import Newton
 
     kernel = Newton.of(group, linkage)
     with np.errstate(all="ignore"):
-        states, method, most = _searched(kernel, linkage, placed, drives)
+        states, method, most = _searched(kernel, linkage, placed, motion)
         found: list[Assembly] = []
         moves = False
         for state in states:
             poses = kernel.poses_of(state)
             margin = float(least_over_largest(kernel.matrix({**placed, **poses}))[0])
-            if margin < DEAD and _moves(kernel, state, placed, drives):
+            if margin < DEAD and _moves(kernel, state, placed, motion.drives):
                 if moves:
                     continue
                 moves = True
@@ -182,30 +204,53 @@ def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], drive
 
 
 def _searched(
-    kernel: Newton, linkage: Linkage, placed: Mapping[str, Pose], drives: Drives
+    kernel: Newton, linkage: Linkage, placed: Mapping[str, Pose], motion: Motion
 ) -> tuple[list[State], Method, int | None]:
     """States of all assemblies (some more than once), the way they were found, and how many there are at most."""
     from tmm_cli.assembly_newton import all_assemblies, close_from_afar
     from tmm_cli.assembly_triad import Triad, starts
 
+    drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
     found = None if triad is None else starts(triad, placed)
+    if found is None and kernel.by_angle:
+        return all_assemblies(kernel, placed, drives), "angles", 1
     if found is None:
-        number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
-        states = all_assemblies(kernel, placed, drives, starts=number)
-        return (states, "angles", 1) if kernel.by_angle else (states, "many starts", None)
+        return _by_many_starts(kernel, placed, motion), "many starts", None
     start, most = found
-    if not len(start.x):
+    number = len(start.x)
+    if not number:
         return [], "polynomial", most
-    known = {
-        name: Pose(np.broadcast_to(p.x, len(start.x)), np.broadcast_to(p.z, len(start.x))) for name, p in placed.items()
-    }
-    closed_already = np.max(np.abs(kernel.gaps({**known, **kernel.poses_of(start)}, drives)), axis=-1) < EXACT
+    known = {name: Pose(np.broadcast_to(p.x, number), np.broadcast_to(p.z, number)) for name, p in placed.items()}
+    gaps = np.max(np.abs(kernel.gaps({**known, **kernel.poses_of(start)}, drives)), axis=-1)
     near, closed = close_from_afar(kernel, placed, drives, start)
     # exactly in a dead position Newton's method has no next step, but the root is there
-    every = [near if closed[k] else start for k in range(len(start.x))]
-    sound = [k for k in range(len(start.x)) if closed[k] or closed_already[k]]
-    return [State(every[k].x[k : k + 1], every[k].turn[k : k + 1]) for k in sound], "polynomial", most
+    sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or gaps[k] < EXACT]
+    return [State(which.x[k : k + 1], which.turn[k : k + 1]) for which, k in sound], "polynomial", most
+
+
+def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: Motion) -> list[State]:
+    """What many starts find, and the assembly of the sketch.
+
+    With turning pairs alone the way of a group with one lead cut is closed, so that the lead closes an even number of
+    times: an odd number shows that one is missing.
+    """
+    from tmm_cli.assembly_newton import all_assemblies
+
+    own = _sketched(kernel.group, motion)
+    states: list[State] = []
+    if own is not None:
+        poses = [own[link] for link in kernel.group.links]
+        states.append(State(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
+    number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
+    turning = all(c.kind == "R" for c in kernel.constraints)
+    for seed in range(1, ROUNDS + 1):
+        for state in all_assemblies(kernel, placed, motion.drives, seed, number):
+            if not any(_apart(kernel.poses_of(state), kernel.poses_of(other), kernel.size) < SAME for other in states):
+                states.append(state)
+        if not turning or len(states) % 2 == 0:
+            break
+    return states
 
 
 def _same(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:

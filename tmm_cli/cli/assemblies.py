@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 def list_assemblies(file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None) -> int:
     """Compute one file, show its assemblies and draw them; the exit code. Raises ProblemError."""
+    from tmm_cli.assemblies import listed
     from tmm_cli.draw.assemblies import files
     from tmm_cli.results.files import folder_name, write_whole
     from tmm_cli.results.output import write_results
-    from tmm_cli.results.reports.assemblies import listed
     from tmm_cli.words import say as words
 
     results = with_assemblies(file, positions)
-    code = report(results, [stem for stem, _, _ in listed(results)], as_json, None)
+    code = report(results, [stem for stem, _, _ in listed(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
         if here.undecided is not None:
             say(words("assemblies.undecided", group=here.undecided.title))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.assemblies import DEAD, Assemblies, Assembly, GroupAssemblies
+from tmm_cli.assemblies import DEAD, Assemblies, Assembly, GroupAssemblies, listed
 from tmm_cli.draw.labels import Ground, Label
 from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, THIN, Sheet, picture, scale_text
@@ -17,8 +17,8 @@ from tmm_cli.draw.structure import circles, colours, grounds, higher_pairs, name
 from tmm_cli.draw.symbols import Form, Scene, body, form, settle, symbol_size
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
+from tmm_cli.places import place
 from tmm_cli.plans.record import extent, round_scale
-from tmm_cli.results.reports.assemblies import listed, place
 from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.words import say
 
@@ -60,7 +60,7 @@ def files(results: Results) -> Iterable[tuple[str, bytes]]:
 
 def sheets(results: Results) -> Iterable[tuple[str, Figure]]:
     """The sheets with the stems of their files; none for a group without a real assembly."""
-    for stem, here, group in listed(results):
+    for stem, here, group in listed(results.assemblies or ()):
         every = list(enumerate(group.assemblies, 1))
         for first in range(0, len(every), A_SHEET):
             name = stem if first == 0 else f"{stem}-sheet-{first // A_SHEET + 1}"
@@ -79,8 +79,9 @@ def sheet_of(
     }
     boxes = {n: _box(scene, links) for n, scene in scenes.items()}
     grid = _grid(len(every), max(size.real for _, size in boxes.values()), max(size.imag for _, size in boxes.values()))
+    where = place(results.problem, here.q, here.number)
     sheet = Sheet(
-        results.problem.title, say("assemblies.caption", group=group.group.title, place=place(here, results)),
+        results.problem.title, say("assemblies.caption", group=group.group.title, place=where),
         [0j, 9 + 1j if grid.paper == LANDSCAPE else 1 + 9j],
     )  # fmt: skip
     sheet.mu = grid.mu

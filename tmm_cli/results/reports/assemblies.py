@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterable
 
-from tmm_cli.assemblies import Assemblies, GroupAssemblies
+from tmm_cli.assemblies import Assemblies, GroupAssemblies, listed
 from tmm_cli.pipeline import Results
+from tmm_cli.places import place
 from tmm_cli.problem.dimensions import ANGLE, LENGTH, NUMBER
 from tmm_cli.results.table import Column, Table
 from tmm_cli.words import say
@@ -15,35 +14,8 @@ from tmm_cli.words import say
 
 def tables(results: Results) -> Iterable[Table]:
     """In solving order of the groups, at each place that was asked for."""
-    for stem, here, group in listed(results):
+    for stem, here, group in listed(results.assemblies or ()):
         yield _table(stem, here, group, results)
-
-
-def listed(results: Results) -> list[tuple[str, Assemblies, GroupAssemblies]]:
-    """The groups with the names of their files: assemblies-III-2-3-4-5, with the position when there are several."""
-    found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
-    places = results.assemblies or ()
-    for here in places:
-        for group in here.groups:
-            number = f"-{here.number:02d}" if len(places) > 1 and here.number is not None else ""
-            name = "-".join(["assemblies", group.group.title.split("(")[0], *group.group.links])
-            stem = re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80] + number
-            stem = f"{stem}-{len(found)}" if stem in found else stem
-            found[stem] = (stem, here, group)
-    return list(found.values())
-
-
-def place(here: Assemblies, results: Results) -> str:
-    """Which position it is and where the driver stands."""
-    units = results.problem.units
-    crank = results.linkage.driver.kind == "turn"
-    measure = ANGLE if crank else LENGTH
-    q = here.q % math.tau if crank else here.q
-    at = f"{round(units.from_si(q, measure), 9) + 0.0:.6g} {units.symbol(measure)}"
-    where = say("scheme.at_crank" if crank else "scheme.at_slider", place=at)
-    if here.number is None:
-        return say("assemblies.at_sketch", where=where)
-    return say("assemblies.at_position", number=here.number, where=where)
 
 
 def notes(group: GroupAssemblies) -> Iterable[str]:
@@ -59,7 +31,7 @@ def notes(group: GroupAssemblies) -> Iterable[str]:
         yield say("assemblies.one")
     else:
         yield say("assemblies.many")
-    if number == 0:
+    if number == 0 and group.complete:
         yield say("assemblies.none")
     if group.dead and not group.moves:
         yield say("assemblies.dead")
@@ -78,5 +50,7 @@ def _table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results
     for name in names:
         columns.append(Column(say("assemblies.x", point=name), [a.points[name].real for a in every], LENGTH))
         columns.append(Column(say("assemblies.y", point=name), [a.points[name].imag for a in every], LENGTH))
-    title = say("assemblies.title", group=group.group.title, count=len(every), place=place(here, results))
+    title = say(
+        "assemblies.title", group=group.group.title, count=len(every), place=place(results.problem, here.q, here.number)
+    )
     return Table(stem, title, tuple(columns), notes=tuple(notes(group)))
