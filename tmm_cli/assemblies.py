@@ -17,11 +17,10 @@ import numpy as np
 
 from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Dyad, Kernel
-from tmm_cli.groups.state import Pose
+from tmm_cli.groups.state import Drives, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pairs.base import Drives
 from tmm_cli.structure.assur import Group, Structure
 from tmm_cli.vectors import Real
 
@@ -116,7 +115,7 @@ def find_assemblies(
     """
     motion = move(linkage, kernels, np.array([q]), Law(q, 1.0, 0.0, 1))
     decided = {kernel.group.links for kernel in kernels}
-    undecided = next((group for group in structure.groups if group.links not in decided), None)
+    undecided = next((group for group in structure.solved if group.links not in decided), None)
     found, lost = [], []
     placed = {link: motion.poses[link] for link in (FRAME, *(driver.link for driver in linkage.cranks))}
     for group in [*(kernel.group for kernel in kernels), *([undecided] if undecided else [])]:
@@ -243,7 +242,7 @@ def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: Motion) 
         poses = [own[link] for link in kernel.group.links]
         states.append(State(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
     number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
-    turning = all(c.kind == "R" for c in kernel.constraints)
+    turning = not kernel.passive and all(c.kind == "R" for c in kernel.constraints)
     for seed in range(1, ROUNDS + 1):
         for state in all_assemblies(kernel, placed, motion.drives, seed, number):
             if not any(_apart(kernel.poses_of(state), kernel.poses_of(other), kernel.size) < SAME for other in states):

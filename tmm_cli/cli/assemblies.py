@@ -76,8 +76,8 @@ def _undecided(problem: Problem, group: Group, positions: Sequence[int] | None) 
     from tmm_cli.refused import NoSuchPosition, Refused
 
     results = pipeline.solve(problem, "structure")
-    order = [g.links for g in results.structure.groups]
-    before = results.structure.groups[: order.index(group.links)]
+    order = [g.links for g in results.structure.solved]
+    before = results.structure.solved[: order.index(group.links)]
     given = problem.request.places
     try:
         kernels = assemble(problem.linkage, results.structure, before)

@@ -63,6 +63,10 @@ def result_schema() -> dict[str, Any]:
             "turns": _number("turns of the driver after which everything repeats"),
             "pressure": _pressure(),
             "output": _output(),
+            "further_outputs": _list("of the others, as the first one", _output()),
+            "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
+                "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
+                high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
             "positions": _positions(),
             "kinematics": _kinematics(),
             "forces": _forces(),
@@ -81,6 +85,10 @@ def _structure() -> dict[str, Any]:
         "links, pairs and Assur groups",
         mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
         p2=_number("higher pairs"),
+        true_mobility=_number("by rank, where dimensions leave more than the count"),
+        passive=_list("passive constraints", _object(
+            "conditions that only repeat others", pair=_text("pair"), constraints=_number("how many"),
+            links=_list("its links, the passive one last", names), among=_list("links that hold each other", names))),
         contours=_number("independent contours K = p - n"),
         classification=_list("closed or open; elementary, simple, complex; of one type or several", names),
         formula=_text("formula of structure"),
@@ -244,9 +252,9 @@ def _energy() -> dict[str, Any]:
         rate=_series("its rate, W"), drivers=_series("power of the drivers, W"), weights=_series("of weights, W"),
         loads=_series("of loads, W"), friction=_series("of friction, W"),
         balance=_series("what is left of all powers, against the largest"),
-        efficiency=_number("with friction: over the positions"),
+        efficiency=_number("with friction: over the cycle"),
         locked=_list("locked by friction", {"type": "boolean"}),
-        friction_work=_map("work of friction over the positions, J, by pair", _number("J")),
+        friction_work=_map("work of friction over the cycle, J, by pair", _number("J")),
     )  # fmt: skip
 
 

@@ -9,6 +9,8 @@ h(x, y) = a + b x + c y over its own axes. Each pair asks for equal heights:
     spherical              height at the centre        1
     cylindrical for P      height along the guide      2   (it may turn about the guide)
     planar for P           slope across the guide      1   (flat cheeks: it may rise and turn in the wall)
+    teeth, cam             slope along the normal      1   (they touch along a line)
+    barrel-shaped          none                        0   (they touch in a point)
 
 A linkage with W = 1 has 3K conditions too many, K its contours. None of these replacements touches the motion in the
 plane. A proposal is good when its conditions are independent (rank) and what they leave free are local freedoms of
@@ -30,8 +32,12 @@ from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.structure.spatial import KINDS, Chain, SpatialPair
 from tmm_cli.vectors import Real
 
-CHOICES = {"R": ("turning", "cylindrical", "spherical"), "P": ("sliding", "cylindrical", "planar")}
-"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1."""
+HIGHER = ("cylinder on plane", "cylinder on plane", "sphere on plane")  # teeth and cams: a line, or a point
+CHOICES = {
+    "R": ("turning", "cylindrical", "spherical"), "P": ("sliding", "cylindrical", "planar"),
+    "G": HIGHER, "K": HIGHER, "C": HIGHER,
+}  # fmt: skip
+"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 1, 0."""
 CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
 GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
 INDEPENDENT = 1e-9  # of the largest singular value, or of a row; dependent rows are at 1e-15
@@ -89,8 +95,9 @@ class Space:
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
-def space(linkage: Linkage, structure: Structure, wanted: int = 1) -> Space:
-    """Count the linkage in space and propose pairs without redundant constraints; wanted: 1, as one link is driven."""
+def space(linkage: Linkage, structure: Structure) -> Space:
+    """Count the linkage in space and propose pairs without redundant constraints; wanted: a freedom for each driver."""
+    wanted = len(structure.drivers)
     chain = spatial_chain(structure, {})
     heights = Heights(linkage)
     for pins_first in (True, False):
@@ -132,7 +139,11 @@ class Heights:
     def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
         """Conditions that a pair of this kind puts on the given links, shape (conditions, 3 links); others lie flat."""
         slide = pair.slide
-        if slide is None:
+        if pair.mesh is not None:
+            places = dict.fromkeys((pair.i, pair.j), 0j)
+            normal = self.angle[pair.mesh.carrier] + GOLDEN  # of the teeth: seen from the carrier, in any direction
+            ahead = {link: cmath.exp(1j * (normal - self.angle[link])) for link in places}
+        elif slide is None:
             places = {link: _one(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
             ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
         else:
@@ -148,6 +159,8 @@ class Heights:
             "sliding": (height, slope, across),
             "spherical": (height,),
             "planar": (across,),
+            "cylinder on plane": (slope,),
+            "sphere on plane": (),
             "cylindrical": (slope, across) if slide is None else (height, slope),
         }[kind]
         found = np.zeros((len(asked), CONDITIONS * len(links)))
