@@ -23,6 +23,7 @@ from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+    from tmm_cli.assemblies import Assemblies
     from tmm_cli.forces.applied import Applied
     from tmm_cli.forces.energy import Energy
     from tmm_cli.forces.friction import Losses, Rubbed
@@ -58,6 +59,7 @@ class Results:
     pressure: tuple[Pressure, ...] = ()
     further: tuple[Strokes, ...] = ()
     travels: tuple[Travel, ...] = ()
+    assemblies: tuple[Assemblies, ...] | None = None
 
     @property
     def linkage(self) -> Linkage:

@@ -77,6 +77,10 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         }  # fmt: skip
     if results.energy is not None:
         found["energy"] = _energy(results)
+    if results.assemblies is not None:
+        from tmm_cli.results.as_assemblies import assemblies_json
+
+        found["assemblies"] = assemblies_json(results.assemblies)
     found["warnings"] = list(warnings(results))
     return {key: plain(value) for key, value in found.items()}
 
