@@ -36,6 +36,20 @@ class Digits:
         return +mp.pi
 
 
+def _sine(angle, n):
+    return n.exp(angle).imag
+
+
+SHAPES = {
+    "linear": lambda x, n: x,
+    "parabolic": lambda x, n: 2 * x**2 if x < 0.5 else 1 - 2 * (1 - x) ** 2,
+    "cosine": lambda x, n: (1 - _sine(n.pi * (x + n.real(0.5)), n)) / 2,
+    "sine": lambda x, n: x - _sine(2 * n.pi * x, n) / (2 * n.pi),
+    "3-4-5": lambda x, n: 10 * x**3 - 15 * x**4 + 6 * x**5,
+    "4-5-6-7": lambda x, n: 35 * x**4 - 84 * x**5 + 70 * x**6 - 20 * x**7,
+}
+
+
 def run_of(law, angle, n):
     """A cam's law at an angle, from the formulas of the course: piece by piece, its polynomial or sine."""
     way = (angle - n.real(law.start)) % (2 * n.pi)
@@ -43,17 +57,7 @@ def run_of(law, angle, n):
     for number, piece in enumerate(law.pieces):
         over, rise = n.real(piece.over), n.real(piece.rise)
         if way <= over or number == len(law.pieces) - 1:
-            x = way / over
-            cos, sin = (mp.cos, mp.sin) if isinstance(n, Digits) else (np.cos, np.sin)
-            shapes = {
-                "linear": lambda: x,
-                "parabolic": lambda: 2 * x**2 if x < 0.5 else 1 - 2 * (1 - x) ** 2,
-                "cosine": lambda: (1 - cos(n.pi * x)) / 2,
-                "sine": lambda: x - sin(2 * n.pi * x) / (2 * n.pi),
-                "3-4-5": lambda: 10 * x**3 - 15 * x**4 + 6 * x**5,
-                "4-5-6-7": lambda: 35 * x**4 - 84 * x**5 + 70 * x**6 - 20 * x**7,
-            }
-            return low + rise * shapes[piece.shape]()
+            return low + rise * SHAPES[piece.shape](way / over, n)
         way, low = way - over, low + rise
     raise AssertionError
 
