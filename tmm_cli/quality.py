@@ -157,8 +157,11 @@ def _lost(motion: Motion, side: list[float]) -> Real:
     The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
     went to infinity.
     """
-    held = [motion.placed & ~(np.sign(p.det) == -s) for p, s in zip(motion.placements, side, strict=True)]
-    found: Real = ~np.array(held) if held else np.zeros((0, len(motion.q)), dtype=bool)
+    lost = [
+        motion.missing[kernel.group.title] | (np.sign(at.det) == -sign)
+        for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
+    ]
+    found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
     return found
 
 
