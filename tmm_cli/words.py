@@ -384,6 +384,13 @@ ENGLISH: dict[str, str] = {
     "schemes.fractionated": "of them fractionated",
     "schemes.note": "Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its "
     "links.",
+    # higher pairs
+    "structure.p2": "higher pairs p2",
+    "structure.W_p2": "mobility W = 3n - 2 p1 - p2",
+    "structure.chebyshev_p2": "3*{n} - 2*{p} - {p2} = {w}",
+    "pairs.G": "toothed wheels in mesh (G)",
+    "pairs.K": "wheel on a rack (K)",
+    "pairs.C": "cam and follower (C)",
 }
 
 

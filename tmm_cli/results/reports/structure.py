@@ -16,16 +16,14 @@ def tables(results: Results) -> Iterable[Table]:
     """Four small tables."""
     structure, linkage = results.structure, results.linkage
     turning = sum(p.kind == "R" for p in structure.pairs)
+    lower = len(structure.pairs) - structure.higher
+    count = {"n": len(structure.links), "p": lower, "p2": structure.higher, "w": structure.mobility}
+    with_p2 = "_p2" if structure.higher else ""
     facts = (
         (say("structure.n"), str(len(structure.links))),
-        (
-            say("structure.p1"),
-            say("structure.kinds", all=len(structure.pairs), r=turning, p=len(structure.pairs) - turning),
-        ),
-        (
-            say("structure.W"),
-            say("structure.chebyshev", n=len(structure.links), p=len(structure.pairs), w=structure.mobility),
-        ),
+        (say("structure.p1"), say("structure.kinds", all=lower, r=turning, p=lower - turning)),
+        *([(say("structure.p2"), str(structure.higher))] if structure.higher else []),
+        (say(f"structure.W{with_p2}"), say(f"structure.chebyshev{with_p2}", **count)),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
         (say("structure.chain"), ", ".join(say(f"class.{word}") for word in classification(structure))),
