@@ -24,11 +24,13 @@ from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
 from tmm_cli.pairs.base import Drives
-from tmm_cli.refused import NoAssembly, Undecided
+from tmm_cli.refused import NoAssembly, TooLarge, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
+MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
+MOST_FOUND = 100  # assemblies; where there are more, it is because the group can move
 QUIET = 3  # rounds without a new assembly that end the search
 ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
@@ -42,8 +44,10 @@ def assembled(
 ) -> tuple[Newton, Placement]:
     """The group in the assembly that the sketch shows, followed along the driver's way.
 
-    Raises NoAssembly, Undecided.
+    Raises TooLarge, NoAssembly, Undecided.
     """
+    if len(group.links) > MOST_LINKS:
+        raise TooLarge(group, MOST_LINKS)
     kernel = Newton.of(group, linkage)
     q = np.array([linkage.sketch.at])
     state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
@@ -111,14 +115,14 @@ def all_assemblies(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, se
     found: list[State] = []
     quiet = 0
     links = len(kernel.group.links)
-    while quiet < QUIET:
+    while quiet < QUIET and len(found) < MOST_FOUND:
         turn = random.uniform(-np.pi, np.pi, (STARTS, links))
         start = placed_by_angles(kernel, poses, drives, turn)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
         for k in np.flatnonzero(closed):
             state = State(states.x[k : k + 1], np.angle(unit(states.turn[k : k + 1])))
-            if not any(_alike(kernel, state, other) for other in found):
+            if len(found) < MOST_FOUND and not any(_alike(kernel, state, other) for other in found):
                 found.append(state)
                 new = True
         quiet = 0 if new else quiet + 1
