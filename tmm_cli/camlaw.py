@@ -86,6 +86,18 @@ class CamLaw:
         over, rise = np.array([p.over for p in self.pieces]), np.array([p.rise for p in self.pieces])
         return np.cumsum(over) - over, over, np.cumsum(rise) - rise, rise
 
+    def jumps(self) -> tuple[float, ...]:
+        """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
+        slopes = [SHAPES[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
+        ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
+        most = max(abs(piece.rise) for piece in self.pieces)
+        found = [
+            float(np.mod(start + self.start, TAU))
+            for start, now, before in zip(self._table[0], ends, [ends[-1], *ends[:-1]], strict=True)
+            if abs(now[0] - before[1]) > 1e-9 * most
+        ]
+        return tuple(sorted(found))
+
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
         turn = np.mod(np.asarray(angle) - self.start, TAU)

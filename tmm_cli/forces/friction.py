@@ -8,7 +8,7 @@ it can overcome, the two never agree: the mechanism locks itself.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ NO_GROWTH = 1e6  # times the reactions without friction: what has grown so far h
 @dataclass(frozen=True)
 class Rubbed:
     """Reactions with friction. locked: positions where the mechanism locks itself; pair: the one that rubs most there.
+
+    Where it locks there are no forces with which it would move: they are nan.
 
     work: power of friction per unit of the first driver's motion (N m or N, negative), pair by pair.
     """
@@ -86,7 +88,16 @@ def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: 
     stacked = np.array([np.abs(w) for w in work.values()])
     names = list(work)
     worst = tuple(names[int(np.argmax(np.nan_to_num(stacked[:, k])))] for k in range(len(motion.q)))
+    if bool(np.any(locked)):
+        rubbed = tuple(_nowhere(load, locked) for load in rubbed)
+        reactions = react(motion, structure, (*loads, *rubbed))
+        work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
     return Rubbed(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
+
+
+def _nowhere(load: Applied, lost: Real) -> Applied:
+    """A load that is nothing where the mechanism does not move."""
+    return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
 
 
 def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
