@@ -23,11 +23,12 @@ from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
-from tmm_cli.refused import NoAssembly, Undecided
+from tmm_cli.refused import NoAssembly, TooLarge, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
+MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
 QUIET = 3  # rounds without a new assembly that end the search
 MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
 ROUNDS = 60  # of damped steps from a start that may be anywhere
@@ -42,8 +43,10 @@ def assembled(
 ) -> tuple[Newton, Placement]:
     """The group in the assembly that the sketch shows, followed along the driver's way.
 
-    Raises NoAssembly, Undecided.
+    Raises TooLarge, NoAssembly, Undecided.
     """
+    if len(group.links) > MOST_LINKS:
+        raise TooLarge(group, MOST_LINKS)
     kernel = Newton.of(group, linkage)
     q = np.array([linkage.sketch.at])
     state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
@@ -64,7 +67,8 @@ def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: 
     turns = linkage.driver.kind == "turn"
     size = max(k.size for k in (kernel, *before))
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else 4 * size
-    return Walker(kernel, upstream).follow(linkage.sketch.at, state, half, turns)
+    track = Walker(kernel, upstream).follow(linkage.sketch.at, state, half, turns)
+    return track if track is None or turns else replace(track, unit=kernel.size)
 
 
 def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, turn: Real) -> State:

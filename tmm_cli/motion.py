@@ -224,7 +224,7 @@ def move(linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law) -> Moti
     q = np.atleast_1d(np.asarray(q))
     poses, first, second = {}, {}, {}
     poses[FRAME], first[FRAME], second[FRAME] = frame_state(q)
-    with np.errstate(invalid="ignore", divide="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         drives = drives_at(linkage, q)
         for driver in linkage.cranks:
             link = driver.link

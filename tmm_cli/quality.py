@@ -22,10 +22,14 @@ DEAD = 1e-6  # a margin below this, refined, is a dead position
 
 @dataclass(frozen=True)
 class Limit:
-    """An end of the driver's way: its place, the group that stops it."""
+    """An end of the driver's way: its place, the group that stops it, or `driver` where the first driver itself stops.
+
+    The latter only with several drivers, whose places follow from the time.
+    """
 
     place: float
     group: str
+    driver: str = ""
 
 
 @dataclass(frozen=True)
@@ -78,9 +82,10 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     scan = move(linkage, kernels, at + steps, law)
     steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
     lost = _lost(move(linkage, kernels, at + steps, law), side)
-    if not bool(np.any(lost)):
+    stopped = _stopped(linkage, at + steps)
+    if not bool(np.any(lost)) and not bool(np.any(stopped)):
         return Range(at - half, at + half, turns, turns=number, repeats=cycle is not None)
-    blocked = np.flatnonzero(np.any(lost, axis=0))
+    blocked = np.flatnonzero(np.any(lost, axis=0) | stopped)
     middle = int(np.argmin(np.abs(steps)))
 
     def limit(index: int, towards: int) -> Limit:
@@ -91,20 +96,34 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
                 return Limit(end, first.group.title)
         for _ in range(HALVINGS):
             half_way = (good + bad) / 2
-            there = bool(np.any(_lost(move(linkage, kernels, np.array([half_way]), law), side)))
+            q = np.array([half_way])
+            there = bool(np.any(_lost(move(linkage, kernels, q, law), side)) or _stopped(linkage, q)[0])
             good, bad = (good, half_way) if there else (half_way, bad)
+        if stopped[index]:
+            return Limit(good, "", linkage.driver.link)
         return Limit(good, kernels[int(np.argmax(lost[:, index]))].group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
     last = limit(int(above[0]), 1) if above.size else None
-    if turns and first is None and last is not None:  # the gap straddles the scan's end
+    around = turns and cycle is not None
+    if around and first is None and last is not None:  # the gap straddles the scan's end
         first = limit_from(last, blocked, steps, (at, 2 * half), limit)
-    if turns and last is None and first is not None:
+    if around and last is None and first is not None:
         last = limit_from(first, blocked, steps, (at, 2 * half), limit)
     start = first.place if first else at - half
     end = last.place if last else at + half
     return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _stopped(linkage: Linkage, q: Real) -> Real:
+    """Whether the first of several drivers never comes to a place: it slows down and stops before."""
+    lead = linkage.driver
+    if not linkage.others:
+        return np.zeros(np.shape(q), dtype=bool)
+    law = Law(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+    found: Real = ~np.isfinite(law.time(q))
+    return found
 
 
 def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:

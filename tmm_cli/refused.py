@@ -48,6 +48,14 @@ class Misfit(Refused):
         self.name, self.sketched, self.found = name, sketched, found
 
 
+class TooLarge(Refused):
+    """A group of more links than iteration is tried on; most: how many it may have."""
+
+    def __init__(self, group: Group, most: int) -> None:
+        super().__init__(group.title)
+        self.group, self.most = group, most
+
+
 class NoSuchPosition(Refused):
     """A position number beyond those of the file."""
 

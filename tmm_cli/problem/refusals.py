@@ -19,11 +19,13 @@ from tmm_cli.refused import (
     NoSuchPosition,
     NotOnFrame,
     Refused,
+    TooLarge,
     Undecided,
     WrongMobility,
 )
-from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.assur import Group, Structure
 
+MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
 ANY = object()
 MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     ((), schema.File),
@@ -144,7 +146,7 @@ def _limits(kind: str, context: dict[str, Any]) -> str | None:
     if kind in ("too_long", "string_too_long"):
         return f"this is too long: at most {context['max_length']}"
     if kind == "too_short":
-        return "there is nothing here"
+        return f"{context['min_length']} are wanted here" if context["min_length"] > 1 else "there is nothing here"
     return None
 
 
@@ -195,26 +197,31 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             if group.type in ("PRP", "RPP"):
                 short = "their guides are parallel"
             return ProblemError(
-                f"links {_and(group.links)} cannot be assembled with the driver at {place}",
+                f"{_group(group)} cannot be assembled with the driver at {place}",
                 path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
             )  # fmt: skip
         case Undecided(group=group, choices=choices) if choices:
-            ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())
+            told = list(choices.items())[:MOST_CHOICES]
+            ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in told)
             listing = f"tmm kinematics {problem.file or 'FILE'} --assemblies"
             return ProblemError(
-                f"the sketch does not say which way round links {_and(group.links)} are assembled; {listing} lists all",
-                path=("sketch",), key=True,
-                allowed=f"with the driver at {place}, {ways}",
+                f"the sketch does not say which way round {_group(group)} {_are(group)} assembled; {listing} lists all",
+                path=("sketch",), allowed=f"with the driver at {place}, {ways}", key=True,
             )  # fmt: skip
         case Undecided(group=group):
             return ProblemError(
-                f"links {_and(group.links)} are in their dead position in the sketch", path=("sketch", "at"),
+                f"{_group(group)} {_are(group)} in a dead position in the sketch", path=("sketch", "at"),
                 found=place, allowed="another place of the driver, where the two assemblies differ",
             )  # fmt: skip
         case Misfit(name=name, sketched=sketched, found=value):
             return ProblemError(
                 "the sketch fits no assembly", path=("sketch", name), found=shown(sketched),
                 allowed=f"about {shown(value)} with the driver at {place}",
+            )  # fmt: skip
+        case TooLarge(group=group, most=most):
+            return ProblemError(
+                f"a group of so many links is not solved: {group.title}", path=("links",), found=str(len(group.links)),
+                allowed=f"at most {most} in one group; any number of groups", key=True,
             )  # fmt: skip
         case NoSuchPosition(number=number, count=count):
             return ProblemError(
@@ -260,6 +267,15 @@ def _mobility(structure: Structure) -> ProblemError:
 
 def _listed(links: tuple[str, ...]) -> str:
     return f"link {links[0]} is" if len(links) == 1 else f"links {', '.join(links)} are"
+
+
+def _group(group: Group) -> str:
+    """links 2 and 3, group II(2,3)."""
+    return f"link{'s' if len(group.links) > 1 else ''} {_and(group.links)}, group {group.title},"
+
+
+def _are(group: Group) -> str:
+    return "are" if len(group.links) > 1 else "is"
 
 
 def _and(links: tuple[str, ...]) -> str:

@@ -61,7 +61,7 @@ def tables(results: Results) -> Iterable[Table]:
         columns.append(Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size))
         columns.append(Column(say("cycle.lever" if crank else "cycle.lever_force"), by_lever, size))
         columns.append(Column(say("cycle.difference"), results.lever.difference * 100, NUMBER, digits=2))
-    if not bool(np.all(motion.moving)):
+    if not bool(np.all(motion.moving & ~results.locked)):
         columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))
     yield Table("cycle", say("cycle.title"), tuple(columns))
 
@@ -76,4 +76,6 @@ def state(results: Results, k: int) -> str:
     for title, dead in motion.dead.items():
         if dead[k]:
             return say("state.dead", group=title)
-    return "" if motion.moving[k] else say("state.stopped")
+    if motion.moving[k]:
+        return say("state.locked") if results.locked[k] else ""
+    return say("state.stopped")
