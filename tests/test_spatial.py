@@ -237,7 +237,7 @@ def proposal(found):
 
 
 def lower_only(file):
-    """Without pairs of higher kind (test_higher_pairs_in_space) and constraints that are passive in the plane already."""
+    """Without higher pairs (see test_higher_pairs_in_space) and without constraints that are passive in the plane."""
     linkage = load(str(file)).linkage
     return not linkage.meshes and analyse(linkage).sound
 
