@@ -198,26 +198,19 @@ class Walker:
         up, above = self.leg(middle, at + half)
         down, below = self.leg(middle, at - half)
         nodes = [*reversed(down), middle, *up]
-        for turn in range(1, TURNS):  # where one way round is barred, the other one is gone to its end
-            if turns and below != "reached" and above == "reached":
+        if turns and above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+            return _track(nodes, True)
+        for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
+            if turns and above == "reached":
                 more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
                 nodes += more
-            elif turns and above != "reached" and below == "reached":
+                if above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+                    return _track(nodes, True)
+        for turn in range(1, TURNS):
+            if turns and below == "reached" and above != "reached":
                 more, below = self.leg(nodes[0], at - half - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        ends = (below, above)
-        if not (turns and ends == ("reached", "reached")):
-            open_ends = (below == "reached" and not turns, above == "reached" and not turns)
-            return _track(nodes, False, open_ends, (below == "limit", above == "limit"))
-        for turn in range(1, TURNS + 1):
-            if self.returned(nodes[0].state, nodes[-1].state):
-                return _track(nodes, True)
-            if turn < TURNS:
-                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
-                nodes += more
-                if above != "reached":
-                    return _track(nodes, False, (True, False), (False, above == "limit"))
-        return _track(nodes, False, (True, True))
+        return _track(nodes, False, (below == "reached", above == "reached"), (below == "limit", above == "limit"))
 
     def returned(self, one: State, other: State) -> bool:
         """Whether two states are the same but for full turns."""
