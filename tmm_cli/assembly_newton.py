@@ -64,7 +64,7 @@ def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: 
     turns = linkage.driver.kind == "turn"
     size = max(k.size for k in (kernel, *before))
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else 4 * size
-    return Walker(kernel, upstream).follow(linkage.sketch.at, state, half, turns)
+    return Walker(kernel, upstream, half / np.pi).follow(linkage.sketch.at, state, half, turns)
 
 
 def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, turn: Real) -> State:

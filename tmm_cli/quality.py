@@ -14,10 +14,11 @@ from tmm_cli.groups.base import Dyad, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.roots import HALVINGS, least, roots
+from tmm_cli.roots import least, roots
 from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
+PARTS = 64  # into which an interval is cut at once
 DEAD = 1e-6  # a margin below this, refined, is a dead position
 
 
@@ -75,11 +76,16 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
 
     def limit(index: int, towards: int) -> Limit:
         good, bad = at + steps[index - towards], at + steps[index]
-        for _ in range(HALVINGS):
-            half_way = (good + bad) / 2
-            there = bool(np.any(_lost(move(linkage, kernels, np.array([half_way]), law), side)))
-            good, bad = (good, half_way) if there else (half_way, bad)
-        return Limit(good, kernels[int(np.argmax(lost[:, index]))].group.title)
+        while True:
+            between = np.linspace(good, bad, PARTS + 1)[1:-1]
+            between = between[(between != good) & (between != bad)]
+            if not between.size:
+                break
+            first = np.flatnonzero(np.any(_lost(move(linkage, kernels, between, law), side), axis=0))
+            places = np.array([good, *between, bad])
+            there = int(first[0]) + 1 if first.size else len(places) - 1
+            good, bad = places[there - 1], places[there]
+        return Limit(float(good), kernels[int(np.argmax(lost[:, index]))].group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
