@@ -402,6 +402,9 @@ ENGLISH: dict[str, str] = {
     "structure.cams": "{count} of cam and follower",
     "structure.W2": "mobility W = 3n - 2 p1 - p2",
     "structure.chebyshev2": "3*{n} - 2*{p} - {p2} = {w}",
+    "draw.cam": "disk of cam {link}: not to scale, its law alone is given",
+    "scheme.between": "Drivers between links of groups: {drivers}",
+    "groups.drivers": "with drivers: {drivers}",
 }
 
 

@@ -37,10 +37,13 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
             carrier = motion.poses[slide.carrier]
             local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
             ends[under] = complex(motion.point(slide.carrier, local).a[k])
-            pivots = [p for p in linkage.links[slide.carrier].points if p in fixed]
-            if pivots:
-                arm = local - linkage.local(slide.carrier, pivots[0])
-                vectors += _parts(motion, slide.carrier, arm, 0j, f"{under}{pivots[0].lower()}", k)
+            # from the carrier's pivot on the frame, else from a point in which it is hinged to another moving link
+            told = sorted(hinge_points(linkage, slide.carrier), key=lambda p: p not in fixed)
+            if told:
+                base = told[0]
+                start = 0j if base in fixed else ends[base.lower()]
+                arm = local - linkage.local(slide.carrier, base)
+                vectors += _parts(motion, slide.carrier, arm, start, f"{under}{base.lower()}", k)
             bend = ends[under] + complex(sliding.coriolis[k])
             along = complex(sliding.a[k]) * guide_direction(motion, slide.carrier, slide.direction, k)
             vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))

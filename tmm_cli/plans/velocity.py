@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
+
+import numpy as np
 
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Motion
+from tmm_cli.pairs.gear import Gear
+from tmm_cli.pairs.rack import Rack
 from tmm_cli.plans.record import NamedVector, Plan
 from tmm_cli.vectors import unit
 
@@ -47,12 +52,32 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
         ends[under] = complex(below.v[k])
         vectors.append(NamedVector(f"p{under}", 0j, ends[under], "absolute"))
         vectors.append(NamedVector(under + letter, ends[under], complex(runner.v[k]), "sliding"))
+    for name, wheel, place in pitch_points(motion, k):
+        letter = name.lower() if name.lower() not in ends else f"{name.lower()}'"
+        pose = motion.poses[wheel]
+        ends[letter] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
+        vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
     for link in linkage.moving:
         if linkage.links[link].mass:
             letter = f"s{link}"
             ends[letter] = complex(motion.centre(link).v[k])
             vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
     return Plan(tuple(vectors), ends)
+
+
+def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
+    """Where wheels roll on one another or on racks, with one velocity for both: name, moving wheel, place (m)."""
+    linkage = motion.linkage
+    for mesh in linkage.meshes:
+        if mesh.kind == "cam":
+            continue
+        points = [linkage.shared(mesh.carrier, wheel) for wheel in (mesh.i, mesh.j)]
+        axes = [linkage.local(mesh.carrier, point) for point in points if point is not None]
+        if mesh.kind == "gear":
+            place = Gear(mesh.name, mesh, axes[0], axes[1]).pitch(motion.poses)[0]
+        else:
+            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), axes[0]).pitch(motion.poses)[0]
+        yield mesh.name, mesh.j if mesh.i == FRAME else mesh.i, complex(np.broadcast_to(place, motion.q.shape)[k])
 
 
 def guide_direction(motion: Motion, carrier: str, direction: float, k: int) -> complex:
