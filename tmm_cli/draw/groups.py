@@ -153,8 +153,10 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     forms = {link: form(sheet, scene, link) for link in part.links}
     hue = {FRAME: DARK} | dict.fromkeys(part.links, part.colour)
     higher_pairs(sheet, scene, inner, hue, bare=False)
-    own = [p for p in structure.pairs if p not in inner and {p.i, p.j} & set(part.links)]  # also those of later groups
-    higher_pairs(sheet, scene, own, dict.fromkeys(part.links, part.colour), bare=True)
+    touching = [
+        p for p in structure.pairs if p not in inner and {p.i, p.j} & set(part.links)
+    ]  # also those of later groups
+    higher_pairs(sheet, scene, touching, dict.fromkeys(part.links, part.colour), bare=True)
     for shape in forms.values():
         body(sheet, shape, part.colour)
     leads = [p for p in outer if p.slide is not None]

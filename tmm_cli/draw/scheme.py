@@ -61,7 +61,9 @@ def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> 
     hue = dict.fromkeys(linkage.links, DARK)
     for found in shapes(linkage, place):
         draw(sheet, found, hue, _span(motion, found.mesh.slide, k))
-        sheet.label(found.mesh.name, sheet.on(found.touch if isinstance(found, CamShape) else found.pitch), 9, "#404040")
+        sheet.label(
+            found.mesh.name, sheet.on(found.touch if isinstance(found, CamShape) else found.pitch), 9, "#404040"
+        )
         if isinstance(found, CamShape) and not found.true:
             sheet.note(say("draw.cam", link=found.mesh.i))
     for link in linkage.moving:

@@ -20,6 +20,7 @@ from tmm_cli.vectors import Vector, dot, unit
 
 Place = Callable[[str, complex], complex]  # a point of a link (its axes, m) in the drawing's axes, m
 CHAIN: Any = (0, (7, 2.2, 1.2, 2.2))  # dash and dot
+DASHED: Any = (0, (3, 2))
 TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
@@ -278,7 +279,7 @@ def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str], bare: bool)
     if found.mesh.i in hue:
         sheet.area(disk[:-1], "#f1f3f6", colour, 1.2, 1.9)
     else:
-        sheet.line(disk, colour, 0.8, (0, (3, 2)), 1.9)
+        sheet.line(disk, colour, 0.8, DASHED, 1.9)
     if bare and found.mesh.j not in hue:
         return
     stem = [sheet.on(p) for p in found.stem]

@@ -13,11 +13,15 @@ Part = tuple[str, complex, Kind]
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation."""
+    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation.
+
+    driving: it is that of a link driven from the frame, not of a group.
+    """
 
     links: tuple[str, ...]
     plan: Plan
     equation: str
+    driving: bool = False
 
 
 def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
@@ -66,7 +70,7 @@ def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
     link = frame.on
     parts = [*_borne(reactions.borne[link], reactions, (link,), link, k), *_rest(frame, k)]
     plan = _polygon(parts)
-    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0")
+    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0", driving=True)
 
 
 def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:
@@ -99,7 +103,11 @@ def _borne(
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         driver = balance.driver
-        if balance.kind == "force" and link in (driver.link, driver.base) and not {driver.link, driver.base} <= {*links}:
+        if (
+            balance.kind == "force"
+            and link in (driver.link, driver.base)
+            and not {driver.link, driver.base} <= {*links}
+        ):
             name, vector = balance_name(driver.link, several), complex(balance.vector[k])
             yield (name, vector, "load") if link == driver.link else (f"−{name}", -vector, "load")
 

@@ -26,8 +26,13 @@ def tables(results: Results) -> Iterable[Table]:
         *_higher(structure),
         (
             say("structure.W2" if structure.higher else "structure.W"),
-            say("structure.chebyshev2" if structure.higher else "structure.chebyshev", n=len(structure.links),
-                p=lower, p2=structure.higher, w=structure.mobility),
+            say(
+                "structure.chebyshev2" if structure.higher else "structure.chebyshev",
+                n=len(structure.links),
+                p=lower,
+                p2=structure.higher,
+                w=structure.mobility,
+            ),
         ),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
