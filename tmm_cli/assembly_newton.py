@@ -19,11 +19,10 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.continuation import Upstream, Walker
 from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
-from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
-from tmm_cli.pairs.base import Drives
 from tmm_cli.refused import NoAssembly, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
@@ -134,7 +133,7 @@ def _alike(kernel: Newton, one: State, other: State) -> bool:
 
 def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:
     """The assembly that a full sketch leads to, when it stays near to it."""
-    turn = _sketched_angles(kernel, linkage, poses)
+    turn = sketched_angles(kernel, linkage, poses, drives)
     if turn is None:
         return None
     start = placed_by_angles(kernel, poses, drives, turn[None, :])
@@ -151,10 +150,13 @@ def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
     return state if sketch_distance(given, hints, kernel) < CLOSE else None
 
 
-def _sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose]) -> Real | None:
+def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
     """Angles of the group's links read off the sketch; None when it does not show all of them."""
     angles = {name: float(np.angle(pose.z)[0]) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
+    for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
+        if driver.kind == "turn" and driver.base in angles:
+            angles[driver.link] = angles[driver.base] + float(drives[driver.link].value[0])
     points = {p: complex(pose.at(at)[0]) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
     points = {**linkage.sketch.points, **points}
     for link in kernel.group.links:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.plan import Reactions
     from tmm_cli.pressure import Pressure
-    from tmm_cli.strokes import Strokes
+    from tmm_cli.strokes import Strokes, Travel
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -53,6 +53,8 @@ class Results:
     friction: Rubbed | None = None
     energy: Energy | None = None
     pressure: tuple[Pressure, ...] = ()
+    further: tuple[Strokes, ...] = ()
+    travels: tuple[Travel, ...] = ()
 
     @property
     def linkage(self) -> Linkage:
@@ -96,11 +98,16 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     linkage = problem.linkage
     structure = analyse(linkage)
     if not structure.sound:
-        raise WrongMobility(structure)
+        from tmm_cli.rank import by_rank  # few linkages need it
+
+        moving = by_rank(linkage, structure)
+        if moving is None:
+            raise WrongMobility(structure)
+        structure = moving
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.pressure import find_pressure
-    from tmm_cli.strokes import find_strokes, output_link, places, resisted
+    from tmm_cli.strokes import find_strokes, find_travel, output_link, places, resisted
 
     kernels = assemble(linkage, structure)
     way = find_range(linkage, kernels)
@@ -113,11 +120,31 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
             raise NoSuchPosition(number, len(q))
     law = _law(linkage, float(q[0]))
     motion = move(linkage, kernels, q[list(numbers)], law)
+    motion = _refined(problem, motion, q, numbers, law)
     named = roles(linkage, turning_links(linkage, kernels, way))
     dead = find_dead(linkage, kernels, way)
     results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
     results = replace(results, pressure=find_pressure(linkage, kernels, way, motion, problem.pressure_limits))
+    outputs = [o.link for o in linkage.outputs] or [link for link in (output_link(linkage, structure.groups),) if link]
+    if way.full:
+        found = [find_strokes(linkage, kernels, way, link=link) for link in outputs[1:]]
+        results = replace(results, further=tuple(s for s in found if s is not None))
+    else:
+        travels = [find_travel(linkage, kernels, q, link) for link in outputs]
+        results = replace(results, travels=tuple(t for t in travels if t is not None))
     return results if stage == "kinematics" else with_forces(results)
+
+
+def _refined(problem: Problem, motion: Motion, q: Real, numbers: tuple[int, ...], law: Law) -> Motion:
+    """The motion with its positions near dead ones in extended precision, where the machine has it."""
+    from tmm_cli.extended import WIDER, near_dead, refined
+
+    where = near_dead(motion)
+    if not WIDER or problem.extended is None or not np.any(where):
+        return motion
+    exact = problem.extended()
+    asked = np.array(exact.request.places) if exact.request.places else q.astype(np.longdouble)
+    return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
 
 
 def with_forces(results: Results) -> Results:
@@ -131,6 +158,12 @@ def with_forces(results: Results) -> Results:
     assert motion is not None
     loads = applied(motion, results.strokes)
     reactions = react(motion, results.structure, loads)
+    if motion.finer is not None and motion.where is not None:
+        from tmm_cli.splice import spliced
+
+        exact = applied(motion.finer, results.strokes)
+        loads = spliced(loads, exact, motion.where)
+        reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
     rubbed = None
     if results.linkage.friction:
         from tmm_cli.forces.friction import rub

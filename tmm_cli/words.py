@@ -16,7 +16,9 @@ ENGLISH: dict[str, str] = {
     "role.rod": "rod",
     "role.rocking slider": "rocking slider",
     # warnings
-    "warning.cycle": "no number of turns was found after which all repeats: what is said of a cycle is one turn's",
+    "warning.cycle": "no number of turns was found after which all repeats: of the cycle, one turn is shown",
+    "warning.passive": "pair {pair} holds link {j} on link {i} where it would be without it: this works with exact "
+    "dimensions only, and the reactions of links {among} are indeterminate (given: the least ones)",
     "warning.pressure": "the pressure angle on link {link} comes to {largest}, the file allows {allowed}",
     "warning.locked": "position {number}: the mechanism locks itself by friction, most of all in pair {pair} of links "
     "{i} and {j}",
@@ -114,6 +116,9 @@ ENGLISH: dict[str, str] = {
     "structure.kinds": "{all} ({r} turning, {p} sliding)",
     "structure.W": "mobility W = 3n - 2 p1",
     "structure.chebyshev": "3*{n} - 2*{p} = {w}",
+    "structure.true": "W in truth, by rank",
+    "structure.passive": "passive constraint",
+    "structure.where": "{count} in pair {pair}, link {j} on link {i}; links {among} hold one another twice",
     "structure.K": "independent contours K = p - n",
     "structure.formula": "formula of structure",
     "structure.class": "class of the mechanism",
@@ -144,6 +149,11 @@ ENGLISH: dict[str, str] = {
     "quality.idle": "idle stroke",
     "quality.start": "{stroke} starts at",
     "quality.length": "{stroke} lasts",
+    "quality.travel_slide": "stroke H of link {link} over the positions asked",
+    "quality.travel_swing": "swing psi of link {link} over the positions asked",
+    "quality.lowest": "extreme position of link {link}",
+    "quality.highest": "extreme position of link {link}",
+    "quality.there": "with the driver at",
     "quality.low": "link {link} is then at",
     "quality.dead": "dead position of {group}",
     "quality.turns": "turns of the driver in a cycle",

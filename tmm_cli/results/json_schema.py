@@ -63,6 +63,10 @@ def result_schema() -> dict[str, Any]:
             "turns": _number("turns of the driver after which everything repeats"),
             "pressure": _pressure(),
             "output": _output(),
+            "further_outputs": _list("of the others, as the first one", _output()),
+            "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
+                "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
+                high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
             "positions": _positions(),
             "kinematics": _kinematics(),
             "forces": _forces(),
@@ -80,6 +84,10 @@ def _structure() -> dict[str, Any]:
         "links, pairs and Assur groups",
         mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
         p2=_number("higher pairs"),
+        true_mobility=_number("by rank, where dimensions leave more than the count"),
+        passive=_list("passive constraints", _object(
+            "conditions that only repeat others", pair=_text("pair"), constraints=_number("how many"),
+            links=_list("its links, the passive one last", names), among=_list("links that hold each other", names))),
         contours=_number("independent contours K = p - n"),
         classification=_list("closed or open; elementary, simple, complex; of one type or several", names),
         formula=_text("formula of structure"),

@@ -12,6 +12,19 @@ from tmm_cli.structure.contours import classification
 from tmm_cli.words import say
 
 
+def _passive(structure: Structure) -> Iterable[tuple[str, str]]:
+    """Passive constraints and the true mobility, where the count is not the truth."""
+    if structure.passive:
+        yield say("structure.true"), str(structure.mobility + structure.redundant)
+    for passive in structure.passive:
+        i, j = passive.links
+        yield (
+            say("structure.passive"),
+            say("structure.where", count=passive.constraints, pair=passive.pair, i=i, j=j,
+                among=", ".join(passive.among)),
+        )  # fmt: skip
+
+
 def tables(results: Results) -> Iterable[Table]:
     """Four small tables."""
     structure, linkage = results.structure, results.linkage
@@ -34,6 +47,7 @@ def tables(results: Results) -> Iterable[Table]:
                 w=structure.mobility,
             ),
         ),
+        *_passive(structure),
         (say("structure.K"), str(structure.contours)),
         (say("structure.formula"), structure.formula),
         (say("structure.chain"), ", ".join(say(f"class.{word}") for word in classification(structure))),
