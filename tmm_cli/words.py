@@ -83,8 +83,8 @@ ENGLISH: dict[str, str] = {
     "explain.newton": "that of the sketch, followed",
     "explain.unsolved": "not decided: see tmm kinematics",
     "explain.from": "{pair} of {link}",
-    "explain.back": "Each group: places, velocities, accelerations in closed form; then reactions, last group first; "
-    "then the Zhukovsky lever from velocities alone.",
+    "explain.back": "Each group: places, velocities, accelerations in closed form (places by iteration where the "
+    "assembly is followed); then reactions, last group first; then the Zhukovsky lever from velocities alone.",
     "explain.skipped": "What is skipped",
     "explain.why": "why",
     "explain.no_weight": "weight and inertia of links {links}",
@@ -443,9 +443,6 @@ ENGLISH: dict[str, str] = {
     "cycle.force_of": "F_b of {link}",
     "cycle.sum_plan": "reduced to {link}, force plan",
     "cycle.sum_lever": "reduced to {link}, lever",
-    "outputs.stroke": "stroke H",
-    "outputs.swing": "swing psi",
-    "outputs.k": "k",
     "explain.drivers": "Drivers; they pass through the places of the sketch together",
     "explain.kind": "it",
     "explain.on_link": "driven from",
@@ -464,8 +461,8 @@ ENGLISH: dict[str, str] = {
     "explain.mesh_ratio": "law",
     "explain.teeth_pressure": "pressure angle",
     "explain.pitch_radii": "pitch radii",
-    "explain.meshes_note": "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} for "
-    "an angle in rad.",
+    "explain.meshes_note": "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
+    "for an angle in rad.",
     "explain.cams": "Cams, by the law of the follower",
     "explain.cam": "cam",
     "explain.follower": "follower",
@@ -490,8 +487,7 @@ ENGLISH: dict[str, str] = {
     "explain.mu": "coefficient",
     "explain.journal": "journal's radius",
     "explain.guide": "a guide",
-    "explain.back_newton": "Groups without a sign are solved by iteration and followed from the sketch; all others in "
-    "closed form.",
+    "explain.given_all": "the drivers: their places are given",
 }
 
 

@@ -37,7 +37,7 @@ def run(
         if as_json:
             emit_json(to_json(results))
         elif len(files) == 1:
-            show(results, ("structure", "links", "groups", "quality", "outputs", "cycle"))
+            show(results, ("structure", "links", "groups", "quality", "cycle"))
         for warning in warnings(results):
             say(f"warning: {results.problem.name}: {warning}")
         say(f"written: {folder}")

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Any
 
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, LENGTH, NUMBER, Dimension
-from tmm_cli.quality import Range
 from tmm_cli.results.table import Column, Table
-from tmm_cli.strokes import find_strokes, resisted
 from tmm_cli.words import say
 
 
@@ -46,29 +43,6 @@ def tables(results: Results) -> Iterable[Table]:
     rows += [(say("quality.dead", group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
         yield Table("quality", say("quality.title"), _mixed(rows, results))
-    if len(results.linkage.outputs) > 1:
-        yield from _further(results, way)
-
-
-def _further(results: Results, way: Range) -> Iterable[Table]:
-    """Strokes and swings of the outputs beside the first, where they have any."""
-    found = []
-    for output in results.linkage.outputs[1:]:
-        linkage = replace(results.linkage, output=output)
-        strokes = find_strokes(linkage, results.kernels, way, resisted(linkage, output.link))
-        if strokes is not None and strokes.strokes:
-            found.append(strokes)
-    if found:
-        none = float("nan")
-        yield Table(
-            "outputs", say("outputs.title"),
-            (
-                Column(say("outputs.link"), [x.link for x in found]),
-                Column(say("outputs.stroke"), [x.travel if x.kind == "slide" else none for x in found], LENGTH),
-                Column(say("outputs.swing"), [none if x.kind == "slide" else x.travel for x in found], ANGLE),
-                Column(say("outputs.k"), [x.k for x in found], NUMBER),
-            ),
-        )  # fmt: skip
 
 
 def _mixed(rows: list[tuple[str, Any, Dimension]], results: Results) -> tuple[Column, ...]:
