@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -134,8 +135,17 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
 
 
 def test_wheels_far_larger_than_the_mechanism_do_not_decide_its_scale():
-    found = [shaped("inner", 0)]
-    assert len(extent(found, 1.0)) == 8 and len(extent(found, 0.03)) == 4 and not extent(found, 0.01)
+    found = shaped("inner", 0)  # radii 60 and 120 mm, axes 60 mm apart
+    assert len(extent([found], 1.0)) == 8
+    large = replace(found, discs=tuple(replace(disc, radius=disc.radius + 0.1) for disc in found.discs))
+    assert len(extent([large], 0.0)) == 4 and len(extent([large], 0.08)) == 8
+
+
+def test_a_group_of_one_wheel_is_drawn_as_large_as_the_wheel():
+    results = solved("inner")
+    scene = Scene(results.linkage, results.structure, results.motion.poses, 2)
+    wheel = shaped("inner", 2).discs[0]
+    assert {wheel.centre + wheel.radius * way for way in (1, 1j, -1, -1j)} <= set(scene.extent(["1"]))
 
 
 @pytest.mark.parametrize("name", [*WHEELS, *CAMS])

@@ -238,7 +238,7 @@ def higher_pairs(sheet: Sheet, scene: Scene, pairs: Iterable[Pair], hue: Mapping
 def arrows(sheet: Sheet, scene: Scene, forms: Mapping[str, Form], hue: Mapping[str, str], size: float) -> None:
     """How the drivers of these links go."""
     for driver in scene.linkage.drivers:
-        if driver.link not in forms or (driver.base != FRAME and driver.base not in forms):
+        if driver.link not in forms:
             continue
         pair = scene.structure.driving_pair(driver)
         at = sheet.on(scene.at(pair))

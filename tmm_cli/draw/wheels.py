@@ -25,7 +25,7 @@ TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
 STEPS = 361
-LARGE = 3.0  # times the mechanism's size: larger wheels are not looked at when the sheet is laid out
+LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
 
 
 @dataclass(frozen=True)
@@ -100,8 +100,9 @@ def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = 
         if isinstance(one, CamShape):
             places += [*one.disk.tolist(), one.touch, *one.face]
             continue
+        apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
         for disc in one.discs:
-            if disc.radius < LARGE * size and (links is None or disc.link in links):
+            if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
                 places += [disc.centre + disc.radius * way for way in (1, 1j, -1, -1j)]
     return [p for p in places if np.isfinite(p)]
 

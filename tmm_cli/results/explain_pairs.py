@@ -30,6 +30,7 @@ def further(problem: Problem) -> Iterable[Table]:
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
         yield _drivers(problem)
+    keys: tuple[str, ...]
     wheels = [_mesh(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
         keys = ("word.pair", "explain.mesh", "word.links", "explain.carrier", "explain.mesh_ratio",
