@@ -63,7 +63,7 @@ def test_a_wedge_needs_the_force_of_its_friction_angles(mu):
     push = R * math.sin(a + phi) + mu * R * math.cos(a + phi)
     assert np.allclose(np.abs(results.reactions.balance.force), push, rtol=1e-11)
     assert not np.any(results.friction.locked)
-    assert results.friction.efficiency(results.motion) == pytest.approx(100 * math.tan(a) / push, rel=1e-10)
+    assert results.losses.efficiency == pytest.approx(100 * math.tan(a) / push, rel=1e-10)
 
 
 def test_a_steep_wedge_locks_and_says_where():
@@ -82,3 +82,21 @@ def test_power_balances_with_friction_and_the_lever_bears_it_too():
     assert np.max(np.abs(results.energy.balance)) < 1e-12
     assert np.max(results.lever.difference) < 1e-12
     assert np.all(results.energy.friction < 0)
+
+
+def test_the_efficiency_of_a_crank_slider_is_the_work_that_arrives_at_the_slider():
+    problem = {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "guides": {"x": {"through": [0, 0], "angle": 0}},
+        "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.3},
+                  "3": {"points": ["B"], "slides": {"on": "x"}}},
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.35, 0]}, "gravity": 0,
+        "loads": {"F": {"on": 3, "force": [-1000, 0], "when": "working stroke"}},
+        "output": {"link": 3, "working": "forward"},
+        "friction": {"coefficient": 0.1, "radius": 0.015},
+    }  # fmt: skip
+    results = results_of(problem)
+    useful = 1000 * 0.2  # the load goes against the stroke H = 2 r
+    assert results.losses.efficiency == pytest.approx(useful / results.losses.drivers, rel=1e-4)
+    assert 0.8 < results.losses.efficiency < 0.95
+    assert sum(results.losses.pairs.values()) == pytest.approx(useful - results.losses.drivers, rel=1e-3)

@@ -29,6 +29,7 @@ from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
 QUIET = 3  # rounds without a new assembly that end the search
+MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
 ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
 SAME = 1e-6
@@ -104,18 +105,25 @@ def close_from_afar(
     return state, (last < CONVERGED) & (gap < CONVERGED)
 
 
-def all_assemblies(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1) -> list[State]:
-    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once."""
+def all_assemblies(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
+) -> list[State]:
+    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
+
+    Of a group that moves by itself at this place, some of them.
+    """
     random = np.random.default_rng(seed)
     found: list[State] = []
     quiet = 0
     links = len(kernel.group.links)
-    while quiet < QUIET:
-        turn = random.uniform(-np.pi, np.pi, (STARTS, links))
+    while quiet < QUIET and len(found) < MOST:
+        turn = random.uniform(-np.pi, np.pi, (starts, links))
         start = placed_by_angles(kernel, poses, drives, turn)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
         for k in np.flatnonzero(closed):
+            if len(found) == MOST:
+                break
             state = State(states.x[k : k + 1], np.angle(unit(states.turn[k : k + 1])))
             if not any(_alike(kernel, state, other) for other in found):
                 found.append(state)

@@ -23,13 +23,16 @@ from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+    from tmm_cli.assemblies import Assemblies
     from tmm_cli.forces.applied import Applied
     from tmm_cli.forces.energy import Energy
-    from tmm_cli.forces.friction import Rubbed
+    from tmm_cli.forces.friction import Losses, Rubbed
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.plan import Reactions
     from tmm_cli.pressure import Pressure
     from tmm_cli.strokes import Strokes, Travel
+
+CYCLE = 720  # places over which losses are summed up
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -51,10 +54,12 @@ class Results:
     reactions: Reactions | None = None
     lever: Lever | None = None
     friction: Rubbed | None = None
+    losses: Losses | None = None
     energy: Energy | None = None
     pressure: tuple[Pressure, ...] = ()
     further: tuple[Strokes, ...] = ()
     travels: tuple[Travel, ...] = ()
+    assemblies: tuple[Assemblies, ...] | None = None
 
     @property
     def linkage(self) -> Linkage:
@@ -147,8 +152,8 @@ def _refined(problem: Problem, motion: Motion, q: Real, numbers: tuple[int, ...]
     return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
 
 
-def with_forces(results: Results) -> Results:
-    """Add loads, the force plan and the lever to kinematics."""
+def with_forces(results: Results, *, cycle: bool = True) -> Results:
+    """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
     from tmm_cli.forces.energy import energy
     from tmm_cli.forces.lever import lever
     from tmm_cli.forces.loads import applied
@@ -164,15 +169,20 @@ def with_forces(results: Results) -> Results:
         exact = applied(motion.finer, results.strokes)
         loads = spliced(loads, exact, motion.where)
         reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
-    rubbed = None
+    rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import rub
+        from tmm_cli.forces.friction import losses, rub
 
         rubbed = rub(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
+        if cycle:
+            whole = at_positions(results, results.closely(CYCLE + 1))
+            acting = applied(whole, results.strokes)
+            everywhere = rub(whole, results.structure, acting, react(whole, results.structure, acting))
+            lost = losses(everywhere, whole)
     drivers = power(motion, reactions)
     return replace(
-        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed,
+        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
         energy=energy(motion, loads, drivers),
     )  # fmt: skip
 
@@ -192,7 +202,7 @@ def _law(linkage: Linkage, start: float) -> Law:
 def at_places(results: Results, q: Real) -> Results:
     """The same results at other places of the driver (diagrams); with forces if they have them."""
     moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
-    return moved if results.reactions is None else with_forces(moved)
+    return moved if results.reactions is None else with_forces(moved, cycle=False)
 
 
 def turning_links(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> dict[str, bool]:

@@ -85,6 +85,10 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
 
     def limit(index: int, towards: int) -> Limit:
         good, bad = at + steps[index - towards], at + steps[index]
+        first = kernels[int(np.argmax(lost[:, index]))]
+        for end in _ends(first):  # found to the last bit when the group was followed
+            if min(good, bad) <= end <= max(good, bad):
+                return Limit(end, first.group.title)
         for _ in range(HALVINGS):
             half_way = (good + bad) / 2
             there = bool(np.any(_lost(move(linkage, kernels, np.array([half_way]), law), side)))
@@ -111,6 +115,14 @@ def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[flo
         if track is not None and not track.closed and True not in track.open_ends:
             low, high = min(low, 1.001 * (track.q[0] - at)), max(high, 1.001 * (track.q[-1] - at))
     return float(low), float(high)
+
+
+def _ends(kernel: Kernel) -> tuple[float, ...]:
+    """Places where a followed group turns back."""
+    track = kernel.followed
+    if track is None or track.closed:
+        return ()
+    return tuple(float(q) for q, limit in zip((track.q[0], track.q[-1]), track.limits, strict=True) if limit)
 
 
 def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
@@ -145,8 +157,11 @@ def _lost(motion: Motion, side: list[float]) -> Real:
     The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
     went to infinity.
     """
-    held = [motion.placed & ~(np.sign(p.det) == -s) for p, s in zip(motion.placements, side, strict=True)]
-    found: Real = ~np.array(held) if held else np.zeros((0, len(motion.q)), dtype=bool)
+    lost = [
+        motion.missing[kernel.group.title] | (np.sign(at.det) == -sign)
+        for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
+    ]
+    found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
     return found
 
 

@@ -14,6 +14,8 @@ from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
 
+RESTS = 1e-12  # of the longest run: a run below that is rounding
+
 
 @dataclass(frozen=True)
 class Stroke:
@@ -154,6 +156,7 @@ def find_strokes(
     turns = np.sort(np.where(cycle - turns < 1e-12, 0.0, turns))
     again = np.diff(turns, append=turns[:1] + cycle) < 1e-9  # found at both ends of the scan
     turns = turns[~again][::sense]
+    turns = _ends(linkage, kernels, turns, cycle, (link, kind))
     if turns.size < 2:
         return Strokes(link, kind, (), "")
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
@@ -169,6 +172,34 @@ def find_strokes(
         return Strokes(link, kind, (), "")
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
+
+
+def _ends(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, cycle: float, output: tuple[str, str]) -> Real:
+    """Ends of strokes, without those that only rounding makes.
+
+    Where the output all but rests, its rounded speed may change sign over and over: such places are one end, in their
+    middle, or none when the output goes on the same way after them.
+    """
+    if turns.size < 2:
+        return turns
+    sense = linkage.driver.sense
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
+    runs = _runs(linkage, kernels, turns, lengths, *output)
+    moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
+    if bool(np.all(moves)) or not bool(np.any(moves)):
+        return turns
+    first = int(np.argmax(moves)) + 1  # the place after a true stroke
+    order = np.roll(np.arange(len(turns)), -first)
+    kept: list[float] = []
+    before, at, way = runs[first - 1], float(turns[order[0]]), 0.0
+    for k in order:
+        if not moves[k]:
+            way += lengths[k]
+            continue
+        if np.sign(runs[k]) != np.sign(before):
+            kept.append(np.mod(at + sense * way / 2, cycle))
+        before, at, way = runs[k], float(turns[(k + 1) % len(turns)]), 0.0
+    return np.sort(np.array(kept))[::sense]
 
 
 def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:

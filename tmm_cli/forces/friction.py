@@ -40,29 +40,36 @@ class Rubbed:
     work: dict[str, Real]
     drivers: Real
 
-    def efficiency(self, motion: Motion) -> float | None:
-        """Work that is not lost to friction over the work of the drivers, over the positions; None without any."""
-        given = _over(self.drivers, motion)
-        lost = sum(_over(work, motion) for work in self.work.values())
-        return float((given + lost) / given) if given > 0 else None
 
-    def total(self, pair: str, motion: Motion) -> float:
-        """Work of friction in one pair over the positions, J (negative)."""
-        return _over(self.work[pair], motion)
+@dataclass(frozen=True)
+class Losses:
+    """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
+
+    Where the mechanism locks itself there is no work to be summed up, and no efficiency.
+    """
+
+    drivers: float
+    pairs: dict[str, float]
+    locked: bool
+
+    @property
+    def efficiency(self) -> float | None:
+        """What is not lost of the drivers' work; None when they do none or are locked."""
+        if self.locked or not self.drivers > 0:
+            return None
+        return (self.drivers + sum(self.pairs.values())) / self.drivers
+
+
+def losses(rubbed: Rubbed, motion: Motion) -> Losses:
+    """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
+    pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
+    return Losses(_over(rubbed.drivers, motion), pairs, bool(np.any(rubbed.locked)))
 
 
 def _over(work: Real, motion: Motion) -> float:
-    """Sum over the driver's way: by equal steps round a turn, by trapezia between limits."""
-    q = motion.q
-    sound = np.isfinite(work)
-    if len(q) < 2:
-        return float(work[0]) if sound[0] else 0.0
-    steps = np.diff(q)
-    around = abs(np.mod(steps.sum() + steps[0] + 1e-9, 2 * np.pi)) < 1e-6 and motion.linkage.driver.kind == "turn"
-    values = np.where(sound, work, 0.0) * np.sign(steps[0])
-    if around and np.allclose(steps, steps[0]):
-        return float(np.sum(values) * abs(steps[0]))
-    return float(np.sum((values[1:] + values[:-1]) / 2 * np.abs(steps)))
+    """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
+    values = np.where(motion.moving & np.isfinite(work), work, 0.0)
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
 
 
 def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions) -> Rubbed:

@@ -200,9 +200,11 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             )  # fmt: skip
         case Undecided(group=group, choices=choices) if choices:
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())
+            listing = f"tmm kinematics {problem.file or 'FILE'} --assemblies"
             return ProblemError(
-                f"the sketch does not say which way round links {_and(group.links)} are assembled",
-                path=("sketch",), allowed=f"with the driver at {place}, {ways}", key=True,
+                f"the sketch does not say which way round links {_and(group.links)} are assembled; {listing} lists all",
+                path=("sketch",), key=True,
+                allowed=f"with the driver at {place}, {ways}",
             )  # fmt: skip
         case Undecided(group=group):
             return ProblemError(

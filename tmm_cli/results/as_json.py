@@ -77,6 +77,10 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         }  # fmt: skip
     if results.energy is not None:
         found["energy"] = _energy(results)
+    if results.assemblies is not None:
+        from tmm_cli.results.as_assemblies import assemblies_json
+
+        found["assemblies"] = assemblies_json(results.assemblies)
     found["warnings"] = list(warnings(results))
     return {key: plain(value) for key, value in found.items()}
 
@@ -237,11 +241,11 @@ def _energy(results: Results) -> dict[str, Any]:
     found = results.energy
     assert found is not None
     energy: dict[str, Any] = {field.name: getattr(found, field.name) for field in fields(found)}
-    if results.friction is not None and results.motion is not None:
-        rubbed = results.friction
-        energy["efficiency"] = rubbed.efficiency(results.motion)
-        energy["locked"] = rubbed.locked
-        energy["friction_work"] = {pair: rubbed.total(pair, results.motion) for pair in rubbed.work}
+    if results.friction is not None:
+        energy["locked"] = results.friction.locked
+    if results.losses is not None:
+        energy["efficiency"] = results.losses.efficiency
+        energy["friction_work"] = dict(results.losses.pairs)
     return energy
 
 

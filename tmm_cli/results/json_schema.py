@@ -72,6 +72,7 @@ def result_schema() -> dict[str, Any]:
             "forces": _forces(),
             "lever": _lever(),
             "energy": _energy(),
+            "assemblies": _assemblies(),
             "warnings": _list("sentences", {"type": "string"}),
             "files": _list("written beside this file", {"type": "string"}),
         },
@@ -251,10 +252,28 @@ def _energy() -> dict[str, Any]:
         rate=_series("its rate, W"), drivers=_series("power of the drivers, W"), weights=_series("of weights, W"),
         loads=_series("of loads, W"), friction=_series("of friction, W"),
         balance=_series("what is left of all powers, against the largest"),
-        efficiency=_number("with friction: over the positions"),
+        efficiency=_number("with friction: over the cycle"),
         locked=_list("locked by friction", {"type": "boolean"}),
-        friction_work=_map("work of friction over the positions, J, by pair", _number("J")),
+        friction_work=_map("work of friction over the cycle, J, by pair", _number("J")),
     )  # fmt: skip
+
+
+def _assemblies() -> dict[str, Any]:
+    names = {"type": "string"}
+    coordinates = _object("m", x=_number("x"), y=_number("y"))
+    one = _object(
+        "an assembly", angles=_map("of the group's links, rad", _number("rad")),
+        points=_map("of the group's links", coordinates), margin=_number("distance from a dead position: 0 there"),
+        sketch=_flag("that of the sketch"))  # fmt: skip
+    group = _object(
+        "a group", group=_text("II(2,3)"), method=_text("closed form, polynomial, angles, many starts"),
+        complete=_flag("whether it is proved that there are no others"), most=_number("so many are possible, if known"),
+        moves=_flag("moves by itself here: assemblies without end"), assemblies=_list("real ones", one))  # fmt: skip
+    return _list("with --assemblies: real assemblies of the groups, by places of the driver", _object(
+        "a place", position=_number("its number; null: the place of the sketch"), driver=_number("rad or m"),
+        undecided={"description": "group that the sketch does not decide", "type": ["string", "null"]},
+        lost=_list("groups whose neighbours cannot be placed", names),
+        groups=_list("in solving order, links before placed as in the sketch", group)))  # fmt: skip
 
 
 def _lever() -> dict[str, Any]:
