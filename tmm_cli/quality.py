@@ -19,6 +19,7 @@ from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
 PARTS = 64  # into which an interval is cut at once
+ALMOST = 1e-5  # of its way: so near to infinity a group is not found
 DEAD = 1e-6  # a margin below this, refined, is a dead position
 
 
@@ -85,7 +86,8 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
             places = np.array([good, *between, bad])
             there = int(first[0]) + 1 if first.size else len(places) - 1
             good, bad = places[there - 1], places[there]
-        return Limit(float(good), kernels[int(np.argmax(lost[:, index]))].group.title)
+        stopped = kernels[int(np.argmax(lost[:, index]))]
+        return Limit(_at_infinity(stopped, float(good), towards), stopped.group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
@@ -97,6 +99,17 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     start = first.place if first else at - half
     end = last.place if last else at + half
     return Range(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
+    """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
+    track = kernel.track if isinstance(kernel, Newton) else None
+    end = (0, -1)[towards > 0]
+    if track is None or not track.lost[end]:
+        return place
+    infinite, last = float(track.q[end]), float(track.q[end - towards])
+    close = abs(infinite - place) < ALMOST * float(track.q[-1] - track.q[0])
+    return infinite if close or abs(infinite - place) < abs(infinite - last) else place
 
 
 def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
@@ -141,8 +154,9 @@ def _lost(motion: Motion, side: list[float]) -> Real:
     The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
     went to infinity.
     """
-    held = [motion.placed & ~(np.sign(p.det) == -s) for p, s in zip(motion.placements, side, strict=True)]
-    found: Real = ~np.array(held) if held else np.zeros((0, len(motion.q)), dtype=bool)
+    found: Real = np.zeros((len(motion.kernels), len(motion.q)), dtype=bool)
+    for k, (kernel, at) in enumerate(zip(motion.kernels, motion.placements, strict=True)):
+        found[k] = motion.missing[kernel.group.title] | (np.sign(at.det) == -side[k])
     return found
 
 

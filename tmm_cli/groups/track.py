@@ -24,7 +24,8 @@ class Track:
 
     closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the track
     ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
-    first, the last node is a place where the driver turns back; derivatives are infinite there.
+    first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the track
+    ends there for another reason: the links it hangs on go no further, or links of its own go to infinity.
     """
 
     q: Real
@@ -34,6 +35,7 @@ class Track:
     closed: bool
     open_ends: tuple[bool, bool] = (False, False)
     limits: tuple[bool, bool] = (False, False)
+    lost: tuple[bool, bool] = (False, False)
 
     @cached_property
     def _bend(self) -> Real:
