@@ -47,7 +47,8 @@ def mirrored(it: Linkage) -> Linkage:
         driver=driver(it.driver), others=tuple(driver(d) for d in it.others), meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(
             it.sketch, at=it.sketch.at * (1 if it.driver.kind == "slide" else -1),
-            points={p: back(z) for p, z in it.sketch.points.items()}, angles={n: -a for n, a in it.sketch.angles.items()},
+            points={p: back(z) for p, z in it.sketch.points.items()},
+            angles={n: -a for n, a in it.sketch.angles.items()},
         ),
         loads=tuple(replace(x, at=back(x.at), force=back(x.force), moment=-x.moment) for x in it.loads),
         springs=tuple(
@@ -181,7 +182,9 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
         return replace(d, link=names[d.link], base=names[d.base], joint=joint, end=points.get(d.end, ""))
 
     links = {
-        names[n]: replace(it.links[n], name=names[n], points={points[p]: z for p, z in shuffled(it.links[n].points.items())})
+        names[n]: replace(
+            it.links[n], name=names[n], points={points[p]: z for p, z in shuffled(it.links[n].points.items())}
+        )
         for n in (FRAME, *shuffled(it.moving))
     }  # fmt: skip
     return replace(

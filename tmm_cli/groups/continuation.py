@@ -268,7 +268,13 @@ class Walker:
             if turns and below == "reached" and above != "reached":
                 more, below = self.leg(nodes[0], at - half - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        return _track(nodes, False, (below == "reached", above == "reached"), (below == "limit", above == "limit"), (below == "lost", above == "lost"))
+        return _track(
+            nodes,
+            False,
+            (below == "reached", above == "reached"),
+            (below == "limit", above == "limit"),
+            (below == "lost", above == "lost"),
+        )
 
     def returned(self, one: State, other: State) -> bool:
         """Whether two states are the same but for full turns."""
