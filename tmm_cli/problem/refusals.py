@@ -163,7 +163,9 @@ def _keys(path: Path) -> list[str]:
 
 
 def _describe(path: Path) -> str | None:
-    model = _model(path[:-1])
+    while path and isinstance(path[-1], int):  # an item is described with its list
+        path = path[:-1]
+    model = _model(path[:-1]) if path else None
     if model is None:
         return None
     for name, field in model.model_fields.items():
@@ -200,12 +202,13 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
                 f"{_group(group)} cannot be assembled with the driver at {place}",
                 path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
             )  # fmt: skip
-        case Undecided(group=group, choices=choices) if choices:
+        case Undecided(group=group, choices=choices, count=count) if choices:
             told = list(choices.items())[:MOST_CHOICES]
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in told)
             return ProblemError(
                 f"the sketch does not say which way round {_group(group)} {_are(group)} assembled",
-                path=("sketch",), allowed=f"with the driver at {place}, {ways}", key=True,
+                path=("sketch",), found=f"{count} assemblies" if count > 2 else None,
+                allowed=f"with the driver at {place}, {ways}", key=True,
             )  # fmt: skip
         case Undecided(group=group):
             return ProblemError(
