@@ -98,7 +98,8 @@ CASES = {
     ),
     "sketch that does not decide": (
         ", E: [350, 270]", "", "sketch:",
-        "sketch: the sketch does not say which way round links 4 and 5, group II(4,5), are assembled\n"
+        "sketch: the sketch does not say which way round links 4 and 5, group II(4,5), are assembled; "
+        "tmm kinematics x.yaml --assemblies lists all\n"
         "  allowed: with the driver at 30 deg, E: [358.443, 270] or [-60.7845, 270]; 4: -3.47591 deg or -176.524 deg",
     ),
     "lengths that do not reach": (

@@ -9,7 +9,7 @@ from models import DATA, reference, reference_problem, results_of
 # positions 1 to 5 of this one belong to another assembly than position 0: each is solved from a sketch of its own
 CLASS_III = "stephenson3_class_three_group"
 NAMES = [name for name in sorted(path.stem for path in (DATA / "reference").glob("*.json")) if name != CLASS_III]
-ROWS = [f"{CLASS_III} {k}" for k in range(1, 6)]
+ROWS = [f"{CLASS_III} {k}" for k in range(6)]
 TOLERANCE = 1e-12
 
 
@@ -56,13 +56,10 @@ def named(results, name, joint):
 
 
 def test_every_point_and_centre_of_mass_moves_as_the_reference(case):
-    model, rows, results = case
+    _, rows, results = case
     for key in rows[0]["points"]:
         body, point = key.split(".")
-        if point == f"S{body}":
-            found = results.motion.centre(body)
-        else:
-            found = results.motion.point(body, complex(*model["bodies"][body]["points"][point]))
+        found = results.motion.centre(body) if point == f"S{body}" else results.motion.named(point)
         for quantity in "xva":
             assert deviation(getattr(found, quantity), series(rows, "points", key, quantity)) < TOLERANCE, (
                 key,
@@ -100,21 +97,14 @@ def test_the_balancing_moment_is_the_reference_by_plan_and_by_lever(case):
     assert np.max(results.lever.difference) < 1e-10
 
 
-def test_near_a_dead_position_the_loss_is_that_of_the_data_alone():
-    """The class III reference starts 2.0e-5 rad from where its driver turns back, with all data decimals.
+def test_the_class_iii_reference_starts_next_to_a_dead_position():
+    """2.0e-5 rad from where its driver turns back: doubles for its data alone change omega by 3.3e-12 (in 50 digits).
 
-    Rounding them to doubles changes the results by u/eps and more, with every method (measured: omega of link 1 by
-    3.3e-12 in 50 digits). What is asked is that the calculator adds little to that.
+    It is met all the same, because such positions are computed from the decimals of the file in extended precision.
     """
     _, (row,), results = solved_row(reference(CLASS_III), 0)
-    eps = results.way.end - float(row["input"])
-    assert 2.0e-5 < eps < 2.1e-5
-    unit = 2.0**-53 / eps
-    for name in row["links"]:
-        found = results.motion.link(name)
-        assert deviation(found.omega, series([row], "links", name, "omega")) < 2 * unit
-        assert deviation(found.epsilon, series([row], "links", name, "eps")) < 4 * unit
-    assert deviation(results.reactions.balance.moment, series([row], "balancing")) < 4 * unit
+    assert 2.0e-5 < results.way.end - float(row["input"]) < 2.1e-5
+    assert results.motion.finer is not None
 
 
 @pytest.mark.parametrize("name", NAMES)

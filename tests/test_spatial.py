@@ -236,7 +236,13 @@ def proposal(found):
     return {r.pair.name: r.kind for r in found.replacements}
 
 
-@pytest.mark.parametrize("file", PROBLEMS, ids=lambda p: p.stem)
+def lower_only(file):
+    """Without higher pairs (see test_higher_pairs_in_space) and without constraints that are passive in the plane."""
+    linkage = load(str(file)).linkage
+    return not linkage.meshes and analyse(linkage).sound
+
+
+@pytest.mark.parametrize("file", [file for file in PROBLEMS if lower_only(file)], ids=lambda p: p.stem)
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(file):
     results = solve(load(str(file)), "kinematics")
     linkage, structure, motion = results.linkage, results.structure, results.motion
@@ -253,7 +259,7 @@ def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_ja
         then = jacobian(linkage, structure, poses, kinds)
         assert np.linalg.matrix_rank(then, tol=1e-9) == len(then)
         # W is what can move: the mechanism, and links by themselves
-        assert then.shape[1] - len(then) == found.proposed.mobility == 1 + found.rank.local
+        assert then.shape[1] - len(then) == found.proposed.mobility == len(structure.drivers) + found.rank.local
         # no pair on the frame has been touched
         assert not any(FRAME in (r.pair.i, r.pair.j) for r in found.replacements)
 

@@ -10,11 +10,10 @@ import numpy as np
 from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Dyad, Kernel, Turn
-from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move
-from tmm_cli.pairs.base import Drives
 from tmm_cli.refused import Misfit, NoAssembly, Undecided
 from tmm_cli.structure.assur import Group, Structure
 
@@ -36,7 +35,7 @@ def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] |
     for driver in linkage.cranks:
         poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
     chosen: list[Kernel] = []
-    for group in structure.groups if groups is None else groups:
+    for group in structure.solved if groups is None else groups:
         kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen))
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)

@@ -19,19 +19,18 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.continuation import Upstream, Walker
 from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
-from tmm_cli.groups.state import Placement, Pose
+from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
-from tmm_cli.pairs.base import Drives
 from tmm_cli.refused import NoAssembly, TooLarge, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
 MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
-MOST_FOUND = 100  # assemblies; where there are more, it is because the group can move
 QUIET = 3  # rounds without a new assembly that end the search
+MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
 ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
 SAME = 1e-6
@@ -110,20 +109,27 @@ def close_from_afar(
     return state, (last < CONVERGED) & (gap < CONVERGED)
 
 
-def all_assemblies(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1) -> list[State]:
-    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once."""
+def all_assemblies(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
+) -> list[State]:
+    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
+
+    Of a group that moves by itself at this place, some of them.
+    """
     random = np.random.default_rng(seed)
     found: list[State] = []
     quiet = 0
     links = len(kernel.group.links)
-    while quiet < QUIET and len(found) < MOST_FOUND:
-        turn = random.uniform(-np.pi, np.pi, (STARTS, links))
+    while quiet < QUIET and len(found) < MOST:
+        turn = random.uniform(-np.pi, np.pi, (starts, links))
         start = placed_by_angles(kernel, poses, drives, turn)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
         for k in np.flatnonzero(closed):
+            if len(found) == MOST:
+                break
             state = State(states.x[k : k + 1], np.angle(unit(states.turn[k : k + 1])))
-            if len(found) < MOST_FOUND and not any(_alike(kernel, state, other) for other in found):
+            if not any(_alike(kernel, state, other) for other in found):
                 found.append(state)
                 new = True
         quiet = 0 if new else quiet + 1
@@ -139,7 +145,7 @@ def _alike(kernel: Newton, one: State, other: State) -> bool:
 
 def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:
     """The assembly that a full sketch leads to, when it stays near to it."""
-    turn = _sketched_angles(kernel, linkage, poses)
+    turn = sketched_angles(kernel, linkage, poses, drives)
     if turn is None:
         return None
     start = placed_by_angles(kernel, poses, drives, turn[None, :])
@@ -156,10 +162,13 @@ def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
     return state if sketch_distance(given, hints, kernel) < CLOSE else None
 
 
-def _sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose]) -> Real | None:
+def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
     """Angles of the group's links read off the sketch; None when it does not show all of them."""
     angles = {name: float(np.angle(pose.z)[0]) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
+    for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
+        if driver.kind == "turn" and driver.base in angles:
+            angles[driver.link] = angles[driver.base] + float(drives[driver.link].value[0])
     points = {p: complex(pose.at(at)[0]) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
     points = {**linkage.sketch.points, **points}
     for link in kernel.group.links:

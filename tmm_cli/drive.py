@@ -28,7 +28,7 @@ def redriven(problem: Problem, link: str) -> Problem:
     driver = Driver(link, "turn" if pivots else "slide", (pivots or runs)[0], linkage.driver.rate)
     sketch = _sketch(linkage, driver)
     request = replace(problem.request, places=(), start=0.0)
-    return replace(problem, linkage=replace(linkage, driver=driver, sketch=sketch), request=request)
+    return replace(problem, linkage=replace(linkage, driver=driver, sketch=sketch), request=request, extended=None)
 
 
 def _sketch(linkage: Linkage, driver: Driver) -> Sketch:

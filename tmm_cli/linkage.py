@@ -66,7 +66,8 @@ class Driver:
     The base is the frame (a crank, a cylinder on the frame) or a moving link (a cylinder that swings, a drive in the
     hinge of an arm). q is the angle of the link's x axis from the base's (rad), or the run along the guide `joint` from
     its `through` point (m). `sense` is +1 or -1, and `rate` >= 0 is counted in that sense; `acceleration` too
-    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first.
+    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first; `stroke`: between which
+    places it works, if it cannot go farther.
     """
 
     link: str
@@ -79,6 +80,7 @@ class Driver:
     end: str = ""
     base: str = FRAME
     at: float = 0.0
+    stroke: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -233,6 +235,10 @@ class Linkage:
     def hinged_to_frame(self, link: str) -> bool:
         """Whether the link has a hinge on the frame."""
         return any(FRAME in h.links and link in h.links for h in self.hinges)
+
+    def carriers(self, point: str) -> tuple[str, ...]:
+        """All links that have the point, moving links before the frame."""
+        return tuple(name for name in (*self.moving, FRAME) if point in self.links[name].points)
 
     def owner(self, point: str) -> str:
         """The first link that carries the point, moving links before the frame."""

@@ -5,15 +5,15 @@ Everything is found per unit of the driver's motion first (transfer functions) a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.state import Accel, Placement, Pose, Rate
+from tmm_cli.groups.state import Accel, Drive, Placement, Pose, Rate
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide
-from tmm_cli.pairs.base import Drive
+from tmm_cli.splice import Part, spliced
 from tmm_cli.vectors import Real, Vector, dot, unit
 
 
@@ -81,7 +81,8 @@ class Law:
 class Motion:
     """Kinematics at the places q of the first driver. Arrays are (positions,); nan where `placed` or `moving` is False.
 
-    first and second are derivatives by q; drives say where all drivers are.
+    first and second are derivatives by q; drives say where all drivers are. finer: the positions of the mask `where` in
+    extended precision.
 
     margins: for each group its distance from a dead position, 1 at best. gaps: what it lacks to assemble (> 0), m.
     """
@@ -101,22 +102,41 @@ class Motion:
     dead: Mapping[str, Real] = field(default_factory=dict)
     missing: Mapping[str, Real] = field(default_factory=dict)
     drives: Mapping[str, Drive] = field(default_factory=dict)
+    finer: Motion | None = None
+    where: Real | None = None
 
     def point(self, link: str, local: complex) -> Point:
         """Motion of a point given in the axes of a link (m)."""
+        return self._finest(lambda motion: motion._point(link, local))
+
+    def _finest(self, of: Callable[[Motion], Part]) -> Part:
+        """What is asked of the motion, from its finer one where there is one."""
+        found = of(self)
+        return found if self.finer is None or self.where is None else spliced(found, of(self.finer), self.where)
+
+    def _point(self, link: str, local: complex) -> Point:
         pose, first, second = self.poses[link], self.first[link], self.second[link]
         arm = local * pose.z
         v1, a1 = first.at(arm), second.at(arm, first.w)
         return Point(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
 
     def named(self, point: str) -> Point:
-        """Motion of a named point."""
-        link = self.linkage.owner(point)
-        return self.point(link, self.linkage.local(link, point))
+        """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
+        return self.named_on(min(self.linkage.carriers(point), key=lambda link: self._sway(link, point)), point)
+
+    def _sway(self, link: str, point: str) -> float:
+        """Size of the terms that a point's acceleration is the sum of."""
+        first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
+        terms = np.abs(second.a) + (np.abs(second.e) + first.w**2) * arm
+        return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
+
+    def named_on(self, link: str, point: str) -> Point:
+        """Motion of a named point as one of a given link."""
+        return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
     def centre(self, link: str) -> Point:
         """Motion of a centre of mass."""
-        return self.point(link, self.linkage.links[link].centre)
+        return self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre))
 
     def link(self, name: str) -> Turning:
         """Turning of a link."""
@@ -127,11 +147,14 @@ class Motion:
 
     def slide(self, slide: Slide) -> Sliding:
         """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
+        return self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+
+    def _slide(self, slide: Slide) -> Sliding:
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         u = carrier.z * unit(slide.direction)
         here = runner.at(slide.at)
         run = dot(u, here - carrier.at(slide.through))
-        point = self.point(slide.runner, slide.at)
+        point = self._point(slide.runner, slide.at)
         w = self.first[slide.carrier].w
         arm = here - carrier.x
         first = dot(u, point.first - self.first[slide.carrier].at(arm))

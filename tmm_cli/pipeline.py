@@ -23,13 +23,16 @@ from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+    from tmm_cli.assemblies import Assemblies
     from tmm_cli.forces.applied import Applied
     from tmm_cli.forces.energy import Energy
-    from tmm_cli.forces.friction import Rubbed
+    from tmm_cli.forces.friction import Losses, Rubbed
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.plan import Reactions
     from tmm_cli.pressure import Pressure
-    from tmm_cli.strokes import Strokes
+    from tmm_cli.strokes import Strokes, Travel
+
+CYCLE = 720  # places over which losses are summed up
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -51,8 +54,12 @@ class Results:
     reactions: Reactions | None = None
     lever: Lever | None = None
     friction: Rubbed | None = None
+    losses: Losses | None = None
     energy: Energy | None = None
     pressure: tuple[Pressure, ...] = ()
+    further: tuple[Strokes, ...] = ()
+    travels: tuple[Travel, ...] = ()
+    assemblies: tuple[Assemblies, ...] | None = None
 
     @property
     def linkage(self) -> Linkage:
@@ -102,11 +109,16 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     linkage = problem.linkage
     structure = analyse(linkage)
     if not structure.sound:
-        raise WrongMobility(structure)
+        from tmm_cli.rank import by_rank  # few linkages need it
+
+        moving = by_rank(linkage, structure)
+        if moving is None:
+            raise WrongMobility(structure)
+        structure = moving
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.pressure import find_pressure
-    from tmm_cli.strokes import find_strokes, output_link, places, resisted
+    from tmm_cli.strokes import find_strokes, find_travel, output_link, places, resisted
 
     kernels = assemble(linkage, structure)
     way = find_range(linkage, kernels)
@@ -119,15 +131,35 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
             raise NoSuchPosition(number, len(q))
     law = _law(linkage, float(q[0]))
     motion = move(linkage, kernels, q[list(numbers)], law)
+    motion = _refined(problem, motion, q, numbers, law)
     named = roles(linkage, turning_links(linkage, kernels, way))
     dead = find_dead(linkage, kernels, way)
     results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
     results = replace(results, pressure=find_pressure(linkage, kernels, way, motion, problem.pressure_limits))
+    outputs = [o.link for o in linkage.outputs] or [link for link in (output_link(linkage, structure.groups),) if link]
+    if way.full:
+        found = [find_strokes(linkage, kernels, way, link=link) for link in outputs[1:]]
+        results = replace(results, further=tuple(s for s in found if s is not None))
+    else:
+        travels = [find_travel(linkage, kernels, q, link) for link in outputs]
+        results = replace(results, travels=tuple(t for t in travels if t is not None))
     return results if stage == "kinematics" else with_forces(results)
 
 
-def with_forces(results: Results) -> Results:
-    """Add loads, the force plan and the lever to kinematics."""
+def _refined(problem: Problem, motion: Motion, q: Real, numbers: tuple[int, ...], law: Law) -> Motion:
+    """The motion with its positions near dead ones in extended precision, where the machine has it."""
+    from tmm_cli.extended import WIDER, near_dead, refined
+
+    where = near_dead(motion)
+    if not WIDER or problem.extended is None or not np.any(where):
+        return motion
+    exact = problem.extended()
+    asked = np.array(exact.request.places) if exact.request.places else q.astype(np.longdouble)
+    return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
+
+
+def with_forces(results: Results, *, cycle: bool = True) -> Results:
+    """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
     from tmm_cli.forces.energy import energy
     from tmm_cli.forces.lever import lever
     from tmm_cli.forces.loads import applied
@@ -137,15 +169,26 @@ def with_forces(results: Results) -> Results:
     assert motion is not None
     loads = applied(motion, results.strokes)
     reactions = react(motion, results.structure, loads)
-    rubbed = None
+    if motion.finer is not None and motion.where is not None:
+        from tmm_cli.splice import spliced
+
+        exact = applied(motion.finer, results.strokes)
+        loads = spliced(loads, exact, motion.where)
+        reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
+    rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import rub
+        from tmm_cli.forces.friction import losses, rub
 
         rubbed = rub(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
+        if cycle:
+            whole = at_positions(results, results.closely(CYCLE + 1))
+            acting = applied(whole, results.strokes)
+            everywhere = rub(whole, results.structure, acting, react(whole, results.structure, acting))
+            lost = losses(everywhere, whole)
     drivers = power(motion, reactions)
     return replace(
-        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed,
+        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
         energy=energy(motion, loads, drivers),
     )  # fmt: skip
 
@@ -165,7 +208,7 @@ def _law(linkage: Linkage, start: float) -> Law:
 def at_places(results: Results, q: Real) -> Results:
     """The same results at other places of the driver (diagrams); with forces if they have them."""
     moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
-    return moved if results.reactions is None else with_forces(moved)
+    return moved if results.reactions is None else with_forces(moved, cycle=False)
 
 
 def turning_links(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> dict[str, bool]:

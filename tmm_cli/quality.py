@@ -11,7 +11,6 @@ import numpy as np
 
 from tmm_cli.cycle import MOST, turns_of_cycle
 from tmm_cli.groups.base import Dyad, Kernel
-from tmm_cli.groups.newton import Newton
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.roots import HALVINGS, least, roots
@@ -38,7 +37,7 @@ class Range:
     """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
 
     turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
-    False when no such number was found.
+    False when no such number was found. inclusive: both ends are those of the driver's stroke, and no dead positions.
     """
 
     start: float
@@ -47,6 +46,7 @@ class Range:
     limits: tuple[Limit, ...] = ()
     turns: int = 1
     repeats: bool = True
+    inclusive: bool = False
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,17 @@ class DeadPosition:
 
 
 def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
-    """The driver's way about the sketch, its limits to the last bit."""
+    """The driver's way about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
+    way = _reach(linkage, kernels)
+    stroke = linkage.driver.stroke
+    if stroke is None:
+        return way
+    low, high = (stroke[0], stroke[1]) if way.full else (max(way.start, stroke[0]), min(way.end, stroke[1]))
+    kept = tuple(limit for limit in way.limits if low <= limit.place <= high)
+    return Range(low, high, False, kept, inclusive=(low, high) == stroke)
+
+
+def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
     cycle = cycle_of(linkage, kernels) if turns else 1
     number = cycle or 1
@@ -80,6 +90,10 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
 
     def limit(index: int, towards: int) -> Limit:
         good, bad = at + steps[index - towards], at + steps[index]
+        first = kernels[int(np.argmax(lost[:, index]))]
+        for end in _ends(first):  # found to the last bit when the group was followed
+            if min(good, bad) <= end <= max(good, bad):
+                return Limit(end, first.group.title)
         for _ in range(HALVINGS):
             half_way = (good + bad) / 2
             q = np.array([half_way])
@@ -116,17 +130,25 @@ def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[flo
     """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
     low, high = -half, half
     for kernel in kernels:
-        track = kernel.track if isinstance(kernel, Newton) else None
+        track = kernel.followed
         if track is not None and not track.closed and True not in track.open_ends:
             low, high = min(low, 1.001 * (track.q[0] - at)), max(high, 1.001 * (track.q[-1] - at))
     return float(low), float(high)
+
+
+def _ends(kernel: Kernel) -> tuple[float, ...]:
+    """Places where a followed group turns back."""
+    track = kernel.followed
+    if track is None or track.closed:
+        return ()
+    return tuple(float(q) for q, limit in zip((track.q[0], track.q[-1]), track.limits, strict=True) if limit)
 
 
 def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
     """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
     turns = turns_of_cycle(linkage)
     for kernel in kernels:
-        track = kernel.track if isinstance(kernel, Newton) else None
+        track = kernel.followed
         if track is not None and track.closed and turns is not None:
             turns = math.lcm(turns, round((track.q[-1] - track.q[0]) / (2 * np.pi)))
     return turns if turns is not None and turns <= MOST else None
@@ -154,8 +176,11 @@ def _lost(motion: Motion, side: list[float]) -> Real:
     The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
     went to infinity.
     """
-    held = [motion.placed & ~(np.sign(p.det) == -s) for p, s in zip(motion.placements, side, strict=True)]
-    found: Real = ~np.array(held) if held else np.zeros((0, len(motion.q)), dtype=bool)
+    lost = [
+        motion.missing[kernel.group.title] | (np.sign(at.det) == -sign)
+        for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
+    ]
+    found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
     return found
 
 

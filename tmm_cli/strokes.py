@@ -14,6 +14,8 @@ from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
 
+RESTS = 1e-12  # of the longest run: a run below that is rounding
+
 
 @dataclass(frozen=True)
 class Stroke:
@@ -85,19 +87,58 @@ def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
     return turning.angle, turning.first, turning.second
 
 
-def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resists: float = 0.0) -> Strokes | None:
-    """Strokes of the output over the driver's way; None when there is no output joined to the frame.
+@dataclass(frozen=True)
+class Travel:
+    """How far an output goes between two ends of the driver that were asked for: run (m or rad) and driver's place."""
 
-    resists: sign of the output's run against which the useful resistance acts, 0 when it tells nothing. The working
-    stroke is the slower one; when both last equally long, the one that is resisted; then the one that runs forward.
+    link: str
+    kind: str
+    low: float
+    high: float
+    low_at: float
+    high_at: float
+
+
+def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link: str) -> Travel | None:
+    """Extremes of an output over the places asked for, found between them; for drivers that do not turn fully."""
+    kind = "slide" if linkage.slides_on_frame(link) else "swing"
+    law = Law(0.0, 1.0, 0.0, 1)
+    q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
+    moved = move(linkage, kernels, q, law)
+    run, slope, _ = output_run(moved, link)
+    q, run, slope = q[moved.placed], run[moved.placed], slope[moved.placed]
+    if len(q) < 2:
+        return None
+    run = np.unwrap(run) if kind == "swing" else run
+    change = np.flatnonzero(slope[:-1] * slope[1:] < 0)
+    if change.size:
+        ends = roots(lambda x: output_run(move(linkage, kernels, x, law), link)[1], q[change], q[change + 1])
+        there = output_run(move(linkage, kernels, ends, law), link)[0]
+        if kind == "swing":
+            there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
+        q, run = np.concatenate([q, ends]), np.concatenate([run, there])
+    low, high = int(np.argmin(run)), int(np.argmax(run))
+    return Travel(link, kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
+
+
+def find_strokes(
+    linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resists: float = 0.0, link: str | None = None
+) -> Strokes | None:
+    """Strokes of an output over the driver's way; None when it is not joined to the frame.
+
+    link: the main output when left out. resists: sign of the output's run against which the useful resistance acts, 0
+    when it tells nothing. The working stroke is the slower one; when both last equally long, the one that is resisted;
+    then the one that runs forward.
     """
-    link = output_link(linkage, tuple(d.group for d in kernels))
+    link = link or output_link(linkage, tuple(d.group for d in kernels))
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None
     kind = "slide" if linkage.slides_on_frame(link) else "swing"
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
     q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
+    if way.full:  # one step more: at the seam of the scan rounding may hide the end of a stroke
+        q = np.append(q, q[-1] + (q[1] - q[0]))
     cycle = 2 * np.pi * way.turns
     slope = output_run(move(linkage, kernels, q, law), link)[1]
     signs = np.sign(slope)
@@ -115,6 +156,7 @@ def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resi
     turns = np.sort(np.where(cycle - turns < 1e-12, 0.0, turns))
     again = np.diff(turns, append=turns[:1] + cycle) < 1e-9  # found at both ends of the scan
     turns = turns[~again][::sense]
+    turns = _ends(linkage, kernels, turns, cycle, (link, kind))
     if turns.size < 2:
         return Strokes(link, kind, (), "")
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
@@ -130,6 +172,34 @@ def find_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range, resi
         return Strokes(link, kind, (), "")
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
+
+
+def _ends(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, cycle: float, output: tuple[str, str]) -> Real:
+    """Ends of strokes, without those that only rounding makes.
+
+    Where the output all but rests, its rounded speed may change sign over and over: such places are one end, in their
+    middle, or none when the output goes on the same way after them.
+    """
+    if turns.size < 2:
+        return turns
+    sense = linkage.driver.sense
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
+    runs = _runs(linkage, kernels, turns, lengths, *output)
+    moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
+    if bool(np.all(moves)) or not bool(np.any(moves)):
+        return turns
+    first = int(np.argmax(moves)) + 1  # the place after a true stroke
+    order = np.roll(np.arange(len(turns)), -first)
+    kept: list[float] = []
+    before, at, way = runs[first - 1], float(turns[order[0]]), 0.0
+    for k in order:
+        if not moves[k]:
+            way += lengths[k]
+            continue
+        if np.sign(runs[k]) != np.sign(before):
+            kept.append(np.mod(at + sense * way / 2, cycle))
+        before, at, way = runs[k], float(turns[(k + 1) % len(turns)]), 0.0
+    return np.sort(np.array(kept))[::sense]
 
 
 def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:
@@ -174,7 +244,8 @@ def _mean(load: Load) -> float:
 def places(request: Request, way: Range, strokes: Strokes | None, sense: int) -> Real:
     """The driver's places that are asked for (rad or m); position 0 is the zero.
 
-    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost.
+    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost; over the
+    stroke of a driver they go from end to end.
     """
     if request.places:
         return np.array(request.places)
@@ -184,7 +255,7 @@ def places(request: Request, way: Range, strokes: Strokes | None, sense: int) ->
         if start == "working stroke":
             start = strokes.strokes[0].start if strokes and strokes.strokes else way.start + np.pi
         return start + sense * (2 * np.pi * way.turns * steps / request.count)
-    share = (steps + 0.5) / request.count
+    share = steps / max(request.count - 1, 1) if way.inclusive else (steps + 0.5) / request.count
     if sense < 0:
         share = 1 - share
     return way.start + (way.end - way.start) * share

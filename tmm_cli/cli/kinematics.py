@@ -2,10 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from tmm_cli.cli.common import Files, Json, Out, Position, each, report, solved
 
+Assemblies = Annotated[
+    bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
+]
 
-def kinematics(files: Files, as_json: Json = False, out: Out = None, position: Position = None) -> None:
+
+def kinematics(
+    files: Files, as_json: Json = False, out: Out = None, position: Position = None, assemblies: Assemblies = False
+) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     names = ("quality", "cycle", "points", "link-motion", "slides")
-    each(files, lambda file: report(solved(file, "kinematics", position), names, as_json, out), as_json=as_json)
+
+    def work(file: str) -> int:
+        if assemblies:
+            from tmm_cli.cli.assemblies import list_assemblies
+
+            return list_assemblies(file, as_json, out, position)
+        return report(solved(file, "kinematics", position), names, as_json, out)
+
+    each(files, work, as_json=as_json)

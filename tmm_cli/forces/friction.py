@@ -1,8 +1,8 @@
-"""Coulomb friction in pairs: reactions and friction found in turn until they agree.
+"""Coulomb friction in pairs: the force plan whose friction agrees with its own reactions.
 
 A hinge with a journal of radius r resists by the moment mu R r, a guide by the force mu N; both against the relative
 motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. Where a greater reaction needs more friction than
-it can overcome, the two never agree: the mechanism locks itself.
+it can overcome there is no such plan: the mechanism locks itself.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Reaction, Reactions, power, react
+from tmm_cli.groups.linear import solve
 from tmm_cli.linkage import FRAME, Friction
 from tmm_cli.motion import Motion
 from tmm_cli.structure.assur import Structure
-from tmm_cli.vectors import Real, unit
+from tmm_cli.vectors import Real, Vector, unit
 
-ROUNDS = 400
+STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
+ROUNDS = 40  # of Newton's method in each
 AGREE = 1e-13  # of the largest reaction
-NO_GROWTH = 1e6  # times the reactions without friction: what has grown so far has no end
+OUTER = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
 
 
 @dataclass(frozen=True)
@@ -40,59 +42,103 @@ class Rubbed:
     work: dict[str, Real]
     drivers: Real
 
-    def efficiency(self, motion: Motion) -> float | None:
-        """Work that is not lost to friction over the work of the drivers, over the positions; None without any."""
-        given = _over(self.drivers, motion)
-        lost = sum(_over(work, motion) for work in self.work.values())
-        return float((given + lost) / given) if given > 0 else None
 
-    def total(self, pair: str, motion: Motion) -> float:
-        """Work of friction in one pair over the positions, J (negative)."""
-        return _over(self.work[pair], motion)
+@dataclass(frozen=True)
+class Losses:
+    """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
+
+    Where the mechanism locks itself there is no work to be summed up, and no efficiency.
+    """
+
+    drivers: float
+    pairs: dict[str, float]
+    locked: bool
+
+    @property
+    def efficiency(self) -> float | None:
+        """What is not lost of the drivers' work; None when they do none or are locked."""
+        if self.locked or not self.drivers > 0:
+            return None
+        return (self.drivers + sum(self.pairs.values())) / self.drivers
+
+
+def losses(rubbed: Rubbed, motion: Motion) -> Losses:
+    """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
+    pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
+    return Losses(_over(rubbed.drivers, motion), pairs, bool(np.any(rubbed.locked)))
 
 
 def _over(work: Real, motion: Motion) -> float:
-    """Sum over the driver's way: by equal steps round a turn, by trapezia between limits."""
-    q = motion.q
-    sound = np.isfinite(work)
-    if len(q) < 2:
-        return float(work[0]) if sound[0] else 0.0
-    steps = np.diff(q)
-    around = abs(np.mod(steps.sum() + steps[0] + 1e-9, 2 * np.pi)) < 1e-6 and motion.linkage.driver.kind == "turn"
-    values = np.where(sound, work, 0.0) * np.sign(steps[0])
-    if around and np.allclose(steps, steps[0]):
-        return float(np.sum(values) * abs(steps[0]))
-    return float(np.sum((values[1:] + values[:-1]) / 2 * np.abs(steps)))
+    """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
+    values = np.where(motion.moving & np.isfinite(work), work, 0.0)
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
 
 
 def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions) -> Rubbed:
-    """Friction found from the reactions without it, over and over; half-way each time, so that it does not swing."""
-    reactions = free
-    size = sum(np.abs(r.force) for r in free.all) + 1e-300
-    forces: dict[str, Real] = {f.pair: np.abs(free.of(f.pair).force) for f in motion.linkage.friction}
-    change = np.full(np.shape(motion.q), np.inf)
+    """The force plan whose friction is that of its own reactions.
+
+    Reactions follow friction in proportion, so one plan for each pair's friction, of 1 N in its pair, tells all of it;
+    the sizes f of the pairs' forces then solve f = |R0 + sum f_k R_k|, position by position.
+    """
+    given = motion.linkage.friction
+    names = [f.pair for f in given]
+    ones = np.ones(np.shape(motion.q))
+    units = [tuple(_loads(f, motion, free, ones)) for f in given]
+    response = np.array([_forces(react(motion, structure, unit), names) for unit in units])  # friction, pair, position
+    start = _forces(free, names)
+    reactions, locked = free, np.zeros(np.shape(motion.q), dtype=bool)
     rubbed: tuple[Applied, ...] = ()
-    for _ in range(ROUNDS):
-        rubbed = tuple(load for f in motion.linkage.friction for load in _loads(f, motion, reactions, forces[f.pair]))
+    for _ in range(OUTER):
+        sizes, locked = _solved(start, response)
+        rubbed = tuple(load for f, size in zip(given, sizes, strict=True) for load in _loads(f, motion, free, size))
         reactions = react(motion, structure, (*loads, *rubbed))
-        new = {name: np.abs(reactions.of(name).force) for name in forces}
+        new = _forces(reactions, names)
         with np.errstate(invalid="ignore"):
-            change = sum(np.abs(new[name] - forces[name]) for name in forces) / size
-            grown = sum(new.values()) / size
-        if not bool(np.any((change > AGREE) & (grown < NO_GROWTH))):
+            off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
+        if not bool(np.any(off[:, ~locked & motion.moving] > AGREE)):
             break
-        forces = {name: np.where(grown < NO_GROWTH, (new[name] + forces[name]) / 2, forces[name]) for name in forces}
-    with np.errstate(invalid="ignore"):
-        locked = motion.moving & ~(change < 1e-9)
-    work = {f.pair: _work(f, motion, reactions) for f in motion.linkage.friction}
-    stacked = np.array([np.abs(w) for w in work.values()])
-    names = list(work)
-    worst = tuple(names[int(np.argmax(np.nan_to_num(stacked[:, k])))] for k in range(len(motion.q)))
+        start = new - np.einsum("kjn,kn->jn", response, sizes)
+    work = {f.pair: _work(f, motion, reactions) for f in given}
+    stacked = np.nan_to_num(np.abs(np.array(list(work.values()))))
+    worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
+    locked = locked & motion.moving
     if bool(np.any(locked)):
         rubbed = tuple(_nowhere(load, locked) for load in rubbed)
         reactions = react(motion, structure, (*loads, *rubbed))
         work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
     return Rubbed(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
+
+
+def _forces(reactions: Reactions, names: list[str]) -> Vector:
+    """Forces in the given pairs, (pair, position)."""
+    return np.array([reactions.of(name).force for name in names])
+
+
+def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
+    """Sizes f of f = |start + sum f_k response_k| (pair, position), and positions where there are none: it locks.
+
+    Friction is let in little by little, and each time Newton's method starts from the last answer.
+    """
+    number, count = start.shape
+    sizes = np.abs(start)
+    locked = np.zeros(count, dtype=bool)
+    with np.errstate(all="ignore"):
+        for stage in range(1, STAGES + 1):
+            part = response * (stage / STAGES)
+            last = np.full(count, np.inf)
+            for _ in range(ROUNDS):
+                force = start + np.einsum("kjn,kn->jn", part, sizes)
+                along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
+                slope = (np.conj(along)[None] * part).real  # of |force j| by f_k
+                matrix = np.eye(number)[None] - np.moveaxis(slope, (0, 1, 2), (2, 1, 0))
+                step = solve(matrix, (np.abs(force) - sizes).T).T
+                sizes = sizes + step
+                last = np.max(np.abs(step), axis=0) / (np.max(np.abs(sizes), axis=0) + 1e-300)
+                if not bool(np.any(last > 1e-15)):
+                    break
+            # a size below zero, or none that agrees: more friction than the driver can overcome
+            locked |= ~(last < 1e-9) | np.any(sizes < -1e-9 * np.max(np.abs(sizes), axis=0), axis=0)
+    return np.where(locked, np.abs(start), sizes), locked
 
 
 def _nowhere(load: Applied, lost: Real) -> Applied:

@@ -18,6 +18,8 @@ from tmm_cli.motion import Motion
 from tmm_cli.structure.assur import Group, Pair, Structure
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
+FAR = 1e9  # times the size of the links
+
 
 @dataclass(frozen=True)
 class Reaction:
@@ -164,7 +166,15 @@ def _reaction(motion: Motion, pair: Pair, own: str, held: Held) -> Reaction:
     u = motion.poses[slide.carrier].z * unit(slide.direction)
     signed = dot(1j * u, held.force)
     # on the carrier both force and couple change sign, and the arm stays
-    return Reaction(pair, own, other, at, held.force, held.couple, signed=signed, arm=held.couple / signed)
+    arm = _arm(motion, held.couple, signed)
+    return Reaction(pair, own, other, at, held.force, held.couple, signed=signed, arm=arm)
+
+
+def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
+    """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
+    far = FAR * max((kernel.size for kernel in motion.kernels), default=1.0)
+    arm = couple / signed
+    return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
 def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
@@ -226,7 +236,7 @@ def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) 
     couple = -total.about(at - pose.x)
     signed = dot(1j * u, guide)
     return (
-        Reaction(pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=couple / signed),
+        Reaction(pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=_arm(motion, couple, signed)),
         Balance(driver, "force", None, size, size * u, at, 1.0),
     )
 

@@ -11,16 +11,18 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import Linkage
-from tmm_cli.pairs.base import Drives
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.vectors import Real, Vector, unit
+
+if TYPE_CHECKING:
+    from tmm_cli.groups.track import Track
 
 __all__ = ["Accel", "Dyad", "Held", "Holding", "Kernel", "Placement", "Pose", "Rate", "Wrench"]
 
@@ -90,6 +92,15 @@ class Kernel(ABC):
     group: Group
     size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
 
+    @property
+    def followed(self) -> Track | None:
+        """Where its links are along the driver's way, if it had to be followed there."""
+        return None
+
+    @abstractmethod
+    def again(self, linkage: Linkage) -> Kernel:
+        """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
+
     near: ClassVar[float] = 0.05  # a margin below this is said to be near a dead position
 
     @abstractmethod
@@ -148,6 +159,9 @@ class Dyad(Kernel):
         ends = (seen(group.outer[0], a), seen(group.outer[1], b))
         size = max(spread(linkage, link) for link in (a, b, *(end.known for end in ends)))
         return cls(group, size, ends, seen(group.inner[0], b), sign)
+
+    def again(self, linkage: Linkage) -> Kernel:
+        return replace(type(self).of(self.group, linkage, self.sign), winding=self.winding)
 
     def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
         at = self.closed(poses)

@@ -15,9 +15,8 @@ import numpy as np
 
 from tmm_cli.groups.linear import signed_determinant, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
-from tmm_cli.groups.state import Accel, Placement, Pose, Rate
+from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate
 from tmm_cli.groups.track import State, Track
-from tmm_cli.pairs.base import Drives
 from tmm_cli.vectors import Real
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
@@ -117,6 +116,8 @@ class Walker:
         for.
         """
         kernel = self.kernel
+        if kernel.passive:
+            return None
         with np.errstate(all="ignore"):
             direction = _flat(last.first, kernel.size) * sense
             length = np.linalg.norm(direction)

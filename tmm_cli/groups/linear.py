@@ -6,6 +6,8 @@ import numpy as np
 
 from tmm_cli.vectors import Real
 
+TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for nothing
+
 
 def solve(matrix: Real, right: Real) -> Real:
     """x of matrix x = right for matrices (..., m, n) and right sides (..., m); nan where a matrix is singular.
@@ -29,8 +31,10 @@ def solve(matrix: Real, right: Real) -> Real:
 def _least_squares(matrix: Real, right: Real) -> Real:
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
     clean = np.where(sound[..., None, None], matrix, 0.0)
-    inverse = np.linalg.pinv(clean.astype(np.float64), rcond=1e-10)
+    inverse = np.linalg.pinv(clean.astype(np.float64), rcond=TRUNCATED)
     found = np.einsum("...ij,...j->...i", inverse, right)
+    rest = right - np.einsum("...ij,...j->...i", clean, found)
+    found = found + np.einsum("...ij,...j->...i", inverse, rest)  # an inverse rounds more than a solution does
     return np.where(sound[..., None], found, np.nan)
 
 

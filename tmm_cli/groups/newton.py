@@ -9,24 +9,25 @@ squares, which is exact as long as they agree.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, spread
-from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
-from tmm_cli.groups.state import Accel, Held, Holding, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
+from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
 from tmm_cli.groups.track import State, Track
 from tmm_cli.linkage import Linkage
 from tmm_cli.pairs import PAIRS
-from tmm_cli.pairs.base import Constraint, Drives, Grip
+from tmm_cli.pairs.base import Constraint, Grip
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
 NEAR = 1e-9  # a step below this squares to less than rounding
+DEAD = 1e-14  # a margin below this is rounding
 CONVERGED = 1e-6  # a last step above this has not converged
 
 
@@ -52,6 +53,13 @@ class Newton(Kernel):
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
+
+    def again(self, linkage: Linkage) -> Newton:
+        return replace(Newton.of(self.group, linkage), start=self.start, track=self.track)
+
+    @property
+    def followed(self) -> Track | None:
+        return self.track
 
     @cached_property
     def by_angle(self) -> bool:
@@ -165,6 +173,7 @@ class Newton(Kernel):
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
         slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.turn))
         gap = np.where(lost & (gap < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), gap)
+        gap = np.where(margin < (TRUNCATED if self.passive else DEAD), np.where(gap > slack, gap, 0.0), gap)
         det = signed_determinant(matrix) * margin
         return Placement(
             tuple(own[link] for link in self.group.links), det, margin, gap * self.size, slack * self.size
@@ -225,7 +234,9 @@ class Newton(Kernel):
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
-        pushes = self._fill([c.pushes(everything) for c in self.constraints], np.shape(at.det), at.det.dtype.type)
+        pushes = self._fill(
+            [c.pushes(everything) for c in self.constraints], np.shape(at.det), at.poses[0].x.real.dtype.type
+        )
         turned = np.swapaxes(pushes, -1, -2)
 
         def under(wrenches: Sequence[Wrench]) -> Real:

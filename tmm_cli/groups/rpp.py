@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
 from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
-from tmm_cli.pairs.base import Drives
+from tmm_cli.groups.state import Drives
 from tmm_cli.vectors import Real, Vector, cross, unit
 
 

@@ -23,7 +23,7 @@ from tmm_cli.groups.base import (
     Wrench,
     epsilon,
 )
-from tmm_cli.pairs.base import Drives
+from tmm_cli.groups.state import Drives
 from tmm_cli.vectors import Real, Vector, cross, dot
 
 

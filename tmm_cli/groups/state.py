@@ -152,3 +152,15 @@ class Holding:
     outer: tuple[Held, ...]
     inner: tuple[Held, ...]
     drives: Mapping[str, Real] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Where a driver is: its place (rad or m) and its first and second derivatives by the parameter of the motion."""
+
+    value: Real
+    first: Real
+    second: Real
+
+
+Drives = Mapping[str, Drive]

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from tmm_cli.groups.state import Held, Pose, Rate
+from tmm_cli.groups.state import Drives, Held, Pose, Rate
 from tmm_cli.vectors import Real, Vector
 
 if TYPE_CHECKING:
@@ -23,18 +23,6 @@ if TYPE_CHECKING:
 Grip = tuple[Any, Any]  # c (complex: x and y) and m (real)
 Poses = Mapping[str, Pose]
 Rates = Mapping[str, Rate]
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Where a driver is: its place (rad or m) and its first and second derivatives by the parameter of the motion."""
-
-    value: Real
-    first: Real
-    second: Real
-
-
-Drives = Mapping[str, Drive]
 
 
 @dataclass(frozen=True)

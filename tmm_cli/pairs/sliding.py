@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Held
+from tmm_cli.groups.state import Drives, Held
 from tmm_cli.linkage import Slide
-from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tmm_cli.groups.state import Held
-from tmm_cli.pairs.base import Constraint, Drives, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, Held
+from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
 from tmm_cli.vectors import Real, Vector
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.scalars import comma_error, finite_float
+from tmm_cli.problem.scalars import comma_error
 from tmm_cli.problem.units import (
     ANGLE,
     NUMBER,
@@ -142,7 +142,7 @@ class Parser:
     def atom(self) -> Quantity:
         if number := _NUMBER.match(self.text, self.at):
             self.at = number.end()
-            return self.with_unit(finite_float(number[1]))
+            return self.with_unit(self.units.number(number[1]))
         if self.sign("("):
             inside = self.sum()
             if not self.sign(")"):
@@ -262,7 +262,7 @@ class Parser:
             value = math.nan
         if isinstance(value, complex) or not math.isfinite(value):
             raise self.fault(f"{what} has no value")
-        return float(value)
+        return float(value) if isinstance(value, int) else value
 
 
 def _half(dimension: Dimension) -> Dimension | None:

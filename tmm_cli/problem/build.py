@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import replace
+from functools import partial
 from pathlib import PurePath
 from typing import Any
 
 from pydantic import ValidationError
 
-from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Output, Request, Sketch, Slide
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Mesh, Output, Request, Sketch, Slide
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_drivers import build_drivers
 from tmm_cli.problem.build_loads import build_loads, with_masses
-from tmm_cli.problem.build_meshes import build_meshes
-from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.sense import Sense, check_name, direction
+from tmm_cli.problem.sense import Sense, check_name, direction, phase, planar
 from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
     ANGLE,
@@ -44,8 +43,8 @@ def is_chain(tree: Tree) -> bool:
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
-def build(tree: Tree) -> Problem:
-    """A problem from a file that has been read."""
+def build(tree: Tree, *, extended: bool = False) -> Problem:
+    """A problem from a file that has been read; extended: with its numbers in longdouble."""
     if is_chain(tree):
         raise ProblemError(
             "a chain given by pairs alone has no dimensions: there is only its structure", path=("structure",),
@@ -58,7 +57,7 @@ def build(tree: Tree) -> Problem:
 
         raise shape_error(error, tree) from None
     try:
-        return _Builder(shape, tree).problem()
+        return _Builder(shape, tree, extended).problem()
     except ProblemError as error:
         raise error.located(tree.file, tree) from None
 
@@ -66,10 +65,10 @@ def build(tree: Tree) -> Problem:
 class _Builder:
     """Builds the parts of one linkage in the order in which they need each other."""
 
-    def __init__(self, shape: schema.File, tree: Tree) -> None:
+    def __init__(self, shape: schema.File, tree: Tree, extended: bool) -> None:
         self.shape, self.tree = shape, tree
         try:
-            units = UnitSystem(shape.units)
+            units = _extended_units(shape.units) if extended else UnitSystem(shape.units)
         except ProblemError as error:
             raise error.at("units") from None
         try:
@@ -85,7 +84,7 @@ class _Builder:
         hinges = self.hinges(links)
         nothing_stray(shape, self.tree.data, links, hinges, slides)
         drivers = build_drivers(shape, links, hinges, slides, self.sense)
-        meshes = build_meshes(shape, links, hinges, slides, self.sense)
+        meshes = self.meshes(links, hinges, slides)
         outputs = self.outputs(links)
         driver = drivers[0]
         linkage = Linkage(
@@ -93,17 +92,31 @@ class _Builder:
             others=drivers[1:], meshes=meshes, outputs=outputs,
         )  # fmt: skip
         linkage = with_masses(linkage, shape, self.sense)
-        linkage = replace(
-            linkage, loads=build_loads(linkage, shape, self.sense), springs=build_springs(linkage, shape, self.sense)
-        )
-        linkage = replace(linkage, friction=build_friction(linkage, shape, self.sense))
+        linkage = self.sprung(replace(linkage, loads=build_loads(linkage, shape, self.sense)))
         limit = self.sense.positive(shape.checks.lever, NUMBER, ("checks", "lever"), zero=True)
         allowed, given = self.allowed()
         file = self.tree.file
         return Problem(
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
-            limit, shape.description, file, allowed, given, self.tree,
+            limit, shape.description, file, allowed, given, self.tree, partial(build, self.tree, extended=True),
         )  # fmt: skip
+
+    def meshes(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> tuple[Mesh, ...]:
+        """Higher pairs; few files have any, and only those import what reads them."""
+        if not (self.shape.gears or self.shape.racks or self.shape.cams):
+            return ()
+        from tmm_cli.problem.build_meshes import build_meshes
+
+        return build_meshes(self.shape, links, hinges, slides, self.sense)
+
+    def sprung(self, linkage: Linkage) -> Linkage:
+        """With springs and friction, if there are any."""
+        if not self.shape.springs and self.shape.friction is None:
+            return linkage
+        from tmm_cli.problem.build_springs import build_friction, build_springs
+
+        linkage = replace(linkage, springs=build_springs(linkage, self.shape, self.sense))
+        return replace(linkage, friction=build_friction(linkage, self.shape, self.sense))
 
     def allowed(self) -> tuple[tuple[float, float], tuple[bool, bool]]:
         """Largest pressure angles on sliding and turning links, and whether the file says them."""
@@ -178,7 +191,7 @@ class _Builder:
                 "the length of this link is missing", path=(*path, "length"),
                 allowed=f"length: the distance from {given[0]} to {given[1]}",
             )  # fmt: skip
-        return {given[0]: 0j, given[1]: complex(self.sense.positive(link.length, LENGTH, (*path, "length")))}
+        return {given[0]: 0j, given[1]: planar(self.sense.positive(link.length, LENGTH, (*path, "length")), 0.0)}
 
     def slides(self, links: dict[str, Link]) -> tuple[Slide, ...]:
         for name in self.shape.guides:
@@ -241,7 +254,7 @@ class _Builder:
                     "along says through and angle already", path=(*path, "along"), allowed="one of the two"
                 )
             first, second = self.sense.two_points(guide.along, points, (*path, "along"), carrier)
-            through, angle = points[first], cmath.phase(points[second] - points[first])
+            through, angle = points[first], phase(points[second] - points[first])
         elif guide.through is not None:
             through = self.sense.place(guide.through, points, (*path, "through"), carrier)
             angle = 0.0 if guide.angle is None else self.sense.number(guide.angle, ANGLE, (*path, "angle"))
@@ -269,6 +282,11 @@ class _Builder:
                 "the driver's place in the sketch is missing", path=("sketch", "at"), allowed=f"at: {wanted}",
             )  # fmt: skip
         at = self.sense.number(given.pop("at"), wanted, ("sketch", "at"))
+        if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
+            raise ProblemError(
+                "the sketch shows the driver beyond its stroke", path=("sketch", "at"),
+                found=str(self.shape.sketch["at"]), allowed="a place of the stroke, or another stroke",
+            )  # fmt: skip
         owners = {p: n for n, link in links.items() for p in link.points}
         points, angles = {}, {}
         for name, value in given.items():
@@ -323,6 +341,12 @@ class _Builder:
             return Request(count, "working stroke", places, tuple(given.detail))
         start = self.sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))
         return Request(count, start, places, tuple(given.detail))
+
+
+def _extended_units(names: dict[str, str]) -> UnitSystem:
+    from tmm_cli.problem.extended import ExtendedUnits  # only near dead positions
+
+    return ExtendedUnits(names)
 
 
 def _two(value: list[Any], path: Path) -> list[Any]:

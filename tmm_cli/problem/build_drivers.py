@@ -84,10 +84,22 @@ def _driver(
             allowed=f"at: {ANGLE if turns else LENGTH}",
         )  # fmt: skip
     at = 0.0 if given.at is None else sense.number(given.at, ANGLE if turns else LENGTH, (*path, "at"))
+    stroke = None
+    if given.stroke is not None:
+        low, high = (
+            sense.number(value, ANGLE if turns else LENGTH, (*path, "stroke", k))
+            for k, value in enumerate(given.stroke)
+        )
+        if not low < high:
+            raise ProblemError(
+                "a stroke goes from its lesser end to its greater one", path=(*path, "stroke"), found=str(given.stroke),
+                allowed="[from, to]; a negative speed runs it backward",
+            )  # fmt: skip
+        stroke = (low, high)
     return Driver(
         link, "turn" if turns else "slide", pivots[0] if turns else runs[0].name, abs(speed),
         acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
-        given.end or "", base, at,
+        given.end or "", base, at, stroke,
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from tmm_cli.linkage import Linkage, Load, Table
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.sense import Sense, check_name, direction
+from tmm_cli.problem.sense import Sense, check_name, direction, planar
 from tmm_cli.problem.units import ACCELERATION, ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Dimension
 from tmm_cli.structure.assur import analyse
 
@@ -59,7 +59,7 @@ def _gravity(given: Any, sense: Sense) -> complex:
         return sense.vector(given, ACCELERATION, path)
     if isinstance(given, bool | dict):
         raise ProblemError("a number or [x, y] is wanted", path=path, found=quote(given))
-    return complex(0.0, -sense.positive(given, ACCELERATION, path, zero=True))
+    return planar(0.0, -sense.positive(given, ACCELERATION, path, zero=True))
 
 
 def build_loads(linkage: Linkage, shape: schema.File, sense: Sense) -> tuple[Load, ...]:

@@ -52,7 +52,7 @@ def evaluate_quantity(
     if isinstance(source, int | float):
         if not -1e300 < source < 1e300:
             raise ProblemError("not a number from -1e300 to 1e300", found=quote(source))
-        return Quantity(float(source), None)
+        return Quantity(units.number(source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError("this is too long", found=quote(source), allowed=f"at most {MAX_LENGTH} characters")
     found = Parser(plain_text(source), parameters, units, pi).whole()

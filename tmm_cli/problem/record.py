@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -31,3 +32,4 @@ class Problem:
     pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
     limits_set: tuple[bool, bool] = (False, False)
     source: Any = field(default=None, compare=False, repr=False)
+    extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

@@ -205,8 +205,9 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
         case Undecided(group=group, choices=choices, count=count) if choices:
             told = list(choices.items())[:MOST_CHOICES]
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in told)
+            listing = f"tmm kinematics {problem.file or 'FILE'} --assemblies"
             return ProblemError(
-                f"the sketch does not say which way round {_group(group)} {_are(group)} assembled",
+                f"the sketch does not say which way round {_group(group)} {_are(group)} assembled; {listing} lists all",
                 path=("sketch",), found=f"{count} assemblies" if count > 2 else None,
                 allowed=f"with the driver at {place}, {ways}", key=True,
             )  # fmt: skip
@@ -241,24 +242,29 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
 
 
 def _mobility(structure: Structure) -> ProblemError:
-    n, p = len(structure.links), len(structure.pairs)
-    count = f"W = 3*{n} - 2*{p} = {structure.mobility}"
+    n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
+    higher = f" - {p2}" if p2 else ""
+    count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
     if structure.loose:
         links = structure.loose
+        driven = "as one link is driven" if wanted == 1 else f"as {wanted} links are driven"
         return ProblemError(
-            f"mobility is not 1: {_listed(links)} loose", path=("links", links[0]), found=count,
-            allowed="W = 1, as one link is driven", key=True,
+            f"mobility is not {wanted}: {_listed(links)} loose", path=("links", links[0]), found=count,
+            allowed=f"W = {wanted}, {driven}", key=True,
         )  # fmt: skip
     name, bodies = structure.idle[0] if structure.idle else ("driver", structure.links)
     if name == "driver":
+        one = "the driver cannot move, its links are a truss"
+        several = "the drivers cannot all move, they hold the same links"
         return ProblemError(
-            "mobility is not 1: the driver cannot move, its links are a truss", path=("driver", "link"),
-            found=f"{count}; over-held: links {', '.join(bodies)}", allowed="W = 1",
+            f"mobility is not {wanted}: {one if wanted == 1 else several}", path=("driver", "link"),
+            found=f"{count}; over-held: links {', '.join(bodies)}", allowed=f"W = {wanted}",
         )  # fmt: skip
     links = tuple(b for b in bodies if b in structure.links)
     return ProblemError(
-        f"mobility is not 1: pair {name} holds what is held already", path=("links", links[0]) if links else ("links",),
-        found=f"{count}; over-held: links {', '.join(bodies)}", allowed="W = 1", key=True,
+        f"mobility is not {wanted}: pair {name} holds what is held already",
+        path=("links", links[0]) if links else ("links",),
+        found=f"{count}; over-held: links {', '.join(bodies)}", allowed=f"W = {wanted}", key=True,
     )  # fmt: skip
 
 

@@ -116,6 +116,7 @@ class Driver(Strict):
     at: Value | None = Field(default=None, description="its place in the sketch, for drivers after the first")
     speed: Value = Field(description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s)")
     acceleration: Value = Field(default=0, description="in the sense of motion; the speed is that of position 0")
+    stroke: Vector | None = Field(default=None, description="[from, to]: places between which a cylinder works")
     turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
     balance: Literal["moment", "force"] = Field(default="moment", description="what balances the crank")
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")

@@ -7,6 +7,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import evaluate
 from tmm_cli.problem.schema import OnLine
@@ -45,7 +47,7 @@ class Sense:
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
         """Two coordinates."""
-        return complex(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
+        return planar(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
 
     def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
         """A place on a link: the name of one of its points, coordinates, or a share of the way between two points."""
@@ -107,7 +109,19 @@ def check_name(name: str, path: Path, what: str) -> None:
         )
 
 
+def planar(x: float, y: float) -> complex:
+    """x + iy in the precision of its parts (a longdouble is no float)."""
+    return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
+
+
+def phase(vector: complex) -> float:
+    """The angle of a vector, in its precision."""
+    return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
+
+
 def direction(angle: float) -> complex:
     """e^(i angle), exact across and along the axes."""
+    if not isinstance(angle, float):
+        return planar(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)
     return complex(*(0.0 if abs(part) < AXIS else part for part in (turned.real, turned.imag)))

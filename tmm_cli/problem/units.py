@@ -28,6 +28,7 @@ from tmm_cli.problem.dimensions import (
     product_text,
 )
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
+from tmm_cli.problem.scalars import finite_float
 
 
 class UnitError(ProblemError):
@@ -76,12 +77,17 @@ class Unit:
         )
 
     def si(self, number: float) -> float:
-        """The number of these units in SI and radians."""
-        return number * math.pi**self.pi * self.scale.numerator / self.scale.denominator
+        """The number of these units in SI and radians, in the number's own precision."""
+        return number * _pi(number) ** self.pi * self.scale.numerator / self.scale.denominator
 
     def from_si(self, value: Any) -> Any:
         """A value, or an array of them, in SI and radians in these units."""
         return value / math.pi**self.pi * self.scale.denominator / self.scale.numerator
+
+
+def _pi(number: float) -> float:
+    """Pi as exactly as the number: a longdouble is no float, and brings arithmetic of its own."""
+    return math.pi if isinstance(number, int | float) else type(number)("3.14159265358979323846264338327950288")
 
 
 @dataclass(frozen=True)
@@ -219,6 +225,10 @@ class UnitSystem:
                 )
             self._names[kind.dimension] = name
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
+
+    def number(self, written: str | int | float) -> float:
+        """The value of a number as it is written."""
+        return finite_float(written) if isinstance(written, str) else float(written)
 
     def unit(self, dimension: Dimension) -> Unit:
         """The file's unit; without a name of its own, the product of those of length, mass, time and angle."""

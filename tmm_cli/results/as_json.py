@@ -22,7 +22,7 @@ from tmm_cli.results.as_space import chain_json, space_json
 from tmm_cli.results.reports.cycle import state
 from tmm_cli.results.reports.kinematics import mass_centres, named_points
 from tmm_cli.results.warnings import warnings
-from tmm_cli.strokes import output_link
+from tmm_cli.strokes import Strokes, output_link
 from tmm_cli.structure.assur import ROMAN, Structure
 from tmm_cli.structure.contours import classification, contours
 from tmm_cli.structure.redundancy import space
@@ -77,6 +77,10 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         }  # fmt: skip
     if results.energy is not None:
         found["energy"] = _energy(results)
+    if results.assemblies is not None:
+        from tmm_cli.results.as_assemblies import assemblies_json
+
+        found["assemblies"] = assemblies_json(results.assemblies)
     found["warnings"] = list(warnings(results))
     return {key: plain(value) for key, value in found.items()}
 
@@ -99,6 +103,11 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
             for n in structure.links
         ],
         "pairs": [{"name": p.name, "kind": p.kind, "links": [p.i, p.j], "point": p.point} for p in structure.pairs],
+        "true_mobility": structure.mobility + structure.redundant,
+        "passive": [
+            {"pair": p.pair, "constraints": p.constraints, "links": list(p.links), "among": list(p.among)}
+            for p in structure.passive
+        ],
         "n": len(structure.links),
         "p1": len(structure.pairs) - structure.higher,
         "p2": structure.higher,
@@ -136,17 +145,26 @@ def _range(results: Results) -> dict[str, Any]:
             for p in results.pressure
         ],
         "dead_positions": [{"at": d.place, "group": d.group, "margin": d.margin} for d in results.dead],
-        "output": None if strokes is None else {
-            "link": strokes.link,
-            "kind": strokes.kind,
-            "travel": strokes.travel if strokes.strokes else None,
-            "k": strokes.k if strokes.strokes else None,
-            "rule": strokes.rule,
-            "strokes": [
-                {"start": s.start, "length": s.length, "from": s.low, "run": s.run, "working": s.working}
-                for s in strokes.strokes
-            ],
-        },
+        "output": None if strokes is None else _strokes(strokes),
+        "further_outputs": [_strokes(further) for further in results.further],
+        "travels": [
+            {"link": t.link, "kind": t.kind, "low": t.low, "high": t.high, "low_at": t.low_at, "high_at": t.high_at}
+            for t in results.travels
+        ],
+    }  # fmt: skip
+
+
+def _strokes(strokes: Strokes) -> dict[str, Any]:
+    return {
+        "link": strokes.link,
+        "kind": strokes.kind,
+        "travel": strokes.travel if strokes.strokes else None,
+        "k": strokes.k if strokes.strokes else None,
+        "rule": strokes.rule,
+        "strokes": [
+            {"start": s.start, "length": s.length, "from": s.low, "run": s.run, "working": s.working}
+            for s in strokes.strokes
+        ],
     }  # fmt: skip
 
 
@@ -223,11 +241,11 @@ def _energy(results: Results) -> dict[str, Any]:
     found = results.energy
     assert found is not None
     energy: dict[str, Any] = {field.name: getattr(found, field.name) for field in fields(found)}
-    if results.friction is not None and results.motion is not None:
-        rubbed = results.friction
-        energy["efficiency"] = rubbed.efficiency(results.motion)
-        energy["locked"] = rubbed.locked
-        energy["friction_work"] = {pair: rubbed.total(pair, results.motion) for pair in rubbed.work}
+    if results.friction is not None:
+        energy["locked"] = results.friction.locked
+    if results.losses is not None:
+        energy["efficiency"] = results.losses.efficiency
+        energy["friction_work"] = dict(results.losses.pairs)
     return energy
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 IGNORED = {"files", "tmm", "problem", "warnings"}
 DERIVED = {"arm"}  # follows from others, and has no size of its own where those pass through zero
-SHARES = {"difference", "margin", "margins"}  # relative already: compared as they are
+SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 FLOOR = 1e-9  # of the largest value of the same name anywhere: below that a quantity is zero but for rounding
 
 

@@ -134,10 +134,10 @@ def _way(results: Results) -> Table:
     structure = results.structure
     linkage = results.linkage
     rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers), say("explain.given"), "")]
-    solved = {k.group.title: k for k in results.kernels}
+    solved = {link: k for k in results.kernels for link in k.group.links}
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)
-        kernel = solved.get(group.title)
+        kernel = solved.get(group.links[0])
         if isinstance(kernel, Dyad):
             one = kernel.assemblies == 1
             which = say("explain.one") if one else say("explain.two", sign=f"{kernel.sign:+d}")

@@ -63,11 +63,16 @@ def result_schema() -> dict[str, Any]:
             "turns": _number("turns of the driver after which everything repeats"),
             "pressure": _pressure(),
             "output": _output(),
+            "further_outputs": _list("of the others, as the first one", _output()),
+            "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
+                "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
+                high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
             "positions": _positions(),
             "kinematics": _kinematics(),
             "forces": _forces(),
             "lever": _lever(),
             "energy": _energy(),
+            "assemblies": _assemblies(),
             "warnings": _list("sentences", {"type": "string"}),
             "files": _list("written beside this file", {"type": "string"}),
         },
@@ -80,6 +85,10 @@ def _structure() -> dict[str, Any]:
         "links, pairs and Assur groups",
         mobility=_number("Chebyshev, W = 3n - 2 p1 - p2"), n=_number("moving links"), p1=_number("lower pairs"),
         p2=_number("higher pairs"),
+        true_mobility=_number("by rank, where dimensions leave more than the count"),
+        passive=_list("passive constraints", _object(
+            "conditions that only repeat others", pair=_text("pair"), constraints=_number("how many"),
+            links=_list("its links, the passive one last", names), among=_list("links that hold each other", names))),
         contours=_number("independent contours K = p - n"),
         classification=_list("closed or open; elementary, simple, complex; of one type or several", names),
         formula=_text("formula of structure"),
@@ -243,10 +252,28 @@ def _energy() -> dict[str, Any]:
         rate=_series("its rate, W"), drivers=_series("power of the drivers, W"), weights=_series("of weights, W"),
         loads=_series("of loads, W"), friction=_series("of friction, W"),
         balance=_series("what is left of all powers, against the largest"),
-        efficiency=_number("with friction: over the positions"),
+        efficiency=_number("with friction: over the cycle"),
         locked=_list("locked by friction", {"type": "boolean"}),
-        friction_work=_map("work of friction over the positions, J, by pair", _number("J")),
+        friction_work=_map("work of friction over the cycle, J, by pair", _number("J")),
     )  # fmt: skip
+
+
+def _assemblies() -> dict[str, Any]:
+    names = {"type": "string"}
+    coordinates = _object("m", x=_number("x"), y=_number("y"))
+    one = _object(
+        "an assembly", angles=_map("of the group's links, rad", _number("rad")),
+        points=_map("of the group's links", coordinates), margin=_number("distance from a dead position: 0 there"),
+        sketch=_flag("that of the sketch"))  # fmt: skip
+    group = _object(
+        "a group", group=_text("II(2,3)"), method=_text("closed form, polynomial, angles, many starts"),
+        complete=_flag("whether it is proved that there are no others"), most=_number("so many are possible, if known"),
+        moves=_flag("moves by itself here: assemblies without end"), assemblies=_list("real ones", one))  # fmt: skip
+    return _list("with --assemblies: real assemblies of the groups, by places of the driver", _object(
+        "a place", position=_number("its number; null: the place of the sketch"), driver=_number("rad or m"),
+        undecided={"description": "group that the sketch does not decide", "type": ["string", "null"]},
+        lost=_list("groups whose neighbours cannot be placed", names),
+        groups=_list("in solving order, links before placed as in the sketch", group)))  # fmt: skip
 
 
 def _lever() -> dict[str, Any]:

@@ -68,6 +68,9 @@ def warnings(results: Results) -> Iterable[str]:
             yield say(
                 "warning.near", number=results.numbers[k], group=dyad.group.title, margin=f"{float(margin[k]):.2g}"
             )
+    for passive in results.structure.passive:
+        i, j = passive.links
+        yield say("warning.passive", pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
     if not way.repeats:
         yield say("warning.cycle")
     for pressure in results.pressure:

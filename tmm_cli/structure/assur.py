@@ -8,7 +8,7 @@ its richest link when it has no contour; the order is the number of leads (outer
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -72,12 +72,26 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Passive:
+    """Passive constraints in a pair: its conditions that only repeat others, by special dimensions.
+
+    links: the two that the pair joins, the passive one (whose place follows without it) last. among: all links that are
+    held twice by each other.
+    """
+
+    pair: str
+    constraints: int
+    links: tuple[str, str]
+    among: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Structure:
     """The structure of a linkage.
 
     mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
     over-held). groups are in solving order. loose and idle name what is wrong when the mobility is not the number of
-    drivers.
+    drivers. passive: what the numerical rank found to be redundant; mobility is then less than the truth by as much.
     """
 
     links: tuple[str, ...]
@@ -88,6 +102,12 @@ class Structure:
     freedom: int
     loose: tuple[str, ...] = ()
     idle: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    passive: tuple[Passive, ...] = ()
+
+    @property
+    def redundant(self) -> int:
+        """Number of passive constraints in the plane."""
+        return sum(passive.constraints for passive in self.passive)
 
     @property
     def driver(self) -> Driver:
@@ -101,9 +121,9 @@ class Structure:
 
     @property
     def sound(self) -> bool:
-        """Whether the count finds each freedom driven and nothing held twice."""
+        """Whether each freedom is driven and nothing held twice, but for what is known to be passive."""
         wanted = len(self.drivers)
-        return self.freedom == wanted == self.mobility and not self.idle and not self.loose
+        return self.freedom == wanted == self.mobility + self.redundant and not self.idle and not self.loose
 
     def driving_pair(self, driver: Driver) -> Pair:
         """The pair in which a driver works."""
@@ -126,6 +146,26 @@ class Structure:
         """The class of its highest group."""
         return max((g.grade for g in self.groups), default=1)
 
+    @property
+    def solved(self) -> tuple[Group, ...]:
+        """The groups as they are solved: those that hold one another twice in one, with all that lies between them.
+
+        Together they can pass where one of them alone is dead; that is what passive constraints are often for.
+        """
+        among = {link for passive in self.passive for link in passive.among}
+        held = [k for k, group in enumerate(self.groups) if among & set(group.links)]
+        if len(held) < 2:
+            return self.groups
+        first, last = held[0], held[-1] + 1
+        links = {link for group in self.groups[first:last] for link in group.links}
+        pairs = [p for p in self.pairs if {p.i, p.j} & links]
+        one = Group(
+            tuple(link for link in self.links if link in links), tuple(p for p in pairs if {p.i, p.j} <= links),
+            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.grade for g in self.groups[first:last]), "",
+            tuple(d for g in self.groups[first:last] for d in g.drivers),
+        )  # fmt: skip
+        return (*self.groups[:first], one, *self.groups[last:])
+
     def pair(self, name: str) -> Pair:
         return next(p for p in self.pairs if p.name == name)
 
@@ -139,9 +179,13 @@ class Structure:
         return tuple(reversed(chosen))
 
 
-def analyse(linkage: Linkage) -> Structure:
-    """Structure of a linkage; never fails: what is wrong with it is in the result."""
-    ties = list(_ties(linkage))
+def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
+    """Structure of a linkage; never fails: what is wrong with it is in the result.
+
+    dropped: how many conditions of which tie (by its number) are left out of the count.
+    """
+    less = dropped or {}
+    ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
     pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2)
     bodies = tuple(linkage.links)
     undriven = count(bodies, FRAME, ties, pins)
@@ -163,7 +207,8 @@ def _pin(hinge: Hinge) -> str:
     return f"pin {hinge.point}"
 
 
-def _ties(linkage: Linkage) -> Iterable[Tie]:
+def ties_of(linkage: Linkage) -> Iterable[Tie]:
+    """Who is joined to whom; a compound hinge through its pin."""
     for hinge in linkage.hinges:
         if len(hinge.links) == 2:
             yield Tie(hinge.point, *hinge.links, 2)

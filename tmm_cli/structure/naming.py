@@ -13,6 +13,9 @@ def roles(linkage: Linkage, turns: Mapping[str, bool]) -> dict[str, str]:
 
 
 def _role(linkage: Linkage, name: str, turns: bool) -> str:
+    special = _higher(linkage, name) or _cylinder(linkage, name)
+    if special is not None:
+        return special
     slides = [s for s in linkage.slides if name in (s.carrier, s.runner)]
     carries = any(s.carrier == name and s.runner != FRAME for s in slides)
     runs = any(s.runner == name and s.carrier != FRAME for s in slides)
@@ -30,3 +33,24 @@ def _role(linkage: Linkage, name: str, turns: bool) -> str:
         runner = next(s.runner for s in slides if s.carrier == name)
         return "rod" if linkage.hinged_to_frame(runner) else "slotted link"
     return "coupler"
+
+
+def _higher(linkage: Linkage, name: str) -> str | None:
+    """What a link is called for its teeth or its cam; a wheel is a planet where its axis moves."""
+    for mesh in linkage.meshes:
+        if mesh.kind == "cam" and name in (mesh.i, mesh.j):
+            return "cam" if name == mesh.i else "follower"
+        if mesh.kind == "rack" and name == mesh.j:
+            return "rack"
+        if name == mesh.i or (mesh.kind == "gear" and name == mesh.j):
+            return "wheel" if linkage.hinged_to_frame(name) else "planet"
+    return "carrier" if any(mesh.carrier == name for mesh in linkage.meshes) else None
+
+
+def _cylinder(linkage: Linkage, name: str) -> str | None:
+    """A cylinder that swings, and the piston that is driven out of it."""
+    driven = {d.joint for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
+    for slide in linkage.slides:
+        if slide.name in driven and name in (slide.carrier, slide.runner):
+            return "cylinder" if name == slide.carrier else "piston"
+    return None

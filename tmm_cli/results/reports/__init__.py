@@ -23,6 +23,7 @@ REPORTS: tuple[tuple[str, str], ...] = (
     ("forces", "reactions"),
     ("lever", "lever"),
     ("energy", "energy"),
+    ("assemblies", "assemblies"),
 )
 
 

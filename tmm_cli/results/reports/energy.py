@@ -38,11 +38,11 @@ def tables(results: Results) -> Iterable[Table]:
 
 
 def _friction(results: Results) -> Table:
-    rubbed, motion = results.friction, results.motion
-    assert rubbed is not None and motion is not None
+    rubbed, lost = results.friction, results.losses
+    assert rubbed is not None
     given = results.linkage.friction
     notes = []
-    share = rubbed.efficiency(motion)
+    share = None if lost is None else lost.efficiency
     notes.append(say("friction.none") if share is None else say("friction.efficiency", share=f"{100 * share:.4g}"))
     locked = [str(n) for n, lost in zip(results.numbers, rubbed.locked, strict=True) if lost]
     if locked:
@@ -53,7 +53,7 @@ def _friction(results: Results) -> Table:
             Column(say("word.pair"), [f.pair for f in given]),
             Column(say("friction.coefficient"), [f.coefficient for f in given], NUMBER),
             Column(say("friction.radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(say("friction.work"), [rubbed.total(f.pair, motion) for f in given], NUMBER),
+            Column(say("friction.work"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
     )  # fmt: skip

@@ -13,7 +13,7 @@ from tmm_cli.words import say
 
 def tables(results: Results) -> Iterable[Table]:
     """One row a fact; values keep their own dimension."""
-    way, strokes = results.way, results.strokes
+    way = results.way
     if results.motion is None or way is None:
         return
     place = ANGLE if results.linkage.driver.kind == "turn" else LENGTH
@@ -22,7 +22,9 @@ def tables(results: Results) -> Iterable[Table]:
         rows.append((say("quality.turns"), way.turns, NUMBER))
     if not way.full:
         rows += [(say("quality.from"), way.start, place), (say("quality.to"), way.end, place)]
-    if strokes is not None and strokes.strokes:
+    for strokes in (results.strokes, *results.further):
+        if strokes is None or not strokes.strokes:
+            continue
         run = LENGTH if strokes.kind == "slide" else ANGLE
         rows.append((say(f"quality.{strokes.kind}", link=strokes.link), strokes.travel, run))
         rows.append((say("quality.k"), strokes.k, NUMBER))
@@ -31,6 +33,13 @@ def tables(results: Results) -> Iterable[Table]:
             rows.append((say("quality.start", stroke=name), stroke.start, place))
             rows.append((say("quality.low", link=strokes.link), stroke.low, run))
             rows.append((say("quality.length", stroke=name), stroke.length, place))
+    for travel in results.travels:
+        run = LENGTH if travel.kind == "slide" else ANGLE
+        rows.append((say(f"quality.travel_{travel.kind}", link=travel.link), travel.high - travel.low, run))
+        rows.append((say("quality.lowest", link=travel.link), travel.low, run))
+        rows.append((say("quality.there"), travel.low_at, place))
+        rows.append((say("quality.highest", link=travel.link), travel.high, run))
+        rows.append((say("quality.there"), travel.high_at, place))
     rows += [(say("quality.dead", group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
         yield Table("quality", say("quality.title"), _mixed(rows, results))

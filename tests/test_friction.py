@@ -1,0 +1,102 @@
+"""Coulomb friction where the answer is known in closed form, and where it locks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from models import results_of
+
+G = 9.81
+SLIDER = {
+    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "guides": {"x": {"through": [0, 0], "angle": 0}},
+    "links": {"1": {"points": ["A"], "slides": {"on": "x"}}},
+    "driver": {"link": 1, "speed": 0.2}, "masses": {"1": {"mass": 3}}, "positions": {"at": [0, 0.1, 0.2]},
+}  # fmt: skip
+CRANK = {
+    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+    "links": {"1": {"points": {"O": [0, 0], "A": [0.3, 0]}}},
+    "driver": {"link": 1, "speed": 2}, "masses": {"1": {"mass": 5, "centre": "O"}},
+}  # fmt: skip
+# a wedge 1 driven along x lifts follower 2 in a vertical guide; the slope is between them
+WEDGE = {
+    "tmm": 1, "units": {"length": "m", "angle": "rad"},
+    "guides": {"x": {"through": [0, 0], "angle": 0}, "y": {"through": [0, 0], "angle": "90 deg"}},
+    "links": {
+        "1": {"points": {"A": [0, 0]}, "slides": {"on": "x"}},
+        "2": {"points": {"B": [0, 0]}, "slides": [{"on": "y"}, {"on": 1, "through": [0, 0], "angle": "-20 deg"}]},
+    },
+    "driver": {"link": 1, "speed": 0.1}, "sketch": {"at": 0.05, "B": [0, 0.018]},
+    "loads": {"F": {"on": 2, "force": [0, -100]}}, "gravity": 0, "positions": {"at": [0.0, 0.05]},
+}  # fmt: skip
+
+
+def test_without_the_block_nothing_of_it_is_computed():
+    assert results_of(SLIDER).friction is None
+
+
+def test_a_slider_is_held_back_by_mu_times_its_weight():
+    results = results_of(SLIDER | {"friction": {"coefficient": 0.15}})
+    assert np.allclose(results.reactions.balance.force, 0.15 * 3 * G, rtol=1e-14)
+
+
+def test_a_shaft_is_held_back_by_mu_times_its_weight_times_the_radius_of_its_journal():
+    results = results_of(CRANK | {"friction": {"coefficient": 0.1, "radius": 0.02}})
+    assert np.allclose(results.reactions.balance.moment, 0.1 * 0.02 * 5 * G, rtol=1e-14)
+    backward = CRANK | {
+        "driver": {"link": 1, "speed": 2, "turns": "cw"},
+        "friction": {"coefficient": 0.1, "radius": 0.02},
+    }
+    assert np.allclose(results_of(backward).reactions.balance.moment, -0.1 * 0.02 * 5 * G, rtol=1e-14)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.2])
+def test_a_wedge_needs_the_force_of_its_friction_angles(mu):
+    """Friction on all three faces, by the polygons of both links: I. I. Artobolevsky, ch. 11."""
+    results = results_of(WEDGE | {"friction": {"coefficient": mu}})
+    a = math.radians(20)
+    # follower: Q + mu N_y (down), N_y from the wall, R on the slope at the friction angle; wedge: slope and floor
+    phi = math.atan(mu)
+    # R acts on the follower at a + phi from the vertical; across: N_y = R sin(a + phi); up: R cos(a + phi) = Q + mu N_y
+    R = 100 / (math.cos(a + phi) - mu * math.sin(a + phi))
+    push = R * math.sin(a + phi) + mu * R * math.cos(a + phi)
+    assert np.allclose(np.abs(results.reactions.balance.force), push, rtol=1e-11)
+    assert not np.any(results.friction.locked)
+    assert results.losses.efficiency == pytest.approx(100 * math.tan(a) / push, rel=1e-10)
+
+
+def test_a_steep_wedge_locks_and_says_where():
+    """cos(a + phi) = mu sin(a + phi), that is a + 2 phi = 90 deg: beyond it no force moves the follower."""
+    steep = WEDGE | {"links": {**WEDGE["links"], "2": {
+        "points": {"B": [0, 0]}, "slides": [{"on": "y"}, {"on": 1, "through": [0, 0], "angle": "-60 deg"}]}},
+        "sketch": {"at": 0.05, "B": [0, 0.087]}}  # fmt: skip
+    free = results_of(steep | {"friction": {"coefficient": 0.25}})  # a + 2 phi = 88 deg
+    locked = results_of(steep | {"friction": {"coefficient": 0.28}})  # a + 2 phi = 91 deg
+    assert not np.any(free.friction.locked)
+    assert np.all(locked.friction.locked)
+
+
+def test_power_balances_with_friction_and_the_lever_bears_it_too():
+    results = results_of(WEDGE | {"friction": {"coefficient": 0.1}})
+    assert np.max(np.abs(results.energy.balance)) < 1e-12
+    assert np.max(results.lever.difference) < 1e-12
+    assert np.all(results.energy.friction < 0)
+
+
+def test_the_efficiency_of_a_crank_slider_is_the_work_that_arrives_at_the_slider():
+    problem = {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "guides": {"x": {"through": [0, 0], "angle": 0}},
+        "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.3},
+                  "3": {"points": ["B"], "slides": {"on": "x"}}},
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.35, 0]}, "gravity": 0,
+        "loads": {"F": {"on": 3, "force": [-1000, 0], "when": "working stroke"}},
+        "output": {"link": 3, "working": "forward"},
+        "friction": {"coefficient": 0.1, "radius": 0.015},
+    }  # fmt: skip
+    results = results_of(problem)
+    useful = 1000 * 0.2  # the load goes against the stroke H = 2 r
+    assert results.losses.efficiency == pytest.approx(useful / results.losses.drivers, rel=1e-4)
+    assert 0.8 < results.losses.efficiency < 0.95
+    assert sum(results.losses.pairs.values()) == pytest.approx(useful - results.losses.drivers, rel=1e-3)

@@ -1,0 +1,100 @@
+"""Pressure angles against the formulas that textbooks give for single schemes; the calculator knows none of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from models import results_of
+
+FOUR_BAR = {
+    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "D": [0.4, 0]},
+    "links": {
+        "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.35},
+        "3": {"points": ["D", "B"], "length": 0.25},
+    },
+    "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.35, 0.25]},
+}  # fmt: skip
+
+
+def slider(offset: float) -> dict:
+    return {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "guides": {"x": {"through": [0, offset], "angle": 0}},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
+            "3": {"points": ["B"], "slides": {"on": "x"}},
+        },
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.45, offset]},
+    }  # fmt: skip
+
+
+def test_a_four_bar_transmits_worst_with_the_crank_on_the_line_of_the_frame():
+    (found,) = results_of(FOUR_BAR, "kinematics").pressure
+    r, coupler, rocker, frame = 0.1, 0.35, 0.25, 0.4
+
+    def transmission(diagonal: float) -> float:
+        return math.acos((coupler**2 + rocker**2 - diagonal**2) / (2 * coupler * rocker))
+
+    angles = [transmission(frame - r), math.pi - transmission(frame + r)]
+    least = min(angles)
+    assert found.link == "3" and not found.slides
+    assert abs(found.transmission - least) < 1e-9
+    # one of the two positions of the crank on the line of the frame, up to the flat top of the maximum
+    where = 0.0 if least == angles[0] else math.pi
+    assert abs(math.remainder(found.place - where, 2 * math.pi)) < 1e-6
+    assert abs(found.gain - 1 / math.sin(least)) < 1e-8
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.05, -0.08])
+def test_a_crank_slider_transmits_worst_with_the_crank_square_to_the_path(offset):
+    (found,) = results_of(slider(offset), "kinematics").pressure
+    assert found.slides
+    assert abs(math.sin(found.largest) - (0.1 + abs(offset)) / 0.4) < 1e-12
+    assert abs(math.cos(found.place)) < 1e-6
+
+
+def test_a_stone_pushes_its_slotted_link_square_to_it():
+    problem = {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "C": [0, -0.3]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A"], "slides": {"on": 3, "along": "CD"}},
+            "3": {"points": ["C", "D"], "length": 0.6},
+        },
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "D": [0.1, 0.29]},
+    }  # fmt: skip
+    (found,) = results_of(problem, "kinematics").pressure
+    assert found.link == "3" and found.largest < 1e-12
+
+
+def test_an_offset_slot_is_pushed_at_the_angle_of_its_offset():
+    problem = {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "C": [0, -0.3]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 0.1},
+            "2": {"points": ["A"], "slides": {"on": 3, "through": [0, 0.05], "angle": 0}},
+            "3": {"points": ["C", "D"], "length": 0.6},
+        },
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "D": [0.1, 0.29]},
+    }  # fmt: skip
+    (found,) = results_of(problem, "kinematics").pressure
+    # the stone is nearest to C when the crank points down: sin(angle) = offset / distance
+    assert abs(math.sin(found.largest) - 0.05 / 0.2) < 1e-12
+
+
+def test_the_verdict_is_by_the_defaults_or_by_the_file():
+    (by_default,) = results_of(slider(0.08), "kinematics").pressure
+    assert by_default.allowed == math.radians(30) and by_default.holds
+    strict = slider(0.08) | {"checks": {"pressure_sliding": "20 deg"}}
+    (by_file,) = results_of(strict, "kinematics").pressure
+    assert by_file.allowed == pytest.approx(math.radians(20)) and not by_file.holds
+
+
+def test_at_every_position_it_is_the_angle_of_the_force_to_the_velocity():
+    results = results_of(slider(0.05) | {"loads": {"F": {"on": 3, "force": [-100, 0]}}, "gravity": 0})
+    (found,) = results.pressure
+    force, velocity = results.reactions.of("B").onto("3"), results.motion.named("B").v
+    moving = np.abs(velocity) > 1e-6
+    cosine = np.abs((force * np.conj(velocity)).real) / np.abs(force) / np.abs(velocity)
+    assert np.allclose(np.cos(found.angles[moving]), cosine[moving], rtol=0, atol=1e-12)

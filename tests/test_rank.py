@@ -1,0 +1,115 @@
+"""Where the count and the truth differ: the numerical rank decides and names what is passive."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+
+PARALLELOGRAM = """tmm: 1
+points: {O: [0, 0], C: [300, 0]}
+links:
+  1: {points: {O: [0, 0], A: [100, 0], D: [60, 0]}}
+  2: {points: [A, B], length: 300}
+  3: {points: {C: [0, 0], B: [100, 0], E: [60, 0]}}
+  4: {points: [D, E], length: DE}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [350, 86], D: [30, 52], E: [330, 52]}
+masses: {2: {mass: 3 kg, inertia: 0.1, centre: {on: AB}}, 4: {mass: 1 kg, inertia: 0.01, centre: {on: DE}}}
+loads: {M: {on: 3, moment: -10}}
+positions: {count: 7, from: 20 deg}
+parameters: {DE: 300}
+"""
+WEDGE = """tmm: 1
+guides: {x: {through: [0, 0], angle: 0}, y: {through: [0, 0], angle: 90}}
+links:
+  1: {points: {A: [0, 0]}, slides: {on: x}}
+  2: {points: {B: [0, 0]}, slides: [{on: y}, {on: 1, through: [0, 0], angle: 30}]}
+driver: {link: 1, speed: 0.1 m/s}
+sketch: {at: 50 mm, B: [0, -29]}
+masses: {2: {mass: 3 kg}}
+gravity: 9.81
+positions: {at: [0, 10, 20]}
+"""
+GUIDES = """tmm: 1
+points: {O: [0, 0]}
+guides: {x: {through: [0, 0], angle: 0}, y: {through: [0, 40], angle: ANGLE}}
+links:
+  1: {points: [O, A], length: 50}
+  2: {points: [A, B], length: 200}
+  3: {points: {B: [0, 0], K: [10, 40]}, slides: [{on: x}, {on: y, point: K}]}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [220, 0]}
+masses: {3: {mass: 3 kg, centre: B}}
+"""
+
+
+def solved(text):
+    return solve(build(read_text(text, "rank.yaml")))
+
+
+def test_the_second_coupler_of_a_parallelogram_is_passive_and_named():
+    results = solved(PARALLELOGRAM)
+    structure = results.structure
+    assert structure.mobility == 0 and structure.redundant == 1
+    (passive,) = structure.passive
+    assert (passive.pair, passive.links) == ("E", ("3", "4"))
+    assert passive.among == ("0", "1", "2", "3", "4")
+    assert structure.formula == "I(0,1) -> II(2,3) -> II(4)"
+
+
+def test_the_parallelogram_with_two_couplers_moves_as_one():
+    results = solved(PARALLELOGRAM)
+    assert results.way.full
+    turned = results.motion.link("3")
+    assert np.max(np.abs(np.angle(np.exp(1j * (turned.angle - results.motion.q))))) < 1e-14
+    assert np.max(np.abs(turned.omega - 2 * math.pi)) < 1e-12
+    for link in ("2", "4"):
+        assert np.max(np.abs(results.motion.link(link).omega)) < 1e-12
+
+
+def test_its_balancing_moment_follows_from_power_alone():
+    results = solved(PARALLELOGRAM)
+    # both couplers go round on circles without turning: the work of their weights and of the load, none of inertia
+    expected = 10 + 9.81 * np.cos(results.motion.q) * (3 * 0.1 + 1 * 0.06)
+    assert np.max(np.abs(results.reactions.balance.moment - expected)) < 1e-13 * np.max(expected)
+    assert np.max(np.abs(results.energy.balance)) < 1e-13
+    assert np.max(results.lever.difference) < 1e-13
+
+
+def test_another_length_of_the_second_coupler_locks_it():
+    with pytest.raises(ProblemError) as caught:
+        solved(PARALLELOGRAM.replace("{DE: 300}", "{DE: 305}"))
+    assert str(caught.value) == (
+        "rank.yaml:8:16: driver.link: mobility is not 1: the driver cannot move, its links are a truss\n"
+        "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
+        "  allowed: W = 1"
+    )
+
+
+def test_a_wedge_of_three_sliding_pairs_has_one_freedom():
+    results = solved(WEDGE)
+    assert (results.structure.mobility, results.structure.redundant) == (0, 1)
+    slope = math.tan(math.radians(30))
+    assert np.allclose(results.motion.named("B").v, -0.1j * slope, rtol=0, atol=1e-16)
+    # the weight of the follower, over the slope
+    assert np.allclose(results.reactions.balance.force, -3 * 9.81 * slope, rtol=1e-14)
+
+
+def test_a_second_parallel_guide_is_passive_and_an_inclined_one_locks():
+    results = solved(GUIDES.replace("ANGLE", "0"))
+    assert (results.structure.mobility, results.structure.redundant) == (-1, 2)
+    (passive,) = results.structure.passive
+    assert (passive.pair, passive.constraints, passive.links) == ("y", 2, ("0", "3"))
+    one = GUIDES.replace(", {on: y, point: K}", "").replace(", y: {through: [0, 40], angle: ANGLE}", "")
+    alone = solved(one)
+    assert np.allclose(results.motion.named("B").a, alone.motion.named("B").a, rtol=0, atol=1e-13)
+    assert np.allclose(results.reactions.balance.moment, alone.reactions.balance.moment, rtol=0, atol=1e-13)
+    with pytest.raises(ProblemError, match="mobility is not 1: pair y holds what is held already"):
+        solved(GUIDES.replace("ANGLE", "5"))
