@@ -106,6 +106,31 @@ sketch: {at: 60 deg, B: [160, 0]}
 loads: {F: {on: 3, force: [-1000, 0]}}
 friction: {coefficient: 0.1, radius: 5}
 """
+LOCKED = """tmm: 1
+units: {length: mm}
+points: {O: [0, 0], D: [300, 0], E: [400, 0]}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: [A, B], length: 250}
+  3: {points: [B, D], length: 200}
+  4: {points: [D, P], length: 100}
+  5: {points: [P, E], length: 80}
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: 60 deg, B: [274, 198], P: [368, 73]}
+"""
+RING = """tmm: 1
+units: {length: mm}
+points: {O: [0, 0], P: [100, 0], Q: [50, 80]}
+links:
+  1: {points: [O], also: {A: [30, 0]}}
+  2: {points: [P], also: {B: [30, 0]}}
+  3: {points: [Q], also: {C: [30, 0]}}
+gears:
+  a: {between: [1, 2], ratio: 1}
+  b: {between: [2, 3], ratio: 2}
+  c: {between: [3, 1], ratio: 0.5}
+driver: {link: 1, speed: 1 rad/s}
+"""
 EVERYTHING = {
     "triad": TRIAD, "geared": GEARED, "planet": PLANET, "rack": RACK, "cam": CAM, "cylinder": CYLINDER, "two": TWO,
     "slider": SLIDER,

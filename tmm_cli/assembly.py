@@ -108,7 +108,8 @@ def nearest_to_sketch(
     errors = [sketch_distance(given, hint, kernel) for hint in hints]
     best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
     if not given or errors[best] > TELLS * errors[second]:
-        raise Undecided(kernel.group, {name: (hints[best][name], hints[second][name]) for name in tells})
+        choices = {name: (hints[best][name], hints[second][name]) for name in tells}
+        raise Undecided(kernel.group, choices, len(ways))
     return best
 
 

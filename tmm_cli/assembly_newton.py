@@ -35,6 +35,7 @@ ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
 SAME = 1e-6
 DEAD = 1e-7  # least singular value over the largest: here the sketch is in a dead position
+DEAD_OF_MANY = 1e-5  # the same, of places found with half the digits
 CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
 
 
@@ -196,8 +197,17 @@ def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
     states = all_assemblies(kernel, poses, drives)
     if not states:
         raise NoAssembly(kernel.group, _shortfall(kernel, poses, drives))
+    if len(states) == MOST and _moves_by_itself(kernel, poses, states):
+        raise Undecided(kernel.group, {})
     ways = [tuple(kernel.poses_of(state)[link] for link in kernel.group.links) for state in states]
     return states[nearest_to_sketch(kernel, linkage, ways)]
+
+
+def _moves_by_itself(kernel: Newton, poses: Mapping[str, Pose], states: list[State]) -> bool:
+    """Whether its many assemblies are places of one motion: nearly all of them are dead positions then."""
+    together = State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
+    known = {name: _spread(pose, together.x.shape[:-1]) for name, pose in poses.items()}
+    return float(np.median(least_over_largest(kernel.matrix({**known, **kernel.poses_of(together)})))) < DEAD_OF_MANY
 
 
 def _shortfall(kernel: Newton, poses: Mapping[str, Pose], drives: Drives) -> float:

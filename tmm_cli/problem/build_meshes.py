@@ -195,8 +195,8 @@ class _Maker:
         for key, other in found[1:]:
             if abs(other - size) > MESHES * size:
                 raise ProblemError(
-                    "contradictory gear ratios", path=(*path, key), found=f"{other:.6g}, by {first} {size:.6g}",
-                    allowed="one of them",
+                    f"contradictory gear ratios of wheels {' and '.join(given.between)}", path=(*path, key),
+                    found=f"by {key} {other:.6g}, by {first} {size:.6g}", allowed=f"{first} or {key}, or both alike",
                 )  # fmt: skip
         return size
 
