@@ -130,7 +130,7 @@ def _shift(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> complex:
 def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
     """How far every sketched point is from its place, as a share of the linkage's size."""
     places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
-    size = max(abs(p - q) for p in places for q in places)
+    size = max(abs(p - q) for p in places for q in places) or 1.0
     found = {}
     for point, sketched in linkage.sketch.points.items():
         owner = linkage.owner(point)

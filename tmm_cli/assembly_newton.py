@@ -67,7 +67,7 @@ def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: 
     turns = linkage.driver.kind == "turn"
     size = max(k.size for k in (kernel, *before))
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else 4 * size
-    track = Walker(kernel, upstream).follow(linkage.sketch.at, state, half, turns)
+    track = Walker(kernel, upstream, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return track if track is None or turns else replace(track, unit=kernel.size)
 
 

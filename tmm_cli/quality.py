@@ -13,10 +13,11 @@ from tmm_cli.cycle import MOST, turns_of_cycle
 from tmm_cli.groups.base import Dyad, Kernel
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.roots import HALVINGS, least, roots
+from tmm_cli.roots import least, roots
 from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
+PARTS = 64  # into which an interval is cut at once
 DEAD = 1e-6  # a margin below this, refined, is a dead position
 
 
@@ -94,14 +95,19 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
         for end in _ends(first):  # found to the last bit when the group was followed
             if min(good, bad) <= end <= max(good, bad):
                 return Limit(end, first.group.title)
-        for _ in range(HALVINGS):
-            half_way = (good + bad) / 2
-            q = np.array([half_way])
-            there = bool(np.any(_lost(move(linkage, kernels, q, law), side)) or _stopped(linkage, q)[0])
-            good, bad = (good, half_way) if there else (half_way, bad)
+        while True:
+            between = np.linspace(good, bad, PARTS + 1)[1:-1]
+            between = between[(between != good) & (between != bad)]
+            if not between.size:
+                break
+            gone = np.any(_lost(move(linkage, kernels, between, law), side), axis=0) | _stopped(linkage, between)
+            found = np.flatnonzero(gone)
+            places = np.array([good, *between, bad])
+            there = int(found[0]) + 1 if found.size else len(places) - 1
+            good, bad = places[there - 1], places[there]
         if stopped[index]:
-            return Limit(good, "", linkage.driver.link)
-        return Limit(good, kernels[int(np.argmax(lost[:, index]))].group.title)
+            return Limit(float(good), "", linkage.driver.link)
+        return Limit(float(good), first.group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None

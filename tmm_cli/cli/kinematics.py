@@ -17,7 +17,7 @@ def kinematics(
     files: Files, as_json: Json = False, out: Out = None, position: Position = None, assemblies: Assemblies = False
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
-    names = ("quality", "cycle", "points", "link-motion", "slides")
+    names = ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
         if assemblies:

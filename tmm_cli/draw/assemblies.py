@@ -154,7 +154,7 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, size: float) -> N
         sliding(sheet, scene, pair, hue[pair.slide.runner] if pair.slide else DARK, size)
     circles(sheet, scene, pairs, forms, hue, size)
     grounds(sheet, scene, pairs, size)
-    higher_pairs(sheet, scene, forms)
+    higher_pairs(sheet, scene, pairs, hue, bare=False)
     for link, shape in forms.items():
         _number(sheet, link, shape, hue[link])
     hinged = {p.point for p in pairs if p.kind == "R"}

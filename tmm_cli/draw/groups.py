@@ -11,7 +11,19 @@ from matplotlib.figure import Figure
 
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
-from tmm_cli.draw.structure import Part, arrows, at_sketch, circles, grounds, names, parts, sliding, spot, where
+from tmm_cli.draw.structure import (
+    Part,
+    arrows,
+    at_sketch,
+    circles,
+    grounds,
+    higher_pairs,
+    names,
+    parts,
+    sliding,
+    spot,
+    where,
+)
 from tmm_cli.draw.symbols import (
     BEYOND,
     BOX,
@@ -117,11 +129,17 @@ def caption(part: Part, roles: Mapping[str, str], width: float, driving: Pair | 
         words = [
             say("groups.kind", roman=ROMAN[min(group.grade, 10)], order=group.order, type=group.type),
             say("groups.links", links=links),
-            say("groups.inner_pairs", pairs=", ".join(f"{p.name} ({p.i}-{p.j})" for p in group.inner)),
-            say("groups.outer_pairs", pairs=", ".join(f"{p.name} ({p.i}-{p.j})" for p in group.outer)),
+            *([say("groups.inner_pairs", pairs=_listed(group.inner))] if group.inner else []),
+            say("groups.outer_pairs", pairs=_listed(group.outer)),
         ]
+        if group.drivers:
+            words.append(say("groups.drivers", drivers=", ".join(f"I({d.base},{d.link})" for d in group.drivers)))
     fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ", max_lines=4) for text in words]
     return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
+
+
+def _listed(pairs: Iterable[Pair]) -> str:
+    return ", ".join(f"{p.name} ({p.i}-{p.j})" for p in pairs)
 
 
 def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
@@ -133,9 +151,14 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     scene = fitted(sheet, scene, part.links, sheet.ground.low, sheet.ground.high, pad, LEAST + A_LINK * len(part.links))
     size = symbol_size(sheet, scene, part.links)
     forms = {link: form(sheet, scene, link) for link in part.links}
+    hue = {FRAME: DARK} | dict.fromkeys(part.links, part.colour)
+    higher_pairs(sheet, scene, inner, hue, bare=False)
+    touching = [
+        p for p in structure.pairs if p not in inner and {p.i, p.j} & set(part.links)
+    ]  # also those of later groups
+    higher_pairs(sheet, scene, touching, dict.fromkeys(part.links, part.colour), bare=True)
     for shape in forms.values():
         body(sheet, shape, part.colour)
-    hue = {FRAME: DARK} | dict.fromkeys(part.links, part.colour)
     leads = [p for p in outer if p.slide is not None]
     for pair in leads:
         sliding_lead(sheet, scene, pair, part, size)
@@ -147,7 +170,7 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
             _stub(sheet, scene, pair, forms, size)
     if part.group is None:
         grounds(sheet, scene, inner, size)
-        arrows(sheet, scene, forms, hue, size)
+    arrows(sheet, scene, forms, hue, size)
     for link, shape in forms.items():
         number(sheet, link, shape, part.colour)
     names(sheet, ((spot(sheet, scene, p, size), p.name, part.colour if part.group else DARK) for p in inner))

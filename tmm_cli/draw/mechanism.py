@@ -7,10 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.draw.scheme import mechanism, moving_points, reach, skeleton, trajectory
-from tmm_cli.draw.sheet import COLOURS, DARK, REACTION, Sheet, scale_text
+from tmm_cli.draw.actuators import driver_arrows, driver_name
+from tmm_cli.draw.scheme import beyond, mechanism, moving_points, placer, reach, skeleton, trajectory
+from tmm_cli.draw.sheet import COLOURS, DARK, LOAD, REACTION, Sheet, scale_text
+from tmm_cli.draw.symbols import turning_arrow
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results, at_positions
+from tmm_cli.plans.record import balance_name
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.words import say
 
@@ -37,23 +40,35 @@ def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     whole = at_positions(results, results.closely(DENSE))
     points = moving_points(linkage)
     used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
-    sheet = Sheet(
-        results.problem.title, say("draw.mechanism", count=len(results.numbers)),
-        [*used, *(p for name in points for p in whole.named(name).x)],
-    )  # fmt: skip
-    for name in points:
-        trajectory(sheet, whole.named(name).x)
     chosen = detailed(results)
     k = chosen[0] if chosen else int(np.argmax(motion.placed))
+    used += [p for name in points for p in whole.named(name).x]
+    sheet = Sheet(
+        results.problem.title, say("draw.mechanism", count=len(results.numbers)), [*used, *beyond(motion, k, used)]
+    )
+    for name in points:
+        trajectory(sheet, whole.named(name).x)
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
             skeleton(sheet, motion, other)
     if motion.placed[k]:
-        mechanism(sheet, motion, k)
+        _arrows(sheet, results, k, mechanism(sheet, motion, k))
     _numbers(sheet, results)
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
     sheet.note(say("draw.bold", number=results.numbers[k]))
     yield "mechanism", sheet.finish()
+
+
+def _arrows(sheet: Sheet, results: Results, k: int, drawn: dict[str, tuple[complex, complex]]) -> None:
+    """How each driver goes."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    place = placer(motion, k)
+    for driver, pivot in driver_arrows(sheet, linkage, place, drawn, LOAD):
+        own = linkage.links[driver.link].points
+        ends = [sheet.on(place(driver.link, local)) - pivot for local in own.values()]
+        arm = max(ends, key=abs, default=1 + 0j)
+        turning_arrow(sheet, pivot, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), LOAD)
 
 
 def _numbers(sheet: Sheet, results: Results) -> None:
@@ -67,11 +82,17 @@ def _numbers(sheet: Sheet, results: Results) -> None:
     ends = [p for p in linkage.links[driver.link].points if p != driver.joint]
     if not ends:
         return
-    for k, number in enumerate(results.numbers):
-        at = sheet.on(complex(motion.named(ends[0]).x[k]))
+    found: list[tuple[complex, list[str]]] = []
+    for at, number in zip((sheet.on(complex(x)) for x in motion.named(ends[0]).x), results.numbers, strict=True):
+        same = next((numbers for place, numbers in found if abs(place - at) < 0.5), None)
+        if same is None:  # in a cycle of several turns the crank comes back to its places
+            found.append((at, [str(number)]))
+        else:
+            same.append(str(number))
+    for at, numbers in found:
         out = (at - pivot) / abs(at - pivot)
         sheet.circle(at, 0.5, DARK, DARK, 0.3, 5)
-        sheet.label(str(number), at + 1.5 * out, 8, "#404040")
+        sheet.label(", ".join(numbers), at + 1.5 * out, 8, "#404040")
 
 
 def detailed(results: Results) -> list[int]:
@@ -96,10 +117,11 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     places += [complex(motion.centre(n).x[k]) for n in linkage.moving]
     loads = results.reactions.applied if results.reactions is not None else ()
     places += [complex(motion.point(load.link, load.at).x[k]) for load in loads]
-    sheet = Sheet(results.problem.title, caption(results, k), places, pad=30)
+    sheet = Sheet(results.problem.title, caption(results, k), [*places, *beyond(motion, k, places)], pad=30)
     mechanism(sheet, motion, k)
     if results.reactions is not None:
         taken: list[tuple[complex, complex]] = []
+        coupled: list[complex] = []
         for load in results.reactions.applied:
             at = sheet.on(complex(motion.point(load.link, load.at).x[k]))
             force, moment = complex(load.force[k]), float(load.moment[k])
@@ -111,7 +133,9 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
                 sheet.arrow(at, end, colour, 1.3)
                 sheet.label(load.name, end, 9, colour)
             if moment != 0:
-                couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, 5.5)
+                radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
+                coupled.append(at)
+                couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
         _balance(sheet, results, k)
         sheet.note(say("draw.loads"))
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
@@ -120,16 +144,18 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
 
 def _balance(sheet: Sheet, results: Results, k: int) -> None:
     assert results.reactions is not None
+    several = len(results.reactions.balances) > 1
     for balance in results.reactions.balances:
+        name = balance_name(balance.driver.link, several)
         if balance.kind == "moment" and balance.moment is not None:
             pivots = [f.at for f in results.reactions.frames if f.on == balance.driver.link]
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
-            couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, "Mb", 7.5)
+            couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, name.replace("F", "M", 1), 7.5)
         elif abs(balance.vector[k]) > 0:
             at = sheet.on(complex(balance.at[k]))
             end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
             sheet.arrow(at, end, REACTION, 1.5)
-            sheet.label("Fb", end, 9, REACTION)
+            sheet.label(name, end, 9, REACTION)
 
 
 def stacked(taken: list[tuple[complex, complex]], at: complex, force: complex) -> float:

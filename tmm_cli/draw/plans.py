@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Mapping
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from tmm_cli.draw.mechanism import caption, stacked, stem
@@ -12,7 +14,7 @@ from tmm_cli.pipeline import Results
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import NamedVector, Plan
+from tmm_cli.plans.record import NamedVector, Plan, balance_name
 from tmm_cli.plans.velocity import velocity_plan
 from tmm_cli.words import say
 
@@ -72,7 +74,7 @@ def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
         return
     for plan in force_plans(results.reactions, k):
         links = ", ".join(plan.links)
-        key = "draw.forces" if len(plan.links) > 1 else "draw.forces_driver"
+        key = "draw.forces_driver" if plan.driving else "draw.forces" if len(plan.links) > 1 else "draw.forces_link"
         sheet = Sheet(
             results.problem.title, say(key, links=links, caption=caption(results, k)),
             [p for v in plan.plan.vectors for p in (v.start, v.end)],
@@ -83,7 +85,8 @@ def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
         small = [v.name for v in plan.plan.vectors if v not in plan.plan.drawn()]
         if small:
             sheet.note(say("draw.vanish", names=", ".join(small)))
-        sheet.text(complex(12, 8), plan.equation[:130], 9, colour="#404040")
+        for line, text in enumerate(textwrap.wrap(plan.equation, 105 if sheet.paper[0] < 250 else 150, max_lines=2)):
+            sheet.text(complex(12, 8 - 4.5 * line), text, 9, colour="#404040")
         name = "-".join(
             ["forces", f"{results.numbers[k]:02d}", "links" if len(plan.links) > 1 else "link", *plan.links]
         )
@@ -131,12 +134,32 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
         sheet.arrow(at, end, colour, 1.3)
         sheet.label(force.name, end, 9, colour)
     _letters(sheet, plan.ends, "p")
-    sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("", sheet.mu, "1/mm"))
+    sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:
             sheet.note(f"{name}: {moment:.4g} N·m")
-    sheet.note(say("draw.balance" if crank else "draw.balance_force", value=f"{plan.balancing:.6g}"))
+    for line in _balancing(results, plan.balancing, k):
+        sheet.note(line)
     yield stem("lever", results, k), sheet.finish()
+
+
+def _balancing(results: Results, value: float, k: int) -> Iterable[str]:
+    """What the lever gives; with several drivers it is the sum of what they do at their speeds."""
+    motion, reactions = results.motion, results.reactions
+    assert motion is not None and reactions is not None
+    crank = results.linkage.driver.kind == "turn"
+    if len(reactions.balances) == 1:
+        yield say("draw.balance" if crank else "draw.balance_force", value=f"{value:.6g}")
+        return
+    names = []
+    for balance in reactions.balances:
+        ratio = float(np.broadcast_to(motion.drives[balance.driver.link].first, motion.q.shape)[k])
+        name = balance_name(balance.driver.link, True)
+        name = name if balance.moment is None else name.replace("F", "M", 1)
+        unit = "N" if balance.moment is None else "N·m"
+        names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
+        yield say("draw.of_plan", name=name, value=f"{float(balance.generalized[k]):.6g}", unit=unit)
+    yield say("draw.balance_sum", names=" ".join(names), value=f"{value:.6g}", unit="N·m" if crank else "N")
 
 
 def _safe(name: str) -> str:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from tmm_cli.draw.actuators import cylinder, cylinders, springs
 from tmm_cli.draw.sheet import DARK, GREY, THIN, Sheet
+from tmm_cli.draw.wheels import CamShape, Place, draw, shapes
+from tmm_cli.draw.wheels import extent as wheels_extent
 from tmm_cli.linkage import FRAME, Hinge, Linkage, Slide
 from tmm_cli.motion import Motion
 from tmm_cli.vectors import unit
+from tmm_cli.words import say
 
 HINGE, BOX, STONE = 1.3, (9.0, 5.0), (7.5, 4.2)  # mm: radius of a hinge; length and width of a slider, a stone
 
@@ -21,18 +25,59 @@ def skeleton(sheet: Sheet, motion: Motion, k: int, colour: str = GREY, width: fl
             sheet.line(closed, colour, width, z=z, blocks=False)
 
 
-def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> None:
-    """One position with all its symbols: supports, guides, links, hinges, names and numbers."""
-    linkage = motion.linkage
+def placer(motion: Motion, k: int) -> Place:
+    """Points of links at position k, m."""
+
+    def place(link: str, local: complex) -> complex:
+        pose = motion.poses[link]
+        return complex(pose.x[k] + local * pose.z[k])
+
+    return place
+
+
+def beyond(motion: Motion, k: int, places: list[complex]) -> list[complex]:
+    """What else must be on a sheet that has these places (m): wheels, cams, ends of springs on the frame."""
+    array = np.array([p for p in places if np.isfinite(p)] or [0j])
+    size = max(float(np.ptp(array.real)), float(np.ptp(array.imag)))
+    found = wheels_extent(shapes(motion.linkage, placer(motion, k)), size)
+    for spring in motion.linkage.springs:
+        ends = ((spring.i, spring.at_i), (spring.j, spring.at_j))
+        found += [placer(motion, k)(link, at) for link, at in ends if not spring.turns]
+    return found
+
+
+def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> dict[str, tuple[complex, complex]]:
+    """One position with all its symbols: supports, guides, links, hinges, names and numbers.
+
+    Gives the cylinders that are drawn, by their sliding pair: the middle of each (mm), and its direction.
+    """
+    linkage, place = motion.linkage, placer(motion, k)
+    driven = cylinders(linkage)
     for slide in linkage.slides:
         if FRAME in (slide.carrier, slide.runner):
             frame_guide(sheet, motion, slide, k)
-        elif len(linkage.links[slide.carrier].points) < 2:
+        elif len(linkage.links[slide.carrier].points) < 2 and slide.name not in driven:
             slot(sheet, motion, slide, k)
+    hue = dict.fromkeys(linkage.links, DARK)
+    for found in shapes(linkage, place):
+        draw(sheet, found, hue, _span(motion, found.mesh.slide, k))
+        sheet.label(
+            found.mesh.name, sheet.on(found.touch if isinstance(found, CamShape) else found.pitch), 9, "#404040"
+        )
+        if isinstance(found, CamShape) and not found.true:
+            sheet.note(say("draw.cam", link=found.mesh.i))
     for link in linkage.moving:
         body(sheet, motion, link, k)
+    cylindric = {}
     for slide in linkage.slides:
-        box(sheet, motion, slide, k)
+        if slide.name in driven:
+            runs = motion.slide(slide).run
+            cylindric[slide.name] = cylinder(
+                sheet, linkage, slide, place, (float(np.nanmin(runs)), float(np.nanmax(runs)))
+            )
+        else:
+            box(sheet, motion, slide, k)
+    springs(sheet, linkage, place)
     for hinge in linkage.hinges:
         at = sheet.on(complex(motion.named(hinge.point).x[k]))
         if FRAME in hinge.links:
@@ -59,6 +104,17 @@ def mechanism(sheet: Sheet, motion: Motion, k: int, *, numbers: bool = True) -> 
             places = link_places(sheet, motion, link, k)
             middle = sum(places) / len(places)
             sheet.label(link, complex(middle), 10, "#7a3d99", "italic")
+    return cylindric
+
+
+def _span(motion: Motion, name: str, k: int) -> tuple[float, float] | None:
+    """How far a rack goes beyond the pitch point to both sides, m."""
+    if not name:
+        return None
+    slide = motion.linkage.slide(name)
+    runs = motion.slide(slide).run
+    here = float(runs[k])
+    return here - float(np.nanmax(runs)), here - float(np.nanmin(runs))
 
 
 def link_places(sheet: Sheet, motion: Motion, link: str, k: int) -> list[complex]:
@@ -67,7 +123,7 @@ def link_places(sheet: Sheet, motion: Motion, link: str, k: int) -> list[complex
     pose = motion.poses[link]
     local = list(linkage.links[link].points.values())
     for slide in linkage.slides:
-        if slide.carrier == link and slide.runner != FRAME:
+        if slide.carrier == link and slide.runner != FRAME and slide.name not in cylinders(linkage):
             run = float(motion.slide(slide).run[k])
             local += [slide.through, slide.through + run * complex(unit(slide.direction))]
     places = [sheet.on(complex(pose.x[k] + z * pose.z[k])) for z in local]

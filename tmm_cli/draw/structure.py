@@ -10,8 +10,9 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.draw.actuators import driver_name
 from tmm_cli.draw.labels import Label, extent
-from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, THIN, Sheet
+from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, Sheet
 from tmm_cli.draw.symbols import (
     BEYOND,
     BOX,
@@ -31,6 +32,7 @@ from tmm_cli.draw.symbols import (
     symbol_size,
     turning_arrow,
 )
+from tmm_cli.draw.wheels import draw
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_positions
@@ -141,13 +143,13 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
     size = symbol_size(sheet, scene, scene.structure.links)
     hue = colours(scene.structure)
     forms = {link: form(sheet, scene, link) for link in scene.structure.links}
+    higher_pairs(sheet, scene, scene.structure.pairs, hue, bare=False)
     for link, shape in forms.items():
         body(sheet, shape, hue[link])
     for pair in scene.structure.pairs:
         sliding(sheet, scene, pair, hue[pair.slide.runner] if pair.slide else DARK, size)
     circles(sheet, scene, scene.structure.pairs, forms, hue, size)
     grounds(sheet, scene, scene.structure.pairs, size)
-    higher_pairs(sheet, scene, forms)
     arrows(sheet, scene, forms, hue, size)
     for link, shape in forms.items():
         number(sheet, link, shape, hue[link])
@@ -226,28 +228,26 @@ def grounds(sheet: Sheet, scene: Scene, pairs: Iterable[Pair], size: float) -> N
         sheet.label(FRAME, support(sheet, at, size), 9, DARK, "italic")
 
 
-def higher_pairs(sheet: Sheet, scene: Scene, forms: Mapping[str, Form]) -> None:
-    """Pairs of toothed wheels and cams join their links by a thin chain line: where they touch is not in the scheme."""
-    for pair in scene.structure.pairs:
-        if pair.kind not in ("R", "P") and pair.i in forms and pair.j in forms:
-            start, end = forms[pair.i].middle, forms[pair.j].middle
-            sheet.line([start, end], THIN, 1.0, "-.", 2.0)
-            sheet.label(pair.name, (start + end) / 2, 9, THIN)
+def higher_pairs(sheet: Sheet, scene: Scene, pairs: Iterable[Pair], hue: Mapping[str, str], *, bare: bool) -> None:
+    """Pairs of toothed wheels and of cams. bare: of a pair with another part only what belongs to links in `hue`."""
+    for pair in pairs:
+        if not pair.lower:
+            draw(sheet, scene.higher(pair), hue, bare=bare)
 
 
 def arrows(sheet: Sheet, scene: Scene, forms: Mapping[str, Form], hue: Mapping[str, str], size: float) -> None:
-    """How the driver goes."""
-    driver = scene.linkage.driver
-    pair = next((p for p in scene.structure.pairs if {p.i, p.j} == {FRAME, driver.link}), None)
-    if pair is None or driver.link not in forms:
-        return
-    at = sheet.on(scene.at(pair))
-    if pair.slide is not None:
-        along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
-        sliding_arrow(sheet, at, along, size, f"v{driver.link}", hue[driver.link])
-    else:
-        arm = max((end - at for line in forms[driver.link].lines for end in line), key=abs, default=1 + 0j)
-        turning_arrow(sheet, at, float(np.angle(arm)), driver.sense, f"ω{driver.link}", hue[driver.link])
+    """How the drivers of these links go."""
+    for driver in scene.linkage.drivers:
+        if driver.link not in forms:
+            continue
+        pair = scene.structure.driving_pair(driver)
+        at = sheet.on(scene.at(pair))
+        if pair.slide is not None:
+            along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
+            sliding_arrow(sheet, at, along, size, driver_name(driver, "v"), hue[driver.link])
+        else:
+            arm = max((end - at for line in forms[driver.link].lines for end in line), key=abs, default=1 + 0j)
+            turning_arrow(sheet, at, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), hue[driver.link])
 
 
 def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:
@@ -268,7 +268,7 @@ class Legend:
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.parts = structure, parts(structure)
-        lower = sum(p.kind in ("R", "P") for p in structure.pairs)
+        lower = sum(p.lower for p in structure.pairs)
         n, higher = len(structure.links), len(structure.pairs) - lower
         self.facts = [
             say("scheme.formula", formula=structure.formula.replace("->", "→")),
@@ -278,6 +278,9 @@ class Legend:
             say("scheme.class", roman=ROMAN[min(structure.mechanism_class, 10)]),
         ]  # fmt: skip
         points = [p.point for p in structure.pairs if p.kind == "R"]
+        inner = [d for d in structure.drivers if d.base != FRAME]
+        if inner:
+            self.facts.append(say("scheme.between", drivers=", ".join(f"I({d.base},{d.link})" for d in inner)))
         compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
         if compound:
             self.facts.append(say("scheme.compound", points=", ".join(compound)))

@@ -14,6 +14,8 @@ import numpy as np
 from tmm_cli.draw.labels import Label, extent
 from tmm_cli.draw.scheme import hatch, outline
 from tmm_cli.draw.sheet import DARK, Sheet
+from tmm_cli.draw.wheels import Shape, contact, shape, shapes
+from tmm_cli.draw.wheels import extent as wheels_extent
 from tmm_cli.groups.base import Pose
 from tmm_cli.linkage import FRAME, Linkage, Slide
 from tmm_cli.structure.assur import Pair, Structure
@@ -57,7 +59,12 @@ class Scene:
         if pair.kind == "R":
             link = pair.j if pair.i == FRAME else pair.i
             return self.place(link, self.linkage.local(link, pair.point))
-        return complex(np.nan, np.nan)
+        return contact(self.higher(pair))
+
+    def higher(self, pair: Pair) -> Shape:
+        """The wheels, or the cam and its follower, of a higher pair."""
+        assert pair.mesh is not None
+        return shape(pair.mesh, self.linkage, self.place)
 
     def of(self, link: str) -> tuple[Pair, ...]:
         """The lower pairs of a link."""
@@ -85,12 +92,17 @@ class Scene:
 
     def extent(self, links: Iterable[str]) -> list[complex]:
         """Places that must be on the paper when these links are drawn, m."""
+        links = tuple(links)
         found: list[complex] = []
         for link in links:
             found += self.joints(link)
             for stone, along in self.guides(link):
                 found += [stone, *(e for e in self.ends(link) if abs(cross(along, e - stone)) < 1e-6 * abs(e - stone))]
-        return [p for p in found if np.isfinite(p)]
+        found = [p for p in found if np.isfinite(p)]
+        size = max((abs(p - q) for p in found for q in found[:1]), default=0.0)
+        own = {p.name for p in self.structure.pairs if not p.lower and {p.i, p.j} & set(links)}
+        drawn = (*links, FRAME) if len(links) == len(self.structure.links) else links
+        return found + wheels_extent(shapes(self.linkage, self.place, own), size, drawn)
 
     def _now(self, values: object) -> complex:
         row = np.ravel(np.asarray(values))

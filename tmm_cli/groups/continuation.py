@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.groups.linear import signed_determinant, solve
-from tmm_cli.groups.newton import CONVERGED, Newton
+from tmm_cli.groups.newton import CONVERGED, NEAR, Newton
 from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate
 from tmm_cli.groups.track import State, Track
 from tmm_cli.vectors import Real
@@ -23,8 +23,12 @@ FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divi
 LEAST_STEP = 1e-9
 CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
 TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
+FEW = 6  # rounds of Newton's method: more than that begin too far away
 SAME = 1e-7  # states this near are the same
 HALVINGS = 80
+FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
+AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
+PATIENCE = 4  # halvings of a step before a limit is looked for
 
 
 @dataclass(frozen=True)
@@ -51,10 +55,11 @@ class _Node:
 
 
 class Walker:
-    """Follows one group; `source` gives the links it hangs on."""
+    """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
 
-    def __init__(self, kernel: Newton, source: Source) -> None:
-        self.kernel, self.source = kernel, source
+    def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
+        self.kernel, self.source, self.scale = kernel, source, scale
+        self.home: State | None = None
 
     def node(self, q: float, start: State) -> tuple[_Node, float] | None:
         """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
@@ -64,7 +69,7 @@ class Walker:
             return None
         kernel = self.kernel
         with np.errstate(all="ignore"):
-            state, size = kernel.close(start, before.poses, before.drives)
+            state, size = kernel.close(start, before.poses, before.drives, FEW)
             if not size[0] < CONVERGED:
                 return None
             own = kernel.poses_of(state)
@@ -84,11 +89,14 @@ class Walker:
 
     def apart(self, one: State, other: State) -> float:
         """How far two states are apart: lengths against the group's size, angles in rad."""
-        return float(max(np.max(np.abs(one.x - other.x)) / self.kernel.size, np.max(np.abs(one.turn - other.turn))))
+        # links that go far away, as guides become parallel, have that distance for their size
+        home = one.x if self.home is None else self.home.x
+        far = max(self.kernel.size, float(np.max(np.abs(one.x - home))))
+        return float(max(np.max(np.abs(one.x - other.x)) / far, np.max(np.abs(one.turn - other.turn))))
 
     def leg(self, start: _Node, end: float) -> tuple[list[_Node], Literal["reached", "limit", "lost"]]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node."""
-        nodes, here = [], start
+        nodes, here, failures = [], start, 0
         way = end - start.q
         least = LEAST_STEP * abs(way)
         step = FIRST_STEP * way / np.pi
@@ -98,15 +106,17 @@ class Walker:
             found = self.node(q, _predicted(here, q - here.q))
             if found is not None and found[1] < CORRECTION and found[0].side == start.side:
                 step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
-                here = found[0]
+                here, failures = found[0], 0
                 nodes.append(here)
                 continue
             step = (q - here.q) / 2
-            if abs(step) < least:
+            failures += 1
+            if failures % PATIENCE == 0 or abs(step) < least:
                 limit = self.limit(here, float(np.sign(way)))
-                if limit is None:
-                    return nodes, "lost"
-                return [*nodes, limit], "limit"
+                if limit is not None and (limit.q - end) * way <= 0:
+                    return [*nodes, limit], "limit"
+            if abs(step) < least:
+                return nodes, "lost"
         return nodes, "reached"
 
     def limit(self, last: _Node, sense: float) -> _Node | None:
@@ -119,7 +129,7 @@ class Walker:
         if kernel.passive:
             return None
         with np.errstate(all="ignore"):
-            direction = _flat(last.first, kernel.size) * sense
+            direction = _flat(last.first, kernel.size) * sense * self.scale
             length = np.linalg.norm(direction)
             if not np.isfinite(length) or length == 0:
                 return None
@@ -137,8 +147,8 @@ class Walker:
                     step = solve(matrix, right)
                     if not np.all(np.isfinite(step)):
                         return None
-                    state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1])
-                    if np.max(np.abs(step)) < 1e-14:
+                    state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1]) * self.scale
+                    if np.max(np.abs(step)) < NEAR:  # its square is less than rounding
                         break
                 before = self.source(np.array([q]))
                 if not before.placed:
@@ -152,8 +162,8 @@ class Walker:
             good = at(0.0, last.state, last.q)
             if good is None or good[2] <= 0:
                 return None
-            low, high, best = 0.0, 1e-6, good
-            while high < 1:
+            low, high, best = 0.0, 1e-3, good
+            while high < FARTHEST:
                 found = at(high, best[0], best[1])
                 if found is None:
                     return None
@@ -162,17 +172,23 @@ class Walker:
                 low, best, high = high, found, 2 * high
             else:
                 return None
+            # false position, the slope at the end that stays halved (Illinois); near the root halving has the last word
+            below, above = best[2], found[2]
             for _ in range(HALVINGS):
-                middle = (low + high) / 2
+                middle = low + (high - low) * below / (below - above)
+                if not low < middle < high:
+                    middle = (low + high) / 2
                 found = at(middle, best[0], best[1])
                 if found is None or middle in (low, high):
                     break
                 if found[2] > 0:
-                    low, best = middle, found
+                    low, best, below, above = middle, found, found[2], above / 2
                 else:
-                    high = middle
+                    high, above, below = middle, found[2], below / 2
+                if high - low < 4 * np.finfo(float).eps * high or found[2] == 0:
+                    break
         state, q, _ = best
-        if (q - last.q) * sense < 0 or abs(q - last.q) > 0.1:
+        if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
             return None
         return _Node(q, state, last.first, last.second, last.side)
 
@@ -183,7 +199,7 @@ class Walker:
         n = len(line)
         matrix = np.zeros((n + 1, n + 1))
         matrix[:n, :n] = kernel.matrix(everything)[0]
-        matrix[:n, n] = by_q
+        matrix[:n, n] = by_q * self.scale
         matrix[n, :n] = line
         return matrix
 
@@ -192,6 +208,7 @@ class Walker:
 
         When all has come back to where it was after some turns, the track is closed.
         """
+        self.home = state
         found = self.node(at, state)
         if found is None:
             return None
@@ -199,26 +216,19 @@ class Walker:
         up, above = self.leg(middle, at + half)
         down, below = self.leg(middle, at - half)
         nodes = [*reversed(down), middle, *up]
-        for turn in range(1, TURNS):  # where one way round is barred, the other one is gone to its end
-            if turns and below != "reached" and above == "reached":
+        if turns and above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+            return _track(nodes, True)
+        for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
+            if turns and above == "reached":
                 more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
                 nodes += more
-            elif turns and above != "reached" and below == "reached":
+                if above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+                    return _track(nodes, True)
+        for turn in range(1, TURNS):
+            if turns and below == "reached" and above != "reached":
                 more, below = self.leg(nodes[0], at - half - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        ends = (below, above)
-        if not (turns and ends == ("reached", "reached")):
-            open_ends = (below == "reached" and not turns, above == "reached" and not turns)
-            return _track(nodes, False, open_ends, (below == "limit", above == "limit"))
-        for turn in range(1, TURNS + 1):
-            if self.returned(nodes[0].state, nodes[-1].state):
-                return _track(nodes, True)
-            if turn < TURNS:
-                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
-                nodes += more
-                if above != "reached":
-                    return _track(nodes, False, (True, False), (False, above == "limit"))
-        return _track(nodes, False, (True, True))
+        return _track(nodes, False, (below == "reached", above == "reached"), (below == "limit", above == "limit"))
 
     def returned(self, one: State, other: State) -> bool:
         """Whether two states are the same but for full turns."""

@@ -7,7 +7,7 @@ from itertools import pairwise
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.plans.record import NamedVector, Plan
-from tmm_cli.plans.velocity import guide_direction, hinge_points
+from tmm_cli.plans.velocity import guide_direction, hinge_points, letters, other_than
 
 POLE = "π"
 
@@ -15,39 +15,42 @@ POLE = "π"
 def acceleration_plan(motion: Motion, k: int) -> Plan:
     """Vectors πa, n_ba, t_ba, k, r in m/s2 at position k. Each chain of parts leads from one end to the next."""
     linkage = motion.linkage
-    fixed = set(linkage.links[FRAME].points)
+    fixed, letter_of = set(linkage.links[FRAME].points), letters(linkage)
     ends: dict[str, complex] = {POLE: 0j}
     vectors: list[NamedVector] = []
     for link in linkage.moving:
         for point in linkage.links[link].points:
             if point not in fixed:
-                ends.setdefault(point.lower(), complex(motion.named(point).a[k]))
+                ends.setdefault(letter_of[point], complex(motion.named(point).a[k]))
     for link in linkage.moving:
         told = sorted(hinge_points(linkage, link), key=lambda p: p not in fixed)  # from the pivot on
         for base, point in pairwise(told):
             if point not in fixed:
-                start = 0j if base in fixed else ends[base.lower()]
+                start = 0j if base in fixed else ends[letter_of[base]]
                 arm = linkage.local(link, point) - linkage.local(link, base)
-                vectors += _parts(motion, link, arm, start, f"{point.lower()}{base.lower()}", k)
+                vectors += _parts(motion, link, arm, start, f"{letter_of[point]}{letter_of[base]}", k)
     for slide in linkage.slides:
         if FRAME not in (slide.carrier, slide.runner):
-            letter = slide.point.lower()
-            under = f"{letter}{slide.carrier}"
+            letter = letter_of.get(slide.point, slide.point.lower())
+            under = other_than(ends, f"{letter}{slide.carrier}")
             runner, sliding = motion.point(slide.runner, slide.at), motion.slide(slide)
             carrier = motion.poses[slide.carrier]
             local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
             ends[under] = complex(motion.point(slide.carrier, local).a[k])
-            pivots = [p for p in linkage.links[slide.carrier].points if p in fixed]
-            if pivots:
-                arm = local - linkage.local(slide.carrier, pivots[0])
-                vectors += _parts(motion, slide.carrier, arm, 0j, f"{under}{pivots[0].lower()}", k)
+            # from the carrier's pivot on the frame, else from a point in which it is hinged to another moving link
+            told = sorted(hinge_points(linkage, slide.carrier), key=lambda p: p not in fixed)
+            if told:
+                base = told[0]
+                start = 0j if base in fixed else ends[letter_of[base]]
+                arm = local - linkage.local(slide.carrier, base)
+                vectors += _parts(motion, slide.carrier, arm, start, f"{under}{letter_of[base]}", k)
             bend = ends[under] + complex(sliding.coriolis[k])
             along = complex(sliding.a[k]) * guide_direction(motion, slide.carrier, slide.direction, k)
             vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))
             vectors.append(NamedVector(f"r({letter})", bend, bend + along, "sliding"))
     for link in linkage.moving:
         if linkage.links[link].mass:
-            ends[f"s{link}"] = complex(motion.centre(link).a[k])
+            ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).a[k])
     absolute = [NamedVector(POLE + name, 0j, end, "absolute") for name, end in ends.items() if name != POLE]
     return Plan((*absolute, *vectors), ends)
 

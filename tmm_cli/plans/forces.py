@@ -5,20 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
-from tmm_cli.plans.record import Kind, NamedVector, Plan, reaction_name
+from tmm_cli.plans.record import Kind, NamedVector, Plan, balance_name, reaction_name
 
 Part = tuple[str, complex, Kind]
 
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation."""
+    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation.
+
+    driving: it is that of a link driven from the frame, not of a group.
+    """
 
     links: tuple[str, ...]
     plan: Plan
     equation: str
+    driving: bool = False
 
 
 def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
@@ -28,7 +31,7 @@ def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
 
 
 def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
-    if len(group.group.links) != 2 or len(group.outer) != 2 or len(group.inner) != 1:
+    if len(group.group.links) != 2 or len(group.outer) != 2 or len(group.inner) != 1 or group.group.drivers:
         return _whole(group, reactions, k)
     return _dyad(group, reactions, k)
 
@@ -37,13 +40,8 @@ def _whole(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
     parts: list[Part] = []
     for link in group.group.links:
-        parts += _borne(group.borne, reactions.applied, link, k)
+        parts += _borne(group.borne, reactions, group.group.links, link, k)
         parts += [(reaction_name(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
-    for balance in reactions.balances:
-        # a driver between one link of the group and one before it acts on the group from outside
-        ends = [link in group.group.links for link in (balance.driver.link, balance.driver.base)]
-        if balance.driver in group.group.drivers and ends == [True, False]:
-            parts.append(("Fb", complex(balance.vector[k]), "load"))
     plan = _polygon(parts)
     return ForcePlan(group.group.links, plan, " + ".join(v.name for v in plan.vectors) + " = 0")
 
@@ -55,8 +53,8 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """
     first, last = group.outer
     a, b = group.group.links
-    parts_a = [*_part(first, "ᵗ", k), *_borne(group.borne, reactions.applied, a, k)]
-    parts_b = [*_borne(group.borne, reactions.applied, b, k), *_part(last, "ᵗ", k)]
+    parts_a = [*_part(first, "ᵗ", k), *_borne(group.borne, reactions, (a, b), a, k)]
+    parts_b = [*_borne(group.borne, reactions, (a, b), b, k), *_part(last, "ᵗ", k)]
     closing_b, closing_a = list(_rest(last, k)), list(_rest(first, k))
     plan = _polygon([*closing_a, *parts_a, *parts_b, *closing_b])
     corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
@@ -70,13 +68,9 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
 
 def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
     link = frame.on
-    parts = list(_borne(reactions.borne[link], reactions.applied, link, k))
-    balance = next(b for b in reactions.balances if b.driver.link == link)
-    if balance.kind == "force":
-        parts.append(("Fb", complex(balance.vector[k]), "load"))
-    parts += _rest(frame, k)
+    parts = [*_borne(reactions.borne[link], reactions, (link,), link, k), *_rest(frame, k)]
     plan = _polygon(parts)
-    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0")
+    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0", driving=True)
 
 
 def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:
@@ -92,15 +86,30 @@ def _rest(reaction: Reaction, k: int) -> Iterable[Part]:
         yield reaction_name(reaction.by, reaction.on), complex(reaction.force[k]), "reaction"
 
 
-def _borne(borne: tuple[Reaction, ...], loads: tuple[Applied, ...], link: str, k: int) -> Iterable[Part]:
-    """What a link bears besides its group's reactions: later groups first, then loads."""
+def _borne(
+    borne: tuple[Reaction, ...], reactions: Reactions, links: tuple[str, ...], link: str, k: int
+) -> Iterable[Part]:
+    """What a link bears besides its group's reactions: later groups first, then loads, then drivers.
+
+    links: all of the plan; a driver between two of them acts within it.
+    """
     for reaction in borne:
         if reaction.by == link:
             yield reaction_name(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
-    for load in loads:
+    for load in reactions.applied:
         if load.link == link and load.has_force:
             kind: Kind = "inertia" if load.kind == "inertia" else "load"
             yield load.name, complex(load.force[k]), kind
+    several = len(reactions.balances) > 1
+    for balance in reactions.balances:
+        driver = balance.driver
+        if (
+            balance.kind == "force"
+            and link in (driver.link, driver.base)
+            and not {driver.link, driver.base} <= {*links}
+        ):
+            name, vector = balance_name(driver.link, several), complex(balance.vector[k])
+            yield (name, vector, "load") if link == driver.link else (f"−{name}", -vector, "load")
 
 
 def _polygon(parts: Iterable[Part]) -> Plan:

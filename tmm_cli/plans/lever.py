@@ -8,7 +8,7 @@ from itertools import pairwise
 from tmm_cli.forces.lever import Item, Lever
 from tmm_cli.motion import Motion
 from tmm_cli.plans.record import NamedVector
-from tmm_cli.plans.velocity import hinge_points
+from tmm_cli.plans.velocity import hinge_points, letters
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,14 @@ def lever_plan(motion: Motion, lever: Lever, k: int) -> LeverPlan:
     """Velocities per unit of the driver's motion, turned by +90 degrees; forces keep their directions."""
     linkage = motion.linkage
     ends: dict[str, complex] = {"p": 0j}
-    fixed = set(linkage.links["0"].points)
+    fixed, letter_of = set(linkage.links["0"].points), letters(linkage)
     for link in linkage.moving:
         for point in linkage.links[link].points:
             if point not in fixed:
-                ends.setdefault(point.lower(), 1j * complex(motion.named(point).first[k]))
+                ends.setdefault(letter_of[point], 1j * complex(motion.named(point).first[k]))
     bars = [NamedVector(f"p{name}", 0j, end, "absolute") for name, end in ends.items() if name != "p"]
     for link in linkage.moving:
-        told = [p.lower() for p in hinge_points(linkage, link) if p not in fixed]
+        told = [letter_of[p] for p in hinge_points(linkage, link) if p not in fixed]
         bars += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in pairwise(told)]
     forces, couples = [], []
     for item in lever.items:

@@ -78,3 +78,8 @@ def reaction_name(by: str, on: str, part: str = "") -> str:
     """R₃₄: from link 3 on link 4; part: ᵗ tangential, ⁿ normal."""
     both = by + on if len(by) == len(on) == 1 else f"{by},{on}"
     return f"R{subscript(both)}{part}"
+
+
+def balance_name(link: str, several: bool) -> str:
+    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4."""
+    return "Fb" + (subscript(link) if several else "")

@@ -11,6 +11,7 @@ from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
 from tmm_cli.problem.record import Problem
+from tmm_cli.results.explain_pairs import further
 from tmm_cli.results.table import Column, Table
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.words import say
@@ -23,6 +24,7 @@ def explain(results: Results) -> Iterable[Table]:
     if problem.linkage.slides:
         yield _slides(problem)
     yield _facts(problem)
+    yield from further(problem)
     if any(np.any(link.mass != 0) for link in problem.linkage.links.values()):
         yield _masses(problem)
     if problem.linkage.loads:
@@ -133,7 +135,8 @@ def _loads(problem: Problem) -> Table:
 def _way(results: Results) -> Table:
     structure = results.structure
     linkage = results.linkage
-    rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers), say("explain.given"), "")]
+    rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers),
+             say("explain.given_all" if linkage.others else "explain.given"), "")]  # fmt: skip
     solved = {link: k for k in results.kernels for link in k.group.links}
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)

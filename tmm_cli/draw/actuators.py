@@ -1,0 +1,157 @@
+"""Cylinders, springs and the arrows of drivers, at a pose of the mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.wheels import Place
+from tmm_cli.linkage import FRAME, Driver, Linkage, Slide, Spring
+from tmm_cli.vectors import cross, dot, unit
+
+BARREL, LEAST = 2.3, 8.0  # mm: half the width of a cylinder, its least length
+COIL, AMPLITUDE, STUB = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends
+SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
+SPRING = "#5f3b8a"
+
+
+def cylinders(linkage: Linkage) -> dict[str, Driver]:
+    """Drivers that slide between two moving links, by their sliding pair."""
+    return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
+
+
+def cylinder(
+    sheet: Sheet, linkage: Linkage, slide: Slide, place: Place, ways: tuple[float, float], colour: str = DARK
+) -> tuple[complex, complex]:
+    """A cylinder with its piston and rod; ways: least and largest run of the rod's end (m).
+
+    Gives the middle of the barrel (mm) and the direction in which the rod goes out. The barrel begins at the last point
+    that the cylinder has behind the rod's end, else a stroke before it; where it cannot hold the stroke (no real one
+    could) the piston goes slower than the rod.
+    """
+    low, high = (way / sheet.mu for way in ways)
+    foot, end = sheet.on(place(slide.carrier, slide.through)), sheet.on(place(slide.runner, slide.at))
+    along = direction(slide, place)
+    run = float(dot(along, end - foot))
+    on_line = [
+        float(dot(along, arm))
+        for local in linkage.links[slide.carrier].points.values()
+        for arm in [sheet.on(place(slide.carrier, local)) - foot]
+        if abs(cross(along, arm)) < 0.3
+    ]
+    stroke = high - low
+    behind = [r for r in on_line if r < low - LEAST / 2]
+    start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST)
+    length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST, low - start))
+    share = (run - low) / max(stroke, 0.74 * length, 1e-9)
+    head = foot + along * (start + length * (0.13 + 0.74 * share))
+    back, front = foot + along * start, foot + along * (start + length)
+    side = 1j * along * BARREL
+    sheet.area([back + side, front + side, front - side, back - side], "white", colour, 1.3, 3.5)
+    sheet.line([head + 0.8 * side, head - 0.8 * side], colour, 2.4, z=3.7)
+    sheet.line([head, end], colour, 1.8, z=3.6)
+    return (back + front) / 2, along
+
+
+def direction(slide: Slide, place: Place) -> complex:
+    """Of a guide, in the drawing: the way in which its run grows."""
+    along = place(slide.carrier, complex(unit(slide.direction))) - place(slide.carrier, 0j)
+    return along / abs(along)
+
+
+def driver_name(driver: Driver, symbol: str) -> str:
+    """ω1, or ω21 where the base moves: of link 2 against link 1."""
+    return symbol + driver.link + ("" if driver.base == FRAME else driver.base)
+
+
+def springs(sheet: Sheet, linkage: Linkage, place: Place) -> None:
+    """All springs, with their names."""
+    for spring in linkage.springs:
+        if spring.turns:
+            _torsion(sheet, linkage, spring, place)
+            continue
+        start, end = sheet.on(place(spring.i, spring.at_i)), sheet.on(place(spring.j, spring.at_j))
+        if not np.isfinite(start + end) or abs(end - start) < 0.5:
+            continue
+        (_coils if spring.rate > 0 else _gas)(sheet, start, end)
+        for link, at in ((spring.i, start), (spring.j, end)):
+            sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
+            if link == FRAME:
+                _wall(sheet, at, (at - start - end + at) / abs(end - start))
+        middle = (start + end) / 2
+        sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * AMPLITUDE, 9, SPRING)
+
+
+def _coils(sheet: Sheet, start: complex, end: complex) -> None:
+    """A zigzag between two straight ends."""
+    length = abs(end - start)
+    along = (end - start) / length
+    stub = min(STUB, 0.15 * length)
+    number = int(np.clip((length - 2 * stub) / COIL, 4, 14))
+    step = (length - 2 * stub) / number
+    places = [start, start + stub * along]
+    for k in range(number):
+        sign = 1 if k % 2 == 0 else -1
+        places.append(start + along * (stub + (k + 0.5) * step) + sign * 1j * along * min(AMPLITUDE, length / 5))
+    sheet.line([*places, end - stub * along, end], SPRING, 1.1, z=3.8)
+
+
+def _gas(sheet: Sheet, start: complex, end: complex) -> None:
+    """A cylinder that only pushes, or a force that does not change with length."""
+    along = (end - start) / abs(end - start)
+    neck, side = start + 0.6 * (end - start), 1j * along * 1.6
+    sheet.line([start, end], SPRING, 1.1, z=3.7)
+    sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING, 1.1, 3.8)
+
+
+def _wall(sheet: Sheet, at: complex, out: complex) -> None:
+    """A short piece of the frame behind the end of a spring."""
+    side = 1j * out
+    foot = at + 1.0 * out
+    sheet.line([foot - 2.6 * side, foot + 2.6 * side], DARK, 1.1, z=2.7)
+    for k in (-2, -0.7, 0.6, 1.9):
+        sheet.line([foot + k * side, foot + (k - 0.9) * side + 1.5 * out], THIN, 0.6, z=2.4, blocks=False)
+
+
+def _torsion(sheet: Sheet, linkage: Linkage, spring: Spring, place: Place) -> None:
+    """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
+    point = linkage.shared(spring.i, spring.j)
+    centre = sheet.on(place(spring.j, spring.at_j if point is None else linkage.local(spring.j, point)))
+    if not np.isfinite(centre):
+        return
+    inner, outer, turns = SPIRAL
+    begin = float(np.angle(place(spring.j, 1 + 0j) - place(spring.j, 0j)))
+    share = np.linspace(0, 1, 120)
+    arc = centre + (inner + (outer - inner) * share) * unit(begin + 2 * np.pi * turns * share)
+    sheet.line([complex(p) for p in arc], SPRING, 1.1, z=5.5)
+    last = complex(arc[-1])
+    sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING, 1.1, z=5.5)
+    sheet.label(spring.name, last, 9, SPRING)
+
+
+def driver_arrows(
+    sheet: Sheet, linkage: Linkage, place: Place, drawn: Mapping[str, tuple[complex, complex]], colour: str = DARK
+) -> Iterable[tuple[Driver, complex]]:
+    """An arrow along every driven slider and cylinder; drivers that turn are given back with their pivot (mm).
+
+    drawn: the cylinders that are drawn, by their sliding pair: middle and direction.
+    """
+    turning = []
+    for driver in linkage.drivers:
+        if driver.kind == "turn":
+            turning.append((driver, sheet.on(place(driver.base, linkage.local(driver.base, driver.joint)))))
+            continue
+        slide = linkage.slide(driver.joint)
+        if driver.joint in drawn:
+            middle, along = drawn[driver.joint]
+            along = along * driver.sense
+            foot = middle + 1j * along * (BARREL + 3.2)
+        else:
+            # the run is that of the runner; where the frame is the runner, the driven link goes the other way
+            along = direction(slide, place) * driver.sense * (1 if slide.runner == driver.link else -1)
+            foot = sheet.on(place(slide.runner, slide.at)) + 1j * along * 7.5
+        sheet.arrow(foot - 5 * along, foot + 6 * along, colour, 1.2)
+        sheet.label(driver_name(driver, "v"), foot + 6 * along, 10, colour)
+    return turning

@@ -1,0 +1,294 @@
+"""Toothed wheels, racks and cams: where their shapes lie (m), and how they are drawn.
+
+Wheels are their pitch circles; the pitch point is marked. A cam is given by its follower's law alone: for a sliding
+follower its disk is drawn for a flat face (the force plan takes it so too), for a swinging one for a roller on an arm
+that is chosen to look well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
+from tmm_cli.vectors import Vector, dot, unit
+
+Place = Callable[[str, complex], complex]  # a point of a link (its axes, m) in the drawing's axes, m
+CHAIN: Any = (0, (7, 2.2, 1.2, 2.2))  # dash and dot
+DASHED: Any = (0, (3, 2))
+TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
+RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
+ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
+STEPS = 361
+LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A wheel of a mesh: its pitch circle (m); ring: it has inner teeth."""
+
+    link: str
+    centre: complex
+    radius: float
+    ring: bool = False
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """A mesh of a wheel with a wheel or a rack: pitch point, direction of the pitch line there, wheels.
+
+    side: from the pitch point to where the rack is (a unit vector), for racks; start is its running point.
+    """
+
+    mesh: Mesh
+    pitch: complex
+    along: complex
+    discs: tuple[Disc, ...]
+    side: complex = 0j
+    start: complex = 0j
+
+
+@dataclass(frozen=True)
+class CamShape:
+    """A cam's disk about its axis, where its follower touches it, and the follower: face or arm, roller's radius.
+
+    true: it is the cam that has this flat-faced follower, at its running point; else only a sign for one.
+    """
+
+    mesh: Mesh
+    axis: complex
+    disk: Vector
+    touch: complex
+    face: tuple[complex, complex]
+    stem: tuple[complex, complex]
+    roller: float = 0.0
+    true: bool = False
+
+
+Shape = Teeth | CamShape
+
+
+def shape(mesh: Mesh, linkage: Linkage, place: Place) -> Shape:
+    """A higher pair at a pose."""
+    if mesh.kind == "gear":
+        return _gear(mesh, linkage, place)
+    if mesh.kind == "rack":
+        return _rack(mesh, linkage, place)
+    return _flat_faced(mesh, linkage, place) if mesh.slide else _with_roller(mesh, linkage, place)
+
+
+def shapes(linkage: Linkage, place: Place, names: Iterable[str] | None = None) -> list[Shape]:
+    """All higher pairs, or those named."""
+    wanted = None if names is None else set(names)
+    return [shape(m, linkage, place) for m in linkage.meshes if wanted is None or m.name in wanted]
+
+
+def contact(found: Shape) -> complex:
+    """Where the two links touch, m."""
+    return found.pitch if isinstance(found, Teeth) else found.touch
+
+
+def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = None) -> list[complex]:
+    """Places that must be on the sheet, m: of all links or some; `size` is that of the rest of the mechanism (m)."""
+    places: list[complex] = []
+    for one in found:
+        if isinstance(one, CamShape):
+            places += [*one.disk.tolist(), one.touch, *one.face]
+            continue
+        apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
+        for disc in one.discs:
+            if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
+                places += [disc.centre + disc.radius * way for way in (1, 1j, -1, -1j)]
+    return [p for p in places if np.isfinite(p)]
+
+
+def _axis(linkage: Linkage, mesh: Mesh, link: str) -> complex:
+    point = linkage.shared(mesh.carrier, link)
+    assert point is not None
+    return complex(np.ravel(linkage.local(mesh.carrier, point))[0])
+
+
+def _gear(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
+    a, b = (_axis(linkage, mesh, link) for link in (mesh.i, mesh.j))
+    one, other = place(mesh.carrier, a), place(mesh.carrier, b)
+    pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
+    radii = abs(pitch - one), abs(pitch - other)
+    inner = mesh.ratio > 0
+    discs = (
+        Disc(mesh.i, one, radii[0], inner and radii[0] > radii[1]),
+        Disc(mesh.j, other, radii[1], inner and radii[1] > radii[0]),
+    )
+    return Teeth(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
+
+
+def _guide(slide: Slide, place: Place) -> complex:
+    """Direction of a guide in the drawing."""
+    along = place(slide.carrier, complex(unit(slide.direction))) - place(slide.carrier, 0j)
+    return along / abs(along)
+
+
+def _rack(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
+    slide = linkage.slide(mesh.slide)
+    along = _guide(slide, place)
+    forward = along if slide.runner == mesh.j else -along
+    axis = place(mesh.carrier, _axis(linkage, mesh, mesh.i))
+    side = -1j * forward * math.copysign(1.0, mesh.ratio)
+    pitch = axis + side * abs(mesh.ratio)
+    start = place(slide.runner, slide.at) if slide.runner == mesh.j else place(slide.carrier, slide.through)
+    return Teeth(mesh, pitch, forward, (Disc(mesh.i, axis, abs(mesh.ratio)),), side, start)
+
+
+def _cam_angle(mesh: Mesh, place: Place) -> float:
+    return float(np.angle(place(mesh.i, 1 + 0j) - place(mesh.i, 0j)))
+
+
+def _flat_faced(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
+    """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
+    assert mesh.law is not None
+    slide = linkage.slide(mesh.slide)
+    along = _guide(slide, place)
+    forward = along if slide.runner == mesh.j else -along
+    axis = place(FRAME, _axis(linkage, mesh, mesh.i))
+    runs = place(slide.runner, slide.at) if slide.runner == mesh.j else place(slide.carrier, slide.through)
+    angle = _cam_angle(mesh, place)
+    turn = np.linspace(0, 2 * np.pi, STEPS)
+    rise, slope, bend = mesh.law(turn)
+    now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
+    height = float(dot(forward, runs - axis)) - now
+    true = bool(np.min(height + rise + bend) > 0 and np.min(height + rise) > 0)
+    if not true:  # no convex cam has its face there: the least that is convex, and not too slender
+        height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
+        height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
+    disk = axis + (height + rise - 1j * slope) * forward * unit(angle - turn)
+    foot = axis + (height + now) * forward
+    reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
+    touch = foot - 1j * slope_now * forward
+    return CamShape(mesh, axis, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
+
+
+def _with_roller(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
+    """The disk of a roller on a follower that swings."""
+    assert mesh.law is not None
+    axis = place(FRAME, _axis(linkage, mesh, mesh.i))
+    pivot = place(FRAME, _axis(linkage, mesh, mesh.j))
+    turn = np.linspace(0, 2 * np.pi, STEPS)
+    rise, angle = mesh.law(turn)[0], _cam_angle(mesh, place)
+    middle = (float(np.max(rise)) + float(np.min(rise))) / 2
+    outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
+    distance = abs(axis - pivot)
+    arm = ARM * (axis - pivot) * complex(unit(outward * math.acos(ARM)))
+    centre = pivot + arm * unit(rise - middle)
+    now = float(mesh.law(np.array(angle))[0])
+    here = pivot + arm * complex(unit(now - middle))
+    path = axis + (centre - axis) * unit(angle - turn)
+    way = np.gradient(path)
+    normal = 1j * way / np.maximum(np.abs(way), 1e-300)
+    normal = normal * np.sign(dot(normal, axis - path))
+    roller = ROLLER * distance
+    disk = path + roller * normal
+    touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
+    return CamShape(mesh, axis, disk, complex(touch), (here, here), (pivot, here), roller)
+
+
+def draw(
+    sheet: Sheet, found: Shape, hue: Mapping[str, str], span: tuple[float, float] | None = None, *, bare: bool = False
+) -> None:
+    """A higher pair. hue: colours of links. span: how far the rack goes on both sides of the pitch point (m).
+
+    bare: only what belongs to a link that has a colour.
+    """
+    if isinstance(found, CamShape):
+        _draw_cam(sheet, found, hue, bare)
+        return
+    pitch = sheet.on(found.pitch)
+    for disc in found.discs:
+        if disc.link in hue or not bare:
+            _wheel(sheet, disc, hue.get(disc.link, THIN), pitch, found.along)
+    if found.side != 0 and (found.mesh.j in hue or not bare):
+        _rack_bar(sheet, found, hue.get(found.mesh.j, THIN), span)
+    sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
+
+
+def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Any, z: float) -> None:
+    """A curve within the drawing's field."""
+    low, high = sheet.ground.low, sheet.ground.high
+    inside = (places.real > low.real) & (places.real < high.real) & (places.imag > low.imag) & (places.imag < high.imag)
+    if bool(np.any(inside)):
+        sheet.line(list(np.where(inside, places, complex(np.nan, np.nan))), colour, width, style, z)
+
+
+def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex) -> None:
+    """A pitch circle, teeth where it meshes; the rim of inner teeth; hatched where the wheel is the frame."""
+    centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
+    number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
+    ways = unit(np.linspace(0, 2 * np.pi, number + 1))
+    _curve(sheet, centre + radius * ways, colour, 0.8, CHAIN, 2.05)
+    outside = radius + RIM if disc.ring else radius
+    if disc.ring:
+        _curve(sheet, centre + outside * ways, colour, 1.2, "-", 2.05)
+    if disc.link == FRAME:
+        out = 1.0 if disc.ring else -1.0
+        for way in unit(np.linspace(0, 2 * np.pi, int(np.clip(2 * np.pi * outside / 3.2, 12, 900)), endpoint=False)):
+            foot = centre + outside * complex(way)
+            stroke = [foot, foot + complex(way) * (1.7 * out + 1.2j)]
+            _curve(sheet, np.array(stroke), THIN, 0.6, "-", 2.0)
+    _tooth_hint(sheet, centre, radius, pitch, along, colour)
+
+
+def _wave(run: Any) -> Any:
+    """Teeth along a pitch line: +1 at tips, -1 at roots."""
+    return np.clip(2.6 * np.sin(2 * np.pi * run / TOOTH), -1, 1)
+
+
+def _tooth_hint(sheet: Sheet, centre: complex, radius: float, pitch: complex, along: complex, colour: str) -> None:
+    """Some teeth at the pitch point: the same wave on both partners, so those of one fill the gaps of the other."""
+    reach = TEETH / 2 * TOOTH
+    if radius < reach or not np.isfinite(pitch):
+        return
+    run = np.linspace(-reach, reach, 30 * TEETH + 1)
+    out = (pitch - centre) / abs(pitch - centre)
+    height = HEIGHT * _wave(run) * np.sign(dot(out, -1j * along))
+    turn = run / radius * np.sign(dot(1j * out, along))
+    _curve(sheet, centre + out * (radius + height) * unit(turn), colour, 0.9, "-", 2.3)
+
+
+def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float] | None) -> None:
+    """A bar with teeth on its pitch line, joined to the running point of the rack."""
+    pitch, along, side = sheet.on(found.pitch), found.along, found.side
+    low, high = (-16.0, 16.0) if span is None else (span[0] / sheet.mu - 8, span[1] / sheet.mu + 8)
+    run = np.linspace(low, high, int(np.clip(30 * (high - low) / TOOTH, 60, 20_000)))
+    teeth = pitch + run * along - 1j * along * HEIGHT * _wave(run)
+    back = [pitch + high * along + side * RIM, pitch + low * along + side * RIM]
+    _curve(sheet, np.concatenate([teeth, back, teeth[:1]]), colour, 1.1, "-", 2.6)
+    _curve(sheet, pitch + np.array([low - 3, high + 3]) * along, colour, 0.8, CHAIN, 2.05)
+    start = sheet.on(found.start)
+    foot = float(np.clip(dot(along, start - pitch), low, high))
+    end = pitch + foot * along + side * RIM
+    if abs(end - start) > 1.0:
+        sheet.line([start, end], colour, 1.6, z=2.9)
+
+
+def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str], bare: bool) -> None:
+    """The disk, and the follower's face with its stem or its arm with the roller."""
+    disk = [sheet.on(complex(p)) for p in found.disk]
+    colour, own = hue.get(found.mesh.i, THIN), hue.get(found.mesh.j, THIN)
+    if found.mesh.i in hue:
+        sheet.area(disk[:-1], "#f1f3f6", colour, 1.2, 1.9)
+    else:
+        sheet.line(disk, colour, 0.8, DASHED, 1.9)
+    if bare and found.mesh.j not in hue:
+        return
+    stem = [sheet.on(p) for p in found.stem]
+    if abs(stem[1] - stem[0]) > 1.0:
+        sheet.line(stem, own, 1.8, z=2.9)
+    if found.roller:
+        sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 3.3)
+        sheet.circle(sheet.on(found.face[0]), 0.5, own, own, 0.3, 3.4)
+    else:
+        sheet.line([sheet.on(p) for p in found.face], own, 2.2, z=3.4)
+    sheet.circle(sheet.on(found.touch), 0.55, DARK, DARK, 0.3, 6.4)
