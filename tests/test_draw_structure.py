@@ -14,8 +14,8 @@ from tmm_cli import load, solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.groups import _stem as stem_of
 from tmm_cli.draw.groups import groups, sheets_apart, side_by_side
+from tmm_cli.draw.scene import HINGE, Scene, form
 from tmm_cli.draw.structure import Legend, at_sketch, parts, scheme, structure
-from tmm_cli.draw.symbols import HINGE, Scene, form
 from tmm_cli.groups.base import Pose
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.problem.build import build
