@@ -294,6 +294,17 @@ sketch: {at: 90 deg}
     assert sorted(side) == [-1, -1, 1, 1]
 
 
+def test_links_that_hang_on_a_leg_do_not_hide_the_triad():
+    """In the press the rod to the ram hangs on lever 2, which is a leg of the triad."""
+    results = solve(load(str(SIX.parent / "press-class-iii.yaml")), "kinematics")
+    linkage, structure = results.linkage, results.structure
+    triad, dyad = find_assemblies(linkage, structure, results.kernels, results.start).groups
+    assert (triad.group.links, triad.method, triad.complete) == (("2", "5", "6", "7"), "polynomial", True)
+    assert (
+        [a.of_sketch for a in triad.assemblies].count(True) == 1 == [a.of_sketch for a in dyad.assemblies].count(True)
+    )
+
+
 def test_two_assemblies_meet_where_the_driver_turns_back():
     """At the end of the driver's way one assembly counts twice; before it there is one more, beyond it one less."""
     seed = 7

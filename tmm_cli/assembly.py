@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Kernel, Turn
+from tmm_cli.groups.base import Dyad, Kernel, Turn, reach
 from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
@@ -62,7 +62,7 @@ def _assembled(
 def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
     """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
-    half = turns * np.pi if linkage.driver.kind == "turn" else 4 * max(k.size for k in kernels)
+    half = turns * np.pi if linkage.driver.kind == "turn" else reach(linkage)
     q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
     motion = move(linkage, kernels, q, Law(at, 1.0, 0.0, 1))
     middle = len(q) // 2
@@ -108,7 +108,8 @@ def nearest_to_sketch(
     errors = [sketch_distance(given, hint, kernel) for hint in hints]
     best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
     if not given or errors[best] > TELLS * errors[second]:
-        raise Undecided(kernel.group, {name: (hints[best][name], hints[second][name]) for name in tells})
+        choices = {name: (hints[best][name], hints[second][name]) for name in tells}
+        raise Undecided(kernel.group, choices, len(ways))
     return best
 
 
@@ -130,7 +131,7 @@ def _shift(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> complex:
 def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
     """How far every sketched point is from its place, as a share of the linkage's size."""
     places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
-    size = max(abs(p - q) for p in places for q in places)
+    size = max(abs(p - q) for p in places for q in places) or 1.0
     found = {}
     for point, sketched in linkage.sketch.points.items():
         owner = linkage.owner(point)

@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_cli.assembly import nearest_to_sketch, sketch_distance, source
 from tmm_cli.cycle import turns_of_cycle
-from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.base import Kernel, reach
 from tmm_cli.groups.continuation import Upstream, Walker
 from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
@@ -23,17 +23,19 @@ from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Motion
-from tmm_cli.refused import NoAssembly, Undecided
+from tmm_cli.refused import NoAssembly, TooLarge, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
+MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
 QUIET = 3  # rounds without a new assembly that end the search
 MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
 ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
 SAME = 1e-6
 DEAD = 1e-7  # least singular value over the largest: here the sketch is in a dead position
+DEAD_OF_MANY = 1e-5  # the same, of places found with half the digits
 CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
 
 
@@ -42,8 +44,10 @@ def assembled(
 ) -> tuple[Newton, Placement]:
     """The group in the assembly that the sketch shows, followed along the driver's way.
 
-    Raises NoAssembly, Undecided.
+    Raises TooLarge, NoAssembly, Undecided.
     """
+    if len(group.links) > MOST_LINKS:
+        raise TooLarge(group, MOST_LINKS)
     kernel = Newton.of(group, linkage)
     q = np.array([linkage.sketch.at])
     state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
@@ -62,9 +66,9 @@ def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: 
         return Upstream(motion.poses, motion.first, motion.second, motion.drives, bool(motion.placed[0]))
 
     turns = linkage.driver.kind == "turn"
-    size = max(k.size for k in (kernel, *before))
-    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else 4 * size
-    return Walker(kernel, upstream).follow(linkage.sketch.at, state, half, turns)
+    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
+    track = Walker(kernel, upstream, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    return track if track is None or turns else replace(track, unit=kernel.size)
 
 
 def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, turn: Real) -> State:
@@ -193,8 +197,17 @@ def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
     states = all_assemblies(kernel, poses, drives)
     if not states:
         raise NoAssembly(kernel.group, _shortfall(kernel, poses, drives))
+    if len(states) == MOST and _moves_by_itself(kernel, poses, states):
+        raise Undecided(kernel.group, {})
     ways = [tuple(kernel.poses_of(state)[link] for link in kernel.group.links) for state in states]
     return states[nearest_to_sketch(kernel, linkage, ways)]
+
+
+def _moves_by_itself(kernel: Newton, poses: Mapping[str, Pose], states: list[State]) -> bool:
+    """Whether its many assemblies are places of one motion: nearly all of them are dead positions then."""
+    together = State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
+    known = {name: _spread(pose, together.x.shape[:-1]) for name, pose in poses.items()}
+    return float(np.median(least_over_largest(kernel.matrix({**known, **kernel.poses_of(together)})))) < DEAD_OF_MANY
 
 
 def _shortfall(kernel: Newton, poses: Mapping[str, Pose], drives: Drives) -> float:

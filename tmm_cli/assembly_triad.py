@@ -84,7 +84,9 @@ class Triad:
 
 def _leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
     """The link as a leg of the triad about the middle link; None when it is none."""
-    outer = _joint(link, tuple(n for n in linkage.links if n not in group.links), group.outer, linkage)
+    # links of later groups may hang on a leg too: they hold nothing
+    known = tuple(pair.i if pair.j in group.links else pair.j for pair in group.outer)
+    outer = _joint(link, known, group.outer, linkage)
     inner = _joint(link, (middle,), group.inner, linkage)
     if outer is None or inner is None:
         return None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -79,18 +80,35 @@ class CamLaw:
     pieces: tuple[Piece, ...]
     start: float = 0.0
 
+    @cached_property
+    def _table(self) -> tuple[Real, Real, Real, Real]:
+        """Of each piece: where it starts (rad, from the law's start), its angle, the run there, its rise."""
+        over, rise = np.array([p.over for p in self.pieces]), np.array([p.rise for p in self.pieces])
+        return np.cumsum(over) - over, over, np.cumsum(rise) - rise, rise
+
+    def jumps(self) -> tuple[float, ...]:
+        """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
+        slopes = [SHAPES[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
+        ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
+        most = max(abs(piece.rise) for piece in self.pieces)
+        found = [
+            float(np.mod(start + self.start, TAU))
+            for start, now, before in zip(self._table[0], ends, [ends[-1], *ends[:-1]], strict=True)
+            if abs(now[0] - before[1]) > 1e-9 * most
+        ]
+        return tuple(sorted(found))
+
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
-        turn = np.mod(angle - self.start, TAU)
+        turn = np.mod(np.asarray(angle) - self.start, TAU)
+        starts, overs, lows, rises = self._table
+        number = np.clip(np.searchsorted(starts, turn, side="right") - 1, 0, len(self.pieces) - 1)
+        over, rise = overs[number], rises[number]
+        x = np.clip((turn - starts[number]) / over, 0.0, 1.0)
         value, first, second = (np.zeros(np.shape(turn)) for _ in range(3))
-        at, low = 0.0, 0.0
-        for number, piece in enumerate(self.pieces):
-            last = number == len(self.pieces) - 1
-            here = (turn >= at) & ((turn < at + piece.over) | last)
-            x = np.clip((turn - at) / piece.over, 0.0, 1.0)
-            s, ds, dds = SHAPES[piece.shape](x)
-            value = np.where(here, low + piece.rise * s, value)
-            first = np.where(here, piece.rise / piece.over * ds, first)
-            second = np.where(here, piece.rise / piece.over**2 * dds, second)
-            at, low = at + piece.over, low + piece.rise
-        return value, first, second
+        shapes = [p.shape for p in self.pieces]
+        for shape in dict.fromkeys(shapes):
+            here = np.array([name == shape for name in shapes])[number]
+            s, ds, dds = SHAPES[shape](x)
+            value, first, second = np.where(here, s, value), np.where(here, ds, first), np.where(here, dds, second)
+        return lows[number] + rise * value, rise / over * first, rise / over**2 * second

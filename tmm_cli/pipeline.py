@@ -87,11 +87,17 @@ class Results:
         return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 
     @property
+    def locked(self) -> Real:
+        """Positions where friction locks the mechanism."""
+        assert self.motion is not None
+        return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
+
+    @property
     def lever_holds(self) -> bool:
         """Whether the lever agrees with the force plan within the limit, wherever it could be computed."""
         if self.lever is None or self.motion is None:
             return True
-        difference = self.lever.difference[self.motion.moving]
+        difference = self.lever.difference[self.motion.moving & ~self.locked]
         return bool(np.all(difference <= self.problem.lever_limit))
 
 

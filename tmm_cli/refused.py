@@ -32,12 +32,15 @@ class NoAssembly(Refused):
 class Undecided(Refused):
     """The sketch does not tell two assemblies apart.
 
-    choices: for points (m) and links (rad) that would tell, the values in each assembly; none in a dead position.
+    choices: for points (m) and links (rad) that would tell, the values in the two assemblies that are nearest to the
+    sketch; none in a dead position. count: how many assemblies there are.
     """
 
-    def __init__(self, group: Group, choices: Mapping[str, tuple[complex | float, complex | float]]) -> None:
+    def __init__(
+        self, group: Group, choices: Mapping[str, tuple[complex | float, complex | float]], count: int = 2
+    ) -> None:
         super().__init__(group.title)
-        self.group, self.choices = group, choices
+        self.group, self.choices, self.count = group, choices, count
 
 
 class Misfit(Refused):
@@ -46,6 +49,14 @@ class Misfit(Refused):
     def __init__(self, name: str, sketched: complex | float, found: complex | float) -> None:
         super().__init__(name)
         self.name, self.sketched, self.found = name, sketched, found
+
+
+class TooLarge(Refused):
+    """A group of more links than iteration is tried on; most: how many it may have."""
+
+    def __init__(self, group: Group, most: int) -> None:
+        super().__init__(group.title)
+        self.group, self.most = group, most
 
 
 class NoSuchPosition(Refused):

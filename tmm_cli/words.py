@@ -20,10 +20,15 @@ ENGLISH: dict[str, str] = {
     "warning.passive": "pair {pair} holds link {j} on link {i} where it would be without it: this works with exact "
     "dimensions only, and the reactions of links {among} are indeterminate (given: the least ones)",
     "warning.pressure": "the pressure angle on link {link} comes to {largest}, the file allows {allowed}",
-    "warning.locked": "position {number}: the mechanism locks itself by friction, most of all in pair {pair} of links "
-    "{i} and {j}",
+    "warning.locked": "the mechanism locks itself by friction: {places}; no forces are given there",
+    "warning.locked_in": "in position{s} {numbers}, most of all in pair {pair} of links {i} and {j}",
+    "warning.twist": "torsion spring {spring} is turned by more than half a turn from its free angle at {place}: its "
+    "moment jumps there, as angles are counted within half a turn",
+    "warning.impact": "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): a hard "
+    "impact, the acceleration there is not finite and is not in the tables",
     "warning.range": "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} comes to "
     "its dead position",
+    "warning.range_stopped": "driving link {link} goes from {start} to {end} only: it slows down and stops there",
     "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
@@ -211,6 +216,7 @@ ENGLISH: dict[str, str] = {
     "cycle.lever_force": "F_b, lever",
     "cycle.difference": "difference, %",
     "state.missing": "{group} cannot be assembled",
+    "state.locked": "locks by friction",
     "state.dead": "{group} is dead",
     "state.stopped": "the driver has stopped before",
     "check.title": "What differs from the expected values",

@@ -147,7 +147,6 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, size: float) -> N
     own, known = group.group.links, _neighbours(group)
     hue = colours(scene.structure) | dict.fromkeys(known, THIN)
     forms = {link: form(sheet, scene, link) for link in (*known, *own)}
-    higher_pairs(sheet, scene, scene.structure.pairs, hue, bare=False)
     for link, shape in forms.items():
         body(sheet, shape, hue[link])
     pairs = scene.structure.pairs
@@ -155,6 +154,7 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, size: float) -> N
         sliding(sheet, scene, pair, hue[pair.slide.runner] if pair.slide else DARK, size)
     circles(sheet, scene, pairs, forms, hue, size)
     grounds(sheet, scene, pairs, size)
+    higher_pairs(sheet, scene, pairs, hue, bare=False)
     for link, shape in forms.items():
         _number(sheet, link, shape, hue[link])
     hinged = {p.point for p in pairs if p.kind == "R"}

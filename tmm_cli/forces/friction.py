@@ -8,7 +8,7 @@ it can overcome there is no such plan: the mechanism locks itself.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,8 @@ OUTER = 30  # times that the plan is drawn again where it does not follow fricti
 @dataclass(frozen=True)
 class Rubbed:
     """Reactions with friction. locked: positions where the mechanism locks itself; pair: the one that rubs most there.
+
+    Where it locks there are no forces with which it would move: they are nan.
 
     work: power of friction per unit of the first driver's motion (N m or N, negative), pair by pair.
     """
@@ -99,9 +101,12 @@ def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: 
     work = {f.pair: _work(f, motion, reactions) for f in given}
     stacked = np.nan_to_num(np.abs(np.array(list(work.values()))))
     worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
-    return Rubbed(
-        reactions, (*loads, *rubbed), locked & motion.moving, worst, work, power(motion, reactions)
-    )  # fmt: skip
+    locked = locked & motion.moving
+    if bool(np.any(locked)):
+        rubbed = tuple(_nowhere(load, locked) for load in rubbed)
+        reactions = react(motion, structure, (*loads, *rubbed))
+        work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
+    return Rubbed(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
 
 
 def _forces(reactions: Reactions, names: list[str]) -> Vector:
@@ -134,6 +139,11 @@ def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
             # a size below zero, or none that agrees: more friction than the driver can overcome
             locked |= ~(last < 1e-9) | np.any(sizes < -1e-9 * np.max(np.abs(sizes), axis=0), axis=0)
     return np.where(locked, np.abs(start), sizes), locked
+
+
+def _nowhere(load: Applied, lost: Real) -> Applied:
+    """A load that is nothing where the mechanism does not move."""
+    return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
 
 
 def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:

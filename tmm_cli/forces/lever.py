@@ -66,7 +66,8 @@ def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
     # where nothing has an arm (both ends of a stroke) there is only rounding to compare: not against itself
     reach = max((d.size for d in motion.kernels), default=1.0) if motion.linkage.driver.kind == "turn" else 1.0
     acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
-    plan_size = np.where(motion.moving, np.abs(plan), 0.0)
-    largest = float(np.max(np.where(motion.moving, np.maximum(plan_size, ROUNDING * acting), 0.0), initial=0.0))
+    known = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
+    plan_size = np.where(known, np.abs(plan), 0.0)
+    largest = float(np.max(np.where(known, np.maximum(plan_size, ROUNDING * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
     return Lever(tuple(items), balancing, difference)

@@ -33,9 +33,15 @@ def spring_loads(spring: Spring, motion: Motion) -> Iterable[Applied]:
             yield Applied(name, "load", link, at, force, moment, name)
 
 
+def twisted(spring: Spring, motion: Motion) -> Real:
+    """Angle by which a torsion spring is turned from its free angle, within half a turn (rad)."""
+    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.exp(-1j * spring.free)
+    found: Real = np.angle(turned)
+    return found
+
+
 def _twist(spring: Spring, motion: Motion) -> Real:
     """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
-    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.exp(-1j * spring.free)
     speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
-    moment: Real = spring.preload + spring.rate * np.angle(turned) + spring.damping * speed
+    moment: Real = spring.preload + spring.rate * twisted(spring, motion) + spring.damping * speed
     return moment

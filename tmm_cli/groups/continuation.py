@@ -8,13 +8,13 @@ Methods, ch. 2 and 6.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from tmm_cli.groups.linear import signed_determinant, solve
-from tmm_cli.groups.newton import CONVERGED, Newton
+from tmm_cli.groups.newton import CONVERGED, NEAR, Newton
 from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate
 from tmm_cli.groups.track import State, Track
 from tmm_cli.vectors import Real
@@ -23,8 +23,15 @@ FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divi
 LEAST_STEP = 1e-9
 CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
 TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
+MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longer steps
+SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
+FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
+FEW = 6  # rounds of Newton's method: more than that begin too far away
 SAME = 1e-7  # states this near are the same
 HALVINGS = 80
+FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
+AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
+PATIENCE = 4  # halvings of a step before a limit is looked for
 
 
 @dataclass(frozen=True)
@@ -51,10 +58,12 @@ class _Node:
 
 
 class Walker:
-    """Follows one group; `source` gives the links it hangs on."""
+    """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
 
-    def __init__(self, kernel: Newton, source: Source) -> None:
-        self.kernel, self.source = kernel, source
+    def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
+        self.kernel, self.source, self.scale = kernel, source, scale
+        self.home: State | None = None
+        self.at = 0.0
 
     def node(self, q: float, start: State) -> tuple[_Node, float] | None:
         """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
@@ -64,7 +73,7 @@ class Walker:
             return None
         kernel = self.kernel
         with np.errstate(all="ignore"):
-            state, size = kernel.close(start, before.poses, before.drives)
+            state, size = kernel.close(start, before.poses, before.drives, FEW)
             if not size[0] < CONVERGED:
                 return None
             own = kernel.poses_of(state)
@@ -84,11 +93,28 @@ class Walker:
 
     def apart(self, one: State, other: State) -> float:
         """How far two states are apart: lengths against the group's size, angles in rad."""
-        return float(max(np.max(np.abs(one.x - other.x)) / self.kernel.size, np.max(np.abs(one.turn - other.turn))))
+        away, wound = self.gone(one)
+        return float(
+            max(
+                np.max(np.abs(one.x - other.x)) / (self.kernel.size * max(1.0, away)),
+                np.max(np.abs(one.turn - other.turn)) / max(1.0, wound / MANY_TURNS),
+            )
+        )
+
+    def gone(self, state: State) -> tuple[float, float]:
+        """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).
+
+        As guides become parallel links go away, and wheels on them round, for ever; steps grow with them then.
+        """
+        home = state if self.home is None else self.home
+        return (
+            float(np.max(np.abs(state.x - home.x))) / self.kernel.size,
+            float(np.max(np.abs(state.turn - home.turn))),
+        )
 
     def leg(self, start: _Node, end: float) -> tuple[list[_Node], Literal["reached", "limit", "lost"]]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node."""
-        nodes, here = [], start
+        nodes, here, failures = [], start, 0
         way = end - start.q
         least = LEAST_STEP * abs(way)
         step = FIRST_STEP * way / np.pi
@@ -98,16 +124,41 @@ class Walker:
             found = self.node(q, _predicted(here, q - here.q))
             if found is not None and found[1] < CORRECTION and found[0].side == start.side:
                 step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
-                here = found[0]
+                here, failures = found[0], 0
                 nodes.append(here)
+                if self.spins(here):
+                    return [*nodes, *self.beyond(here)], "lost"
                 continue
             step = (q - here.q) / 2
-            if abs(step) < least:
+            failures += 1
+            if failures % PATIENCE == 0 or abs(step) < least:
                 limit = self.limit(here, float(np.sign(way)))
-                if limit is None:
-                    return nodes, "lost"
-                return [*nodes, limit], "limit"
+                if limit is not None and (limit.q - end) * way <= 0:
+                    return [*nodes, limit], "limit"
+            if abs(step) < least:
+                return [*nodes, *self.beyond(here)], "lost"
         return nodes, "reached"
+
+    def spins(self, here: _Node) -> bool:
+        """Whether it goes round so much faster than the driver that there is no following it."""
+        return self.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
+
+    def beyond(self, last: _Node) -> list[_Node]:
+        """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
+
+        Nothing where it does not go away.
+        """
+        home = last.state if self.home is None else self.home
+        if self.gone(last.state)[0] > FAR:
+            far = (last.state.x - home.x).ravel()
+            k = int(np.argmax(np.abs(far)))
+            speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(far[k])  # the other part grows less
+            return [replace(last, q=last.q + float(abs(far[k]) / speed))]
+        if self.spins(last):
+            wound = (last.state.turn - home.turn).ravel()
+            k = int(np.argmax(np.abs(wound)))
+            return [replace(last, q=last.q + float(wound[k] / last.first.turn.ravel()[k]))]
+        return []
 
     def limit(self, last: _Node, sense: float) -> _Node | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
@@ -119,7 +170,7 @@ class Walker:
         if kernel.passive:
             return None
         with np.errstate(all="ignore"):
-            direction = _flat(last.first, kernel.size) * sense
+            direction = _flat(last.first, kernel.size) * sense * self.scale
             length = np.linalg.norm(direction)
             if not np.isfinite(length) or length == 0:
                 return None
@@ -137,8 +188,8 @@ class Walker:
                     step = solve(matrix, right)
                     if not np.all(np.isfinite(step)):
                         return None
-                    state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1])
-                    if np.max(np.abs(step)) < 1e-14:
+                    state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1]) * self.scale
+                    if np.max(np.abs(step)) < NEAR:  # its square is less than rounding
                         break
                 before = self.source(np.array([q]))
                 if not before.placed:
@@ -152,8 +203,8 @@ class Walker:
             good = at(0.0, last.state, last.q)
             if good is None or good[2] <= 0:
                 return None
-            low, high, best = 0.0, 1e-6, good
-            while high < 1:
+            low, high, best = 0.0, 1e-3, good
+            while high < FARTHEST:
                 found = at(high, best[0], best[1])
                 if found is None:
                     return None
@@ -162,17 +213,23 @@ class Walker:
                 low, best, high = high, found, 2 * high
             else:
                 return None
+            # false position, the slope at the end that stays halved (Illinois); near the root halving has the last word
+            below, above = best[2], found[2]
             for _ in range(HALVINGS):
-                middle = (low + high) / 2
+                middle = low + (high - low) * below / (below - above)
+                if not low < middle < high:
+                    middle = (low + high) / 2
                 found = at(middle, best[0], best[1])
                 if found is None or middle in (low, high):
                     break
                 if found[2] > 0:
-                    low, best = middle, found
+                    low, best, below, above = middle, found, found[2], above / 2
                 else:
-                    high = middle
+                    high, above, below = middle, found[2], below / 2
+                if high - low < 4 * np.finfo(float).eps * high or found[2] == 0:
+                    break
         state, q, _ = best
-        if (q - last.q) * sense < 0 or abs(q - last.q) > 0.1:
+        if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
             return None
         return _Node(q, state, last.first, last.second, last.side)
 
@@ -183,7 +240,7 @@ class Walker:
         n = len(line)
         matrix = np.zeros((n + 1, n + 1))
         matrix[:n, :n] = kernel.matrix(everything)[0]
-        matrix[:n, n] = by_q
+        matrix[:n, n] = by_q * self.scale
         matrix[n, :n] = line
         return matrix
 
@@ -192,6 +249,7 @@ class Walker:
 
         When all has come back to where it was after some turns, the track is closed.
         """
+        self.home, self.at = state, at
         found = self.node(at, state)
         if found is None:
             return None
@@ -199,26 +257,25 @@ class Walker:
         up, above = self.leg(middle, at + half)
         down, below = self.leg(middle, at - half)
         nodes = [*reversed(down), middle, *up]
-        for turn in range(1, TURNS):  # where one way round is barred, the other one is gone to its end
-            if turns and below != "reached" and above == "reached":
+        if turns and above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+            return _track(nodes, True)
+        for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
+            if turns and above == "reached":
                 more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
                 nodes += more
-            elif turns and above != "reached" and below == "reached":
+                if above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+                    return _track(nodes, True)
+        for turn in range(1, TURNS):
+            if turns and below == "reached" and above != "reached":
                 more, below = self.leg(nodes[0], at - half - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        ends = (below, above)
-        if not (turns and ends == ("reached", "reached")):
-            open_ends = (below == "reached" and not turns, above == "reached" and not turns)
-            return _track(nodes, False, open_ends, (below == "limit", above == "limit"))
-        for turn in range(1, TURNS + 1):
-            if self.returned(nodes[0].state, nodes[-1].state):
-                return _track(nodes, True)
-            if turn < TURNS:
-                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
-                nodes += more
-                if above != "reached":
-                    return _track(nodes, False, (True, False), (False, above == "limit"))
-        return _track(nodes, False, (True, True))
+        return _track(
+            nodes,
+            False,
+            (below == "reached", above == "reached"),
+            (below == "limit", above == "limit"),
+            (below == "lost", above == "lost"),
+        )
 
     def returned(self, one: State, other: State) -> bool:
         """Whether two states are the same but for full turns."""
@@ -251,10 +308,11 @@ def _track(
     closed: bool,
     open_ends: tuple[bool, bool] = (False, False),
     limits: tuple[bool, bool] = (False, False),
+    lost: tuple[bool, bool] = (False, False),
 ) -> Track:
     def stacked(part: str) -> State:
         states = [getattr(node, part) for node in nodes]
         return State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
 
     first, second = stacked("first"), stacked("second")
-    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits)
+    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits, lost)

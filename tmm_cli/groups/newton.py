@@ -141,7 +141,7 @@ class Newton(Kernel):
         """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
         state = start
         size = np.full(np.shape(start.x)[:-1], np.inf)
-        for _ in range(ROUNDS):
+        for _ in range(rounds):
             near = size < NEAR
             everything = {**poses, **self.poses_of(state)}
             step = solve(self.matrix(everything), -self.gaps(everything, drives))
@@ -158,6 +158,7 @@ class Newton(Kernel):
         q = np.asarray(q)
         if self.track is not None:
             start, gap = self.track.start(q)
+            start = State(start.x, np.where((gap > 0)[..., None], np.nan, start.turn))  # nothing is there to be found
         else:
             assert self.start is not None
             shape = (*np.shape(q), len(self.group.links))

@@ -24,7 +24,9 @@ class Track:
 
     closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the track
     ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
-    first, the last node is a place where the driver turns back; derivatives are infinite there.
+    first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the track
+    ends there for another reason: the links it hangs on go no further, or links of its own go to infinity. unit: what
+    gaps are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides.
     """
 
     q: Real
@@ -34,6 +36,8 @@ class Track:
     closed: bool
     open_ends: tuple[bool, bool] = (False, False)
     limits: tuple[bool, bool] = (False, False)
+    lost: tuple[bool, bool] = (False, False)
+    unit: float = 1.0
 
     @cached_property
     def _bend(self) -> Real:
@@ -42,9 +46,8 @@ class Track:
         return bend
 
     def start(self, q: Real) -> tuple[State, Real]:
-        """A state near that at each place q, from the nearest node, and the gap: how far q is beyond the track's ends.
-
-        Negative inside, by the distance to the nearer end; -1 on a closed track.
+        """A state near that at each place q, from the nearest node, and the gap: how far q is beyond the track's ends,
+        in its units. Negative inside, by the distance to the nearer end; -1 on a closed track.
         """
         low, high = self.q[0], self.q[-1]
         cycle = high - low
@@ -77,7 +80,8 @@ class Track:
         )
         if self.closed:
             return state, np.full(np.shape(q), -1.0)
-        below = np.where(self.open_ends[0], -np.inf, low - q)
-        above = np.where(self.open_ends[1], -np.inf, q - high)
+        under, over = (low - q) / self.unit, (q - high) / self.unit
+        below = np.where(self.open_ends[0], -np.inf, under)
+        above = np.where(self.open_ends[1], -np.inf, over)
         gap = np.maximum(np.maximum(below, above), -1.0)
-        return state, np.where((q < low) | (q > high), np.maximum(np.maximum(low - q, q - high), 1e-12), gap)
+        return state, np.where((q < low) | (q > high), np.maximum(np.maximum(under, over), 1e-12), gap)

@@ -8,6 +8,8 @@ from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.units import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
 
+FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
+
 
 def build_drivers(
     shape: schema.File, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...], sense: Sense
@@ -26,6 +28,16 @@ def build_drivers(
                 allowed="one driver for each freedom, on links of their own",
             )  # fmt: skip
         found.append(driver)
+    size = max((abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values()),
+               default=0.0) or 1.0  # fmt: skip
+    for number, driver in enumerate(found[1:], 1):
+        lead, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (found[0], driver))
+        if lead > 0 and own > FASTER * lead:
+            raise ProblemError(
+                f"link {driver.link} is driven more than {FASTER} times as fast as link {found[0].link}, whose places "
+                "are looked at one by one", path=("driver", number, "speed"),
+                found=str(shape.driver[number].speed), allowed="the fastest driver first",
+            )  # fmt: skip
     if len(found) > 1 and found[0].rate == 0:
         raise ProblemError(
             "the first of several drivers counts the positions: it must move", path=("driver", 0, "speed"),
@@ -40,6 +52,11 @@ def _driver(
 ) -> Driver:  # fmt: skip
     link = sense.known(given.link, {n: 0 for n in links if n != FRAME}, (*path, "link"), "link")
     base = sense.known(given.on, links, (*path, "on"), "link")
+    if base == link:
+        raise ProblemError(
+            "a link cannot be driven from itself", path=(*path, "on"), found=quote(base),
+            allowed="the frame, 0, or another link that it is joined to",
+        )  # fmt: skip
     pivots = [h.point for h in hinges if base in h.links and link in h.links]
     runs = [s for s in slides if {s.carrier, s.runner} == {base, link}]
     if not pivots and not runs:

@@ -26,16 +26,63 @@ def build_meshes(
 
     def named(block: str, name: str) -> Path:
         path: Path = (block, name)
-        check_name(name, path, "point")
+        check_name(name, path, "pair")
         if name in taken:
-            raise ProblemError("another pair has this name", path=path, found=quote(name), key=True)
+            raise ProblemError(
+                "another pair has this name", path=path, found=quote(name),
+                allowed="a name that no hinge, guide, gear, rack or cam has", key=True,
+            )  # fmt: skip
         taken.add(name)
         return path
 
     found += [maker.gear(name, gear, named("gears", name)) for name, gear in shape.gears.items()]
+    _no_contradiction(found)
     found += [maker.rack(name, rack, named("racks", name)) for name, rack in shape.racks.items()]
     found += [maker.cam(name, cam, named("cams", name)) for name, cam in shape.cams.items()]
     return tuple(found)
+
+
+def _no_contradiction(gears: list[Mesh]) -> None:
+    """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn."""
+    turn: dict[tuple[str, str], dict[str, float]] = {}  # of each wheel a turn of the first one of its train
+    trains: dict[tuple[str, str], tuple[str, str]] = {}
+    used: dict[tuple[str, str], list[Mesh]] = {}
+    for gear in gears:
+        one, other = ((gear.carrier, n) for n in (gear.i, gear.j))
+        for end in (one, other):
+            if end not in trains:
+                trains[end], turn[end], used[end] = end, {end[1]: 1.0}, []
+        first, second = trains[one], trains[other]
+        asked = gear.ratio * turn[first][gear.i]
+        if first == second:
+            found = turn[first][gear.j]
+            if abs(asked - found) > MESHES * max(abs(asked), abs(found)):
+                ring = _ring([*used[first], gear])
+                wheels = list(dict.fromkeys(n for mesh in ring for n in (mesh.i, mesh.j)))
+                ahead, behind = (f"{v / turn[first][gear.i]:.6g}" for v in (asked, found))
+                raise ProblemError(
+                    f"contradictory gear ratios: wheels {', '.join(wheels)} lock one another",
+                    path=("gears", gear.name),
+                    found=f"a turn of {gear.i} turns {gear.j} by {ahead} in gear {gear.name}, by {behind} through "
+                    f"{', '.join(mesh.name for mesh in ring if mesh is not gear)}",
+                    allowed="gears round a ring whose ratios agree (an outer mesh changes the sense), or one gear less",
+                    key=True,
+                )  # fmt: skip
+            continue
+        scale = asked / turn[second][gear.j]
+        turn[first] |= {wheel: scale * value for wheel, value in turn[second].items()}
+        used[first] += [*used[second], gear]
+        trains = {end: first if train == second else train for end, train in trains.items()}
+
+
+def _ring(gears: list[Mesh]) -> list[Mesh]:
+    """The gears of a train in which each wheel meshes twice: what is left when the loose ends are taken off."""
+    while True:
+        ends = [n for mesh in gears for n in (mesh.i, mesh.j)]
+        kept = [mesh for mesh in gears if ends.count(mesh.i) > 1 and ends.count(mesh.j) > 1]
+        if len(kept) == len(gears):
+            return gears
+        gears = kept
 
 
 class _Maker:
@@ -44,15 +91,27 @@ class _Maker:
     ) -> None:
         self.links, self.hinges, self.slides, self.sense = links, hinges, slides, sense
 
-    def axis(self, link: str, carrier: str, path: Path, what: str) -> complex:
+    @staticmethod
+    def three(links: dict[str, str], path: Path) -> None:
+        """Refuse a pair whose parts are not three different links; links: by what they are."""
+        if len(set(links.values())) < len(links):
+            *most, last = links
+            raise ProblemError(
+                f"{', '.join(most)} and {last} are three different links", path=path,
+                found=", ".join(f"{what} {link}" for what, link in links.items()), allowed="another link", key=True,
+            )  # fmt: skip
+
+    def axis(self, link: str, carrier: str, path: Path, what: str, carried: bool = True) -> complex:
         """Where a link is hinged to the carrier, in the carrier's axes (m)."""
         for hinge in self.hinges:
             if {link, carrier} <= set(hinge.links):
                 return self.links[carrier].points[hinge.point]
         where = "the frame" if carrier == FRAME else f"link {carrier}"
+        hinged = dict.fromkeys(n for h in self.hinges if carrier in h.links for n in h.links if n != carrier)
         raise ProblemError(
             f"{what} is not hinged to {where}", path=path, found=quote(link),
-            allowed="a link with a hinge there; carrier: the link that carries the axes",
+            allowed=f"a link hinged to {where}: {', '.join(hinged) or 'there is none'}"
+            + ("; carrier: the link that carries the axes" if carried else ""),
         )  # fmt: skip
 
     def gear(self, name: str, given: schema.Gear, path: Path) -> Mesh:
@@ -66,25 +125,41 @@ class _Maker:
         axes = [self.axis(n, carrier, (*path, "between", k), f"wheel {n}") for k, n in enumerate((i, j))]
         distance = abs(axes[1] - axes[0])
         if distance == 0 and not given.inner:
-            raise ProblemError("both wheels turn about one axis", path=(*path, "between"), found=f"{i}, {j}")
+            raise self._one_axis(i, j, carrier, path)
         size = self._ratio(given, path)
+        if not 1 / MANY_TEETH <= size <= MANY_TEETH:
+            raise ProblemError(
+                "no pair of wheels has this ratio", path=(*path, "ratio"), found=f"{size:.6g}",
+                allowed=f"{1 / MANY_TEETH:g} to {MANY_TEETH}",
+            )  # fmt: skip
         self._meshes(given, distance, size, path)
+        if distance == 0:
+            raise self._one_axis(i, j, carrier, path)
         ratio = size if given.inner else -size
         if ratio == 1:
             raise ProblemError(
-                "an inner mesh of equal wheels has no place where they touch", path=path, found="ratio 1", key=True
-            )
+                "an inner mesh of equal wheels has no place where they touch", path=path, found="ratio 1",
+                allowed="wheels of different size", key=True,
+            )  # fmt: skip
         return Mesh(
             name, "gear", i, j, carrier, ratio, self.sense.number(given.offset, ANGLE, (*path, "offset")),
             pressure=self._pressure(given.pressure, path),
+        )  # fmt: skip
+
+    def _one_axis(self, i: str, j: str, carrier: str, path: Path) -> ProblemError:
+        where = "the frame" if carrier == FRAME else f"link {carrier}"
+        return ProblemError(
+            f"wheels {i} and {j} turn about one axis of {where}", path=(*path, "between"), found=f"{i}, {j}",
+            allowed="axes some way apart",
         )  # fmt: skip
 
     def _pressure(self, value: object, path: Path) -> float:
         angle = self.sense.number(value, ANGLE, (*path, "pressure"))
         if not 0 <= angle < math.pi / 2:
             raise ProblemError(
-                "a pressure angle of teeth lies between 0 and 90 deg", path=(*path, "pressure"), found=str(value)
-            )
+                "a pressure angle of teeth lies between 0 and 90 deg", path=(*path, "pressure"), found=str(value),
+                allowed="0 and more, less than 90 deg; 20 deg is usual",
+            )  # fmt: skip
         return angle
 
     def _ratio(self, given: schema.Gear, path: Path) -> float:
@@ -110,6 +185,9 @@ class _Maker:
                 found.append((key, r[0] / r[1]))
         if given.ratio is not None:
             found.append(("ratio", self.sense.positive(given.ratio, NUMBER, (*path, "ratio"))))
+        if not found and given.module is not None:
+            raise ProblemError("a module needs numbers of teeth", path=(*path, "module"), found=str(given.module),
+                               allowed="teeth: [20, 40]")  # fmt: skip
         if not found:
             raise ProblemError("teeth, radii or ratio is wanted", path=path, found="none", allowed="teeth: [20, 40]",
                                key=True)  # fmt: skip
@@ -117,8 +195,8 @@ class _Maker:
         for key, other in found[1:]:
             if abs(other - size) > MESHES * size:
                 raise ProblemError(
-                    "contradictory gear ratios", path=(*path, key), found=f"{other:.6g}, by {first} {size:.6g}",
-                    allowed="one of them",
+                    f"contradictory gear ratios of wheels {' and '.join(given.between)}", path=(*path, key),
+                    found=f"by {key} {other:.6g}, by {first} {size:.6g}", allowed=f"{first} or {key}, or both alike",
                 )  # fmt: skip
         return size
 
@@ -135,10 +213,6 @@ class _Maker:
             module = self.sense.positive(given.module, LENGTH, (*path, key))
             radii = [module * teeth / 2 for teeth in given.teeth]
         if radii is None:
-            if given.inner and size == 1:
-                return
-            if distance == 0:
-                raise ProblemError("both wheels turn about one axis", path=(*path, "between"), found=str(given.between))
             return
         wanted = abs(radii[0] - radii[1]) if given.inner else radii[0] + radii[1]
         if abs(wanted - distance) > MESHES * max(wanted, distance):
@@ -155,8 +229,9 @@ class _Maker:
             self.sense.known(getattr(given, key), self.links, (*path, key), "link")
             for key in ("wheel", "rack", "carrier")
         )
+        self.three({"wheel": wheel, "rack": rack, "carrier": carrier}, path)
         axis = self.axis(wheel, carrier, (*path, "wheel"), f"wheel {wheel}")
-        slide = self._slide(rack, carrier, (*path, "rack"), "the rack")
+        slide = self._slide(rack, carrier, (*path, "rack"))
         radius = self.sense.positive(given.radius, LENGTH, (*path, "radius"))
         # the line of the guide and the forward direction of the rack, both on the carrier where it carries the guide
         on_guide = slide.carrier == carrier
@@ -175,24 +250,37 @@ class _Maker:
             pressure=self._pressure(given.pressure, path),
         )  # fmt: skip
 
-    def _slide(self, link: str, carrier: str, path: Path, what: str) -> Slide:
+    def _slide(self, link: str, carrier: str, path: Path) -> Slide:
         for slide in self.slides:
             if {slide.carrier, slide.runner} == {link, carrier}:
                 return slide
         where = "the frame" if carrier == FRAME else f"link {carrier}"
         raise ProblemError(
-            f"{what} does not slide on {where}", path=path, found=quote(link), allowed=f"a link that slides on {where}"
-        )
+            f"rack {link} does not slide on {where}", path=path, found=quote(link),
+            allowed=f"a link that slides on {where}: {', '.join(self.sliding_on(carrier)) or 'there is none'}; "
+            "carrier: the link that holds wheel and rack",
+        )  # fmt: skip
+
+    def sliding_on(self, carrier: str) -> list[str]:
+        """The links that have a sliding pair with the carrier."""
+        ends = [(s.carrier, s.runner) for s in self.slides] + [(s.runner, s.carrier) for s in self.slides]
+        return list(dict.fromkeys(other for one, other in ends if one == carrier))
 
     def cam(self, name: str, given: schema.Cam, path: Path) -> Mesh:
         cam, follower = (
             self.sense.known(getattr(given, k), self.links, (*path, k), "link") for k in ("cam", "follower")
         )
-        self.axis(cam, FRAME, (*path, "cam"), f"cam {cam}")
-        slides = any({s.carrier, s.runner} == {follower, FRAME} for s in self.slides)
-        if not slides:
-            self.axis(follower, FRAME, (*path, "follower"), f"follower {follower}")
-        slide = self._slide(follower, FRAME, (*path, "follower"), "the follower").name if slides else ""
+        self.three({"cam": cam, "follower": follower, "frame": FRAME}, path)
+        self.axis(cam, FRAME, (*path, "cam"), f"cam {cam}", carried=False)
+        slides = follower in self.sliding_on(FRAME)
+        hinged = {n for h in self.hinges if FRAME in h.links for n in h.links if n not in (FRAME, cam)}
+        if not slides and follower not in hinged:
+            here = [n for n in self.links if n in hinged or n in self.sliding_on(FRAME)]
+            raise ProblemError(
+                f"follower {follower} neither slides on the frame nor is hinged to it", path=(*path, "follower"),
+                found=quote(follower), allowed=", ".join(here) or "a link with a guide or a hinge on the frame",
+            )  # fmt: skip
+        slide = self._slide(follower, FRAME, (*path, "follower")).name if slides else ""
         want = LENGTH if slides else ANGLE
         pieces = []
         for k, piece in enumerate(given.law):

@@ -19,11 +19,13 @@ from tmm_cli.refused import (
     NoSuchPosition,
     NotOnFrame,
     Refused,
+    TooLarge,
     Undecided,
     WrongMobility,
 )
-from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.assur import Group, Structure
 
+MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
 ANY = object()
 MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     ((), schema.File),
@@ -144,7 +146,7 @@ def _limits(kind: str, context: dict[str, Any]) -> str | None:
     if kind in ("too_long", "string_too_long"):
         return f"this is too long: at most {context['max_length']}"
     if kind == "too_short":
-        return "there is nothing here"
+        return f"{context['min_length']} are wanted here" if context["min_length"] > 1 else "there is nothing here"
     return None
 
 
@@ -161,7 +163,9 @@ def _keys(path: Path) -> list[str]:
 
 
 def _describe(path: Path) -> str | None:
-    model = _model(path[:-1])
+    while path and isinstance(path[-1], int):  # an item is described with its list
+        path = path[:-1]
+    model = _model(path[:-1]) if path else None
     if model is None:
         return None
     for name, field in model.model_fields.items():
@@ -195,26 +199,32 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             if group.type in ("PRP", "RPP"):
                 short = "their guides are parallel"
             return ProblemError(
-                f"links {_and(group.links)} cannot be assembled with the driver at {place}",
+                f"{_group(group)} cannot be assembled with the driver at {place}",
                 path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
             )  # fmt: skip
-        case Undecided(group=group, choices=choices) if choices:
-            ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in choices.items())
+        case Undecided(group=group, choices=choices, count=count) if choices:
+            told = list(choices.items())[:MOST_CHOICES]
+            ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in told)
             listing = f"tmm kinematics {problem.file or 'FILE'} --assemblies"
             return ProblemError(
-                f"the sketch does not say which way round links {_and(group.links)} are assembled; {listing} lists all",
-                path=("sketch",), key=True,
-                allowed=f"with the driver at {place}, {ways}",
+                f"the sketch does not say which way round {_group(group)} {_are(group)} assembled; {listing} lists all",
+                path=("sketch",), found=f"{count} assemblies" if count > 2 else None,
+                allowed=f"with the driver at {place}, {ways}", key=True,
             )  # fmt: skip
         case Undecided(group=group):
             return ProblemError(
-                f"links {_and(group.links)} are in their dead position in the sketch", path=("sketch", "at"),
+                f"{_group(group)} {_are(group)} in a dead position in the sketch", path=("sketch", "at"),
                 found=place, allowed="another place of the driver, where the two assemblies differ",
             )  # fmt: skip
         case Misfit(name=name, sketched=sketched, found=value):
             return ProblemError(
                 "the sketch fits no assembly", path=("sketch", name), found=shown(sketched),
                 allowed=f"about {shown(value)} with the driver at {place}",
+            )  # fmt: skip
+        case TooLarge(group=group, most=most):
+            return ProblemError(
+                f"a group of so many links is not solved: {group.title}", path=("links",), found=str(len(group.links)),
+                allowed=f"at most {most} in one group; any number of groups", key=True,
             )  # fmt: skip
         case NoSuchPosition(number=number, count=count):
             return ProblemError(
@@ -235,19 +245,29 @@ def _mobility(structure: Structure) -> ProblemError:
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
+    stuck = next((bodies for name, bodies in structure.idle if name == "driver"), None)
+    if stuck is not None and (structure.loose or wanted > 1):
+        number, driver = [(k, d) for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(stuck)][-1]
+        loose = f"; {_listed(structure.loose)} loose" if structure.loose else ""
+        return ProblemError(
+            f"link {driver.link} cannot be driven: {'other drivers and pairs hold' if wanted > 1 else 'pairs hold'} it "
+            "already", path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
+            found=f"{count}; over-held: links {', '.join(stuck)}{loose}",
+            allowed=f"W = {wanted}, and " + ("drivers on links" if wanted > 1 else "a driver on a link")
+            + " that can still move",
+        )  # fmt: skip
     if structure.loose:
         links = structure.loose
+        more = structure.freedom > wanted and not structure.idle
         driven = "as one link is driven" if wanted == 1 else f"as {wanted} links are driven"
         return ProblemError(
             f"mobility is not {wanted}: {_listed(links)} loose", path=("links", links[0]), found=count,
-            allowed=f"W = {wanted}, {driven}", key=True,
+            allowed=f"W = {wanted}, {driven}" + (f"; or {structure.freedom} drivers" if more else ""), key=True,
         )  # fmt: skip
     name, bodies = structure.idle[0] if structure.idle else ("driver", structure.links)
     if name == "driver":
-        one = "the driver cannot move, its links are a truss"
-        several = "the drivers cannot all move, they hold the same links"
         return ProblemError(
-            f"mobility is not {wanted}: {one if wanted == 1 else several}", path=("driver", "link"),
+            f"mobility is not {wanted}: the driver cannot move, its links are a truss", path=("driver", "link"),
             found=f"{count}; over-held: links {', '.join(bodies)}", allowed=f"W = {wanted}",
         )  # fmt: skip
     links = tuple(b for b in bodies if b in structure.links)
@@ -260,6 +280,15 @@ def _mobility(structure: Structure) -> ProblemError:
 
 def _listed(links: tuple[str, ...]) -> str:
     return f"link {links[0]} is" if len(links) == 1 else f"links {', '.join(links)} are"
+
+
+def _group(group: Group) -> str:
+    """links 2 and 3, group II(2,3)."""
+    return f"link{'s' if len(group.links) > 1 else ''} {_and(group.links)}, group {group.title},"
+
+
+def _are(group: Group) -> str:
+    return "are" if len(group.links) > 1 else "is"
 
 
 def _and(links: tuple[str, ...]) -> str:

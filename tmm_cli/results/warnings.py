@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_cli.assembly import sketch_deviations
+from tmm_cli.forces.springs import twisted
 from tmm_cli.motion import Law, move
-from tmm_cli.pipeline import Results
+from tmm_cli.pipeline import Results, at_positions
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.vectors import dot
 from tmm_cli.words import say
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
+    from tmm_cli.forces.friction import Rubbed
     from tmm_cli.linkage import Load
 
+CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
+MOST_IMPACTS = 6  # jumps of one cam that are named
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
@@ -32,11 +36,13 @@ def warnings(results: Results) -> Iterable[str]:
     def place(q: float) -> str:
         return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
 
-    if way.limits and results.linkage.driver.kind == "turn":
-        groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits))
-        given = "" if results.problem.request.places else say("warning.given")
-        ends = {"start": place(way.start), "end": place(way.end)}
-        yield say("warning.range", link=results.linkage.driver.link, groups=groups, **ends) + given
+    given = "" if results.problem.request.places else say("warning.given")
+    ends = {"link": results.linkage.driver.link, "start": place(way.start), "end": place(way.end)}
+    groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits if limit.group))
+    if groups and results.linkage.driver.kind == "turn":
+        yield say("warning.range", groups=groups, **ends) + given
+    if any(limit.driver for limit in way.limits):
+        yield say("warning.range_stopped", **ends) + given
     there = move(results.linkage, results.kernels, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1))
     for point, off in sketch_deviations(results.linkage, there.poses).items():
         if off > SKETCH:
@@ -73,9 +79,9 @@ def warnings(results: Results) -> Iterable[str]:
                                 (pressure.largest, pressure.allowed))  # fmt: skip
             yield say("warning.pressure", link=pressure.link, largest=largest, allowed=allowed)
     if results.friction is not None and np.any(results.friction.locked):
-        k = int(np.argmax(results.friction.locked))
-        pair = results.structure.pair(results.friction.pair[k])
-        yield say("warning.locked", number=results.numbers[k], pair=pair.name, i=pair.i, j=pair.j)
+        yield say("warning.locked", places="; ".join(_locked(results, results.friction)))
+    yield from _twisted(results, place)
+    yield from _impacts(results)
     for load in results.loads:
         if load.kind == "load" and _drives(results, load):
             yield say("warning.drives", load=load.name)
@@ -87,12 +93,48 @@ def warnings(results: Results) -> Iterable[str]:
             if asked.working_stroke_only:
                 yield say("warning.always", load=asked.name)
     if results.lever is not None and not results.lever_holds:
-        worst = np.where(motion.moving, results.lever.difference, 0.0)
+        worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
         k = int(np.argmax(worst))
         yield say(
             "warning.lever", number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
             limit=f"{100 * results.problem.lever_limit:.3g}",
         )  # fmt: skip
+
+
+def _locked(results: Results, rubbed: Rubbed) -> Iterable[str]:
+    """Where friction locks the mechanism, by the pair that rubs most."""
+    lost = np.flatnonzero(rubbed.locked)
+    for name in dict.fromkeys(rubbed.pair[k] for k in lost):
+        numbers = [str(results.numbers[k]) for k in lost if rubbed.pair[k] == name]
+        pair = results.structure.pair(name)
+        yield say(
+            "warning.locked_in", s="s" if len(numbers) > 1 else "", numbers=", ".join(numbers), pair=name,
+            i=pair.i, j=pair.j,
+        )  # fmt: skip
+
+
+def _twisted(results: Results, place: Callable[[float], str]) -> Iterable[str]:
+    """Torsion springs that come to half a turn from their free angle."""
+    springs = [s for s in results.linkage.springs if s.turns]
+    if not springs or results.reactions is None:
+        return
+    motion = at_positions(results, results.closely(CLOSELY * (results.way.turns if results.way else 1) + 1))
+    for spring in springs:
+        with np.errstate(invalid="ignore"):
+            jumps = np.flatnonzero(np.abs(np.diff(twisted(spring, motion))) > np.pi)
+        if jumps.size:
+            yield say("warning.twist", spring=spring.name, place=place(float(motion.q[jumps[0]])))
+
+
+def _impacts(results: Results) -> Iterable[str]:
+    """Cams whose law has jumps of the follower's speed."""
+    units = results.problem.units
+    for mesh in results.linkage.meshes:
+        jumps = mesh.law.jumps() if mesh.law is not None else ()
+        if jumps:
+            places = ", ".join(f"{units.from_si(a, ANGLE):.6g}" for a in jumps[:MOST_IMPACTS])
+            more = ", ..." if len(jumps) > MOST_IMPACTS else ""
+            yield say("warning.impact", cam=mesh.i, follower=mesh.j, places=f"{places}{more} {units.symbol(ANGLE)}")
 
 
 def _drives(results: Results, load: Applied) -> bool:

@@ -9,8 +9,8 @@ h(x, y) = a + b x + c y over its own axes. Each pair asks for equal heights:
     spherical              height at the centre        1
     cylindrical for P      height along the guide      2   (it may turn about the guide)
     planar for P           slope across the guide      1   (flat cheeks: it may rise and turn in the wall)
-    teeth, cam             slope along the normal      1   (they touch along a line)
-    barrel-shaped          none                        0   (they touch in a point)
+    teeth, cams            slope along the normal      1   (they touch in a line along the axes)
+    the same, crowned      nothing                     0   (they touch in a point)
 
 A linkage with W = 1 has 3K conditions too many, K its contours. None of these replacements touches the motion in the
 plane. A proposal is good when its conditions are independent (rank) and what they leave free are local freedoms of
@@ -32,12 +32,12 @@ from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.structure.spatial import KINDS, Chain, SpatialPair
 from tmm_cli.vectors import Real
 
-HIGHER = ("cylinder on plane", "cylinder on plane", "sphere on plane")  # teeth and cams: a line, or a point
+TOUCHING = ("cylinder on plane", "sphere on plane")
 CHOICES = {
     "R": ("turning", "cylindrical", "spherical"), "P": ("sliding", "cylindrical", "planar"),
-    "G": HIGHER, "K": HIGHER, "C": HIGHER,
+    "G": TOUCHING, "K": TOUCHING, "C": TOUCHING,
 }  # fmt: skip
-"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 1, 0."""
+"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 0."""
 CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
 GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
 INDEPENDENT = 1e-9  # of the largest singular value, or of a row; dependent rows are at 1e-15
@@ -95,9 +95,9 @@ class Space:
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
-def space(linkage: Linkage, structure: Structure) -> Space:
-    """Count the linkage in space and propose pairs without redundant constraints; wanted: a freedom for each driver."""
-    wanted = len(structure.drivers)
+def space(linkage: Linkage, structure: Structure, wanted: int | None = None) -> Space:
+    """Count the linkage in space and propose pairs without redundant constraints; wanted: one freedom a driver."""
+    wanted = len(structure.drivers) if wanted is None else wanted
     chain = spatial_chain(structure, {})
     heights = Heights(linkage)
     for pins_first in (True, False):
@@ -139,10 +139,9 @@ class Heights:
     def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
         """Conditions that a pair of this kind puts on the given links, shape (conditions, 3 links); others lie flat."""
         slide = pair.slide
-        if pair.mesh is not None:
+        if pair.mesh is not None:  # the normal of the teeth lies anywhere in the plane
             places = dict.fromkeys((pair.i, pair.j), 0j)
-            normal = self.angle[pair.mesh.carrier] + GOLDEN  # of the teeth: seen from the carrier, in any direction
-            ahead = {link: cmath.exp(1j * (normal - self.angle[link])) for link in places}
+            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
         elif slide is None:
             places = {link: _one(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
             ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
@@ -199,9 +198,9 @@ def _choose_all(heights: Heights, structure: Structure, pins_first: bool) -> dic
 
     pins_first: pairs of a compound hinge are the first to be cylindrical, as they share one pin.
     """
-    pins = [p.point for p in structure.pairs if p.slide is None]
-    shared = {p.name for p in structure.pairs if p.slide is None and pins.count(p.point) > 1} if pins_first else set()
-    kinds: dict[str, str] = {}
+    pins = [p.point for p in structure.pairs if p.kind == "R"]
+    shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
+    kinds = {p.name: TOUCHING[1] for p in structure.pairs if not p.lower}
     for group in structure.groups:
         chosen = _choose(heights, group.links, (*group.inner, *group.outer), shared)
         if chosen is None:
@@ -217,9 +216,9 @@ def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pin
     frame position the shafts and guides and stay. Each pair begins with its freest kind; then as many as possible are
     given back what they were, and what is still free by then is held by cylindrical ones.
     """
-    on_frame = {p.other(FRAME) for p in own if FRAME in (p.i, p.j)}
+    on_frame = {p.other(FRAME) for p in own if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
-    pairs = [p for p in own if FRAME not in (p.i, p.j)]
+    pairs = [p for p in own if p.lower and FRAME not in (p.i, p.j)]
     blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in CHOICES[p.kind]}
     best: tuple[tuple[int, int], dict[str, str]] | None = None
     for first in range(min(len(pairs), MOST_TRIES)):

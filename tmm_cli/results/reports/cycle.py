@@ -49,7 +49,7 @@ def tables(results: Results) -> Iterable[Table]:
         for key, values, dimension in output_motion(results, motion, link):
             columns.append(Column(say(f"cycle.{key}", link=link), values, dimension))
     columns += _balance(results)
-    if not bool(np.all(motion.moving)):
+    if not bool(np.all(motion.moving & ~results.locked)):
         columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))
     yield Table("cycle", say("cycle.title"), tuple(columns))
 
@@ -126,4 +126,6 @@ def state(results: Results, k: int) -> str:
     for title, dead in motion.dead.items():
         if dead[k]:
             return say("state.dead", group=title)
-    return "" if motion.moving[k] else say("state.stopped")
+    if motion.moving[k]:
+        return say("state.locked") if results.locked[k] else ""
+    return say("state.stopped")

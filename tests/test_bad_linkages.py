@@ -1,0 +1,820 @@
+"""Bad input in gears, racks, cams, springs, friction and drivers: exact messages, or honest results where it jams."""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+
+import blocks
+import numpy as np
+import pytest
+from test_bad_input import place, refusal
+from test_commands import tmm
+
+from tmm_cli import solve
+from tmm_cli.camlaw import CamLaw, Piece
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.results.as_json import to_json
+from tmm_cli.results.warnings import warnings as words
+
+CASES = {
+    "wheel that does not exist": (
+        blocks.GEARED, "between: [1, 4]", "between: [1, 9]", "9]",
+        "gears.z.between[1]: there is no link of that name\n"
+        "  found:   '9'\n"
+        "  allowed: 0, 1, 2, 3, 4",
+    ),
+    "one wheel": (
+        blocks.GEARED, "between: [1, 4]", "between: [1]", "[1]",
+        "gears.z.between: 2 are wanted here\n"
+        "  found:   a list of 1\n"
+        "  allowed: the two wheels; the frame may be one (fixed)",
+    ),
+    "one wheel twice": (
+        blocks.GEARED, "between: [1, 4]", "between: [1, 1]", "[1,",
+        "gears.z.between: wheels and carrier are three different links\n"
+        "  found:   1, 1 on 0\n"
+        "  allowed: carrier: the link that carries both axes",
+    ),
+    "fixed wheel on the frame that carries it": (
+        blocks.GEARED, "between: [1, 4]", "between: [0, 4]", "[0, 4",
+        "gears.z.between: wheels and carrier are three different links\n"
+        "  found:   0, 4 on 0\n"
+        "  allowed: carrier: the link that carries both axes",
+    ),
+    "wheel not hinged to the frame": (
+        blocks.GEARED, "between: [1, 4]", "between: [1, 2]", "2]",
+        "gears.z.between[1]: wheel 2 is not hinged to the frame\n"
+        "  found:   '2'\n"
+        "  allowed: a link hinged to the frame: 1, 4; carrier: the link that carries the axes",
+    ),
+    "wheel not hinged to its carrier": (
+        blocks.GEARED, "between: [1, 4]", "between: [1, 4], carrier: 2", "4]",
+        "gears.z.between[1]: wheel 4 is not hinged to link 2\n"
+        "  found:   '4'\n"
+        "  allowed: a link hinged to link 2: 1, 3; carrier: the link that carries the axes",
+    ),
+    "wheels on one axis": (
+        blocks.GEARED, "D: [150, 0]}", "D: [0, 0]}", "[1",
+        "gears.z.between: wheels 1 and 4 turn about one axis of the frame\n"
+        "  found:   1, 4\n"
+        "  allowed: axes some way apart",
+    ),
+    "axes too far apart for the module": (
+        blocks.GEARED, "module: 5 mm", "module: 4 mm", "4 mm",
+        "gears.z.module: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n"
+        "  found:   sum of the pitch radii 120 mm\n"
+        "  allowed: a distance of 120 mm, or inner: true",
+    ),
+    "axes too near for the radii": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "radii: [75, 80]", "[75",
+        "gears.z.radii: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n"
+        "  found:   sum of the pitch radii 155 mm\n"
+        "  allowed: a distance of 155 mm, or inner: true",
+    ),
+    "inner mesh at the distance of an outer one": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "radii: [75, 70], inner: true", "[75",
+        "gears.z.radii: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n"
+        "  found:   difference of the pitch radii 5 mm\n"
+        "  allowed: a distance of 5 mm",
+    ),
+    "teeth and ratio disagree": (
+        blocks.GEARED, "module: 5 mm", "ratio: 2", "2}",
+        "gears.z.ratio: contradictory gear ratios of wheels 1 and 4\n"
+        "  found:   by ratio 2, by teeth 1\n"
+        "  allowed: teeth or ratio, or both alike",
+    ),
+    "teeth and radii disagree": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [30, 20], radii: [75, 75]", "[75",
+        "gears.z.radii: contradictory gear ratios of wheels 1 and 4\n"
+        "  found:   by radii 1, by teeth 1.5\n"
+        "  allowed: teeth or radii, or both alike",
+    ),
+    "no ratio at all": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "offset: 3 deg", "z:",
+        "gears.z: teeth, radii or ratio is wanted\n"
+        "  found:   none\n"
+        "  allowed: teeth: [20, 40]",
+    ),
+    "module without teeth": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "module: 3 mm", "3 mm",
+        "gears.z.module: a module needs numbers of teeth\n"
+        "  found:   3 mm\n"
+        "  allowed: teeth: [20, 40]",
+    ),
+    "ratio zero": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "ratio: 0", "0}\nd",
+        "gears.z.ratio: a number cannot be zero\n"
+        "  found:   0\n"
+        "  allowed: more than zero",
+    ),
+    "negative ratio": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "ratio: -1", "-1",
+        "gears.z.ratio: a number cannot be negative\n"
+        "  found:   -1\n"
+        "  allowed: more than zero",
+    ),
+    "ratio of no wheels": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "ratio: 1e-20", "1e-2",
+        "gears.z.ratio: no pair of wheels has this ratio\n"
+        "  found:   1e-20\n"
+        "  allowed: 1e-05 to 100000",
+    ),
+    "no teeth": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [0, 30]", "0, 3",
+        "gears.z.teeth[0]: a number of teeth is wanted\n"
+        "  found:   0\n"
+        "  allowed: 1 and more",
+    ),
+    "half a tooth": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [1.5, 30]", "1.5",
+        "gears.z.teeth[0]: a whole number is wanted\n"
+        "  found:   1.5\n"
+        "  allowed: numbers of teeth of both",
+    ),
+    "teeth of one wheel": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [30]", "[30",
+        "gears.z.teeth: two numbers are wanted, for both wheels\n"
+        "  found:   [30]\n"
+        "  allowed: [20, 40]",
+    ),
+    "equal wheels inside one another": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [30, 30], inner: true", "z:",
+        "gears.z: an inner mesh of equal wheels has no place where they touch\n"
+        "  found:   ratio 1\n"
+        "  allowed: wheels of different size",
+    ),
+    "pressure angle of a right angle": (
+        blocks.GEARED, "module: 5 mm", "module: 5 mm, pressure: 90 deg", "90",
+        "gears.z.pressure: a pressure angle of teeth lies between 0 and 90 deg\n"
+        "  found:   90 deg\n"
+        "  allowed: 0 and more, less than 90 deg; 20 deg is usual",
+    ),
+    "gear called like a hinge": (
+        blocks.GEARED, "  z: {", "  A: {", "A:",
+        "gears.A: another pair has this name\n"
+        "  found:   'A'\n"
+        "  allowed: a name that no hinge, guide, gear, rack or cam has",
+    ),
+    "misspelt key of a gear": (
+        blocks.GEARED, "module: 5 mm", "modul: 5 mm", "modu",
+        "gears.z.modul: unknown key\n"
+        "  found:   'modul'\n"
+        "  allowed: between, carrier, teeth, radii, ratio, module, inner, offset, pressure\n"
+        "  did you mean 'module'?",
+    ),
+    "misspelt block": (
+        blocks.GEARED, "gears:", "gear:", "gear",
+        "gear: unknown key\n"
+        "  found:   'gear'\n"
+        "  allowed: tmm, title, description, units, parameters, points, guides, links, driver, gears, racks, "
+        "cams, springs, friction, sketch, masses, loads, gravity, output, positions, checks\n"
+        "  did you mean 'gears'?",
+    ),
+    "rack and wheel are one link": (
+        blocks.RACK, "rack: 2", "rack: 1", "k:",
+        "racks.k: wheel, rack and carrier are three different links\n"
+        "  found:   wheel 1, rack 1, carrier 0\n"
+        "  allowed: another link",
+    ),
+    "wheel that is the frame": (
+        blocks.RACK, "wheel: 1", "wheel: 0", "k:",
+        "racks.k: wheel, rack and carrier are three different links\n"
+        "  found:   wheel 0, rack 2, carrier 0\n"
+        "  allowed: another link",
+    ),
+    "rack that does not slide on the carrier": (
+        blocks.GEARED, "driver:", "racks: {k: {wheel: 1, rack: 4, radius: 50}}\ndriver:", "4,",
+        "racks.k.rack: rack 4 does not slide on the frame\n"
+        "  found:   '4'\n"
+        "  allowed: a link that slides on the frame: there is none; carrier: the link that holds wheel and rack",
+    ),
+    "wheel on a rack that is not hinged to the carrier": (
+        blocks.GEARED, "driver:", "racks: {k: {wheel: 2, rack: 4, radius: 50}}\ndriver:", "2,",
+        "racks.k.wheel: wheel 2 is not hinged to the frame\n"
+        "  found:   '2'\n"
+        "  allowed: a link hinged to the frame: 1, 4; carrier: the link that carries the axes",
+    ),
+    "axis on the line of the rack's guide": (
+        blocks.RACK, "[0, -50]", "[0, 0]", "k:",
+        "racks.k.side: on which side of the rack is the wheel?\n"
+        "  found:   its axis is on the guide's line\n"
+        "  allowed: side: left or right, looking along the guide",
+    ),
+    "side that is neither left nor right": (
+        blocks.RACK, "radius: 50", "radius: 50, side: above", "abov",
+        "racks.k.side: this word is not known here\n"
+        "  found:   'above'\n"
+        "  allowed: left, right",
+    ),
+    "radius zero": (
+        blocks.RACK, "radius: 50", "radius: 0", "0}",
+        "racks.k.radius: a length cannot be zero\n"
+        "  found:   0\n"
+        "  allowed: more than zero",
+    ),
+    "law that is less than a turn": (
+        blocks.CAM, "over: 60 deg}]", "over: 50 deg}]", "[{ov",
+        "cams.c.law: the pieces of the law do not make a full turn\n"
+        "  found:   350 deg\n"
+        "  allowed: 360 deg together",
+    ),
+    "law that does not come back": (
+        blocks.CAM, "rise: -20", "rise: -10", "[{ov",
+        "cams.c.law: after a turn the follower is not back where it was\n"
+        "  found:   it has gone 10 mm\n"
+        "  allowed: rises that add up to 0",
+    ),
+    "piece of no angle": (
+        blocks.CAM, "over: 60 deg}]", "over: 0 deg}]", "0 deg}]",
+        "cams.c.law[3].over: an angle cannot be zero\n"
+        "  found:   '0 deg'\n"
+        "  allowed: more than zero",
+    ),
+    "rise in degrees of a follower that slides": (
+        blocks.CAM, "rise: 20", "rise: 20 deg", "20 deg}",
+        "cams.c.law[0].rise: a length is wanted here\n"
+        "  found:   '20 deg', an angle (20 deg)\n"
+        "  allowed: a length, e.g. 110 mm or 0.11 m",
+    ),
+    "law of motion that is not known": (
+        blocks.CAM, "law: cosine", "law: cosin", "cosi",
+        "cams.c.law[2].law: this word is not known here\n"
+        "  found:   'cosin'\n"
+        "  allowed: linear, parabolic, cosine, sine, 3-4-5, 4-5-6-7\n"
+        "  did you mean 'cosine'?",
+    ),
+    "no pieces": (
+        blocks.CAM,
+        "law: [{over: 120 deg, rise: 20}, {over: 60 deg}, {over: 120 deg, rise: -20, law: cosine}, {over: 60 deg}]",
+        "law: []", "[]",
+        "cams.c.law: there is nothing here\n"
+        "  found:   a list of 0\n"
+        "  allowed: piece by piece over a full turn",
+    ),
+    "cam is its own follower": (
+        blocks.CAM, "follower: 2", "follower: 1", "c:",
+        "cams.c: cam, follower and frame are three different links\n"
+        "  found:   cam 1, follower 1, frame 0\n"
+        "  allowed: another link",
+    ),
+    "cam that is the frame": (
+        blocks.CAM, "cam: 1", "cam: 0", "c:",
+        "cams.c: cam, follower and frame are three different links\n"
+        "  found:   cam 0, follower 2, frame 0\n"
+        "  allowed: another link",
+    ),
+    "follower off the frame": (
+        blocks.GEARED, "driver:", "cams: {c: {cam: 1, follower: 2, law: [{over: 360 deg}]}}\ndriver:", "2,",
+        "cams.c.follower: follower 2 neither slides on the frame nor is hinged to it\n"
+        "  found:   '2'\n"
+        "  allowed: 4",
+    ),
+    "cam off the frame": (
+        blocks.GEARED, "driver:", "cams: {c: {cam: 2, follower: 4, law: [{over: 360 deg}]}}\ndriver:", "2,",
+        "cams.c.cam: cam 2 is not hinged to the frame\n"
+        "  found:   '2'\n"
+        "  allowed: a link hinged to the frame: 1, 4",
+    ),
+    "spring without its free length": (
+        blocks.CYLINDER, ", free: 100", "", "s: {b",
+        "springs.s.free: the free length of the spring is missing\n"
+        "  allowed: a length",
+    ),
+    "spring from a link to itself": (
+        blocks.CYLINDER, "[0, 3], at: [O, K]", "[3, 3], at: [D, K]", "[3,",
+        "springs.s.between: a spring joins two different links\n"
+        "  found:   3, 3\n"
+        "  allowed: two links; the frame, 0, may be one",
+    ),
+    "spring on a link that does not exist": (
+        blocks.CYLINDER, "between: [0, 3]", "between: [0, 8]", "8]",
+        "springs.s.between[1]: there is no link of that name\n"
+        "  found:   '8'\n"
+        "  allowed: 0, 1, 2, 3",
+    ),
+    "spring at a point that does not exist": (
+        blocks.CYLINDER, "[O, K]", "[O, Q]", "Q]",
+        "springs.s.at[1]: no point of link 3 has that name\n"
+        "  found:   'Q'\n"
+        "  allowed: D, B, K",
+    ),
+    "spring with one end": (
+        blocks.CYLINDER, "at: [O, K], ", "at: [K], ", "[K",
+        "springs.s.at: 2 are wanted here\n"
+        "  found:   a list of 1\n"
+        "  allowed: its ends, one on each link; their first points",
+    ),
+    "spring without ends": (
+        blocks.CYLINDER, "at: [O, K], ", "", "s: {b",
+        "springs.s.at: where are the ends of the spring?\n"
+        "  allowed: at: [point of one, point of the other]",
+    ),
+    "spring without stiffness": (
+        blocks.CYLINDER, "rate: 2 N/mm, ", "", "s: {b",
+        "springs.s: rate or torsion is wanted\n"
+        "  found:   neither\n"
+        "  allowed: rate: 5 N/mm, or torsion: 2 N*m/rad",
+    ),
+    "spring that stretches and twists": (
+        blocks.CYLINDER, "rate: 2 N/mm", "rate: 2 N/mm, torsion: 1 N*m/rad", "s: {b",
+        "springs.s: rate or torsion is wanted\n"
+        "  found:   both\n"
+        "  allowed: rate: 5 N/mm, or torsion: 2 N*m/rad",
+    ),
+    "spring that is shorter than nothing": (
+        blocks.CYLINDER, "free: 100", "free: -100", "-100",
+        "springs.s.free: a length cannot be negative\n"
+        "  found:   -100\n"
+        "  allowed: zero or more",
+    ),
+    "spring in a hinge": (
+        blocks.CYLINDER, "[O, K]", "[D, D]", "[D, D",
+        "springs.s.at: both ends of spring s are in hinge D: it has no length\n"
+        "  found:   D, D\n"
+        "  allowed: two points, one of each link; torsion for a spring in a hinge",
+    ),
+    "negative stiffness": (
+        blocks.CYLINDER, "2 N/mm", "-2 N/mm", "-2",
+        "springs.s.rate: a stiffness cannot be negative\n"
+        "  found:   '-2 N/mm'\n"
+        "  allowed: zero or more",
+    ),
+    "torsion spring with ends": (
+        blocks.CYLINDER, "rate: 2 N/mm, free: 100", "torsion: 2 N*m/rad, free: 10 deg", "at: [",
+        "springs.s.at: a torsion spring has no ends\n"
+        "  allowed: between, torsion, free, preload, damping",
+    ),
+    "torsion spring wound up": (
+        blocks.CYLINDER, "{between: [0, 3], at: [O, K], rate: 2 N/mm, free: 100}",
+        "{between: [0, 3], torsion: 2 N*m/rad, free: -300 deg}", "-300",
+        "springs.s.free: a free angle lies within half a turn: angles of links are counted so\n"
+        "  found:   '-300 deg'\n"
+        "  allowed: -180 deg to 180 deg; what a spring is wound up beyond that is its preload",
+    ),
+    "spring called like a load": (
+        blocks.CYLINDER, "springs: {s:", "springs: {F:", "F:",
+        "springs.F: a load has this name\n"
+        "  found:   'F'\n"
+        "  allowed: a name that no load has",
+    ),
+    "friction in a pair that does not exist": (
+        blocks.SLIDER, "radius: 5}", "radius: 5, pairs: {X: {coefficient: 1}}}", "X:",
+        "friction.pairs.X: there is no pair of that name\n"
+        "  found:   'X'\n"
+        "  allowed: O, A, B, x\n"
+        "  did you mean 'x'?",
+    ),
+    "journal of a sliding pair": (
+        blocks.SLIDER, "radius: 5}", "radius: 5, pairs: {x: {radius: 5}}}", "radius: 5}",
+        "friction.pairs.x.radius: x is a sliding pair: it has no journal\n"
+        "  found:   5\n"
+        "  allowed: coefficient",
+    ),
+    "negative coefficient": (
+        blocks.SLIDER, "coefficient: 0.1", "coefficient: -0.1", "-0.1",
+        "friction.coefficient: a number cannot be negative\n"
+        "  found:   -0.1\n"
+        "  allowed: zero or more",
+    ),
+    "friction between teeth": (
+        blocks.GEARED, "driver:", "friction: {pairs: {z: {coefficient: 0.1}}}\ndriver:", "z: {c",
+        "friction.pairs.z: friction is computed in turning and sliding pairs, not between teeth and on cams\n"
+        "  found:   'z'\n"
+        "  allowed: O, D, A, B, C",
+    ),
+    "no driver at all": (
+        blocks.TWO, "driver:\n  - {link: 1, speed: 1 rad/s}\n  - {link: 4, speed: 2 rad/s, at: 90 deg}\n",
+        "driver: []\n", "[]",
+        "driver: there is no driver\n"
+        "  found:   []\n"
+        "  allowed: {link: 1, speed: 60 rpm}",
+    ),
+    "one link driven twice": (
+        blocks.TWO, "link: 4", "link: 1", "1, speed: 2",
+        "driver[1].link: this link is driven already\n"
+        "  found:   '1'\n"
+        "  allowed: one driver for each freedom, on links of their own",
+    ),
+    "driver that is not joined to the frame": (
+        blocks.TWO, "link: 4", "link: 2", "2,",
+        "driver[1].link: the driver is neither hinged to the frame nor slides on it\n"
+        "  found:   '2'\n"
+        "  allowed: 1, 4",
+    ),
+    "driver between links that are not joined": (
+        blocks.TWO, "link: 4", "link: 4, on: 2", "2,",
+        "driver[1].on: link 4 is neither hinged to link 2 nor slides on it\n"
+        "  found:   '2'\n"
+        "  allowed: 0, 3",
+    ),
+    "driver on itself": (
+        blocks.TWO, "link: 4", "link: 4, on: 4", "4, s",
+        "driver[1].on: a link cannot be driven from itself\n"
+        "  found:   '4'\n"
+        "  allowed: the frame, 0, or another link that it is joined to",
+    ),
+    "second driver without its place": (
+        blocks.TWO, ", at: 90 deg", "", "{link: 4",
+        "driver[1].at: the place of this driver in the sketch is missing\n"
+        "  allowed: at: an angle",
+    ),
+    "first driver with a place": (
+        blocks.TWO, "1 rad/s}", "1 rad/s, at: 3 deg}", "at",
+        "driver[0].at: the first driver's place in the sketch stands in the sketch\n"
+        "  found:   3 deg\n"
+        "  allowed: sketch: {at: ...}",
+    ),
+    "first driver at rest": (
+        blocks.TWO, "1 rad/s}", "0}", "0}\n  -",
+        "driver[0].speed: the first of several drivers counts the positions: it must move\n"
+        "  found:   0\n"
+        "  allowed: a speed that is not zero",
+    ),
+    "speed of a slider for a crank": (
+        blocks.TWO, "2 rad/s", "2 m/s", "2 m/",
+        "driver[1].speed: an angular speed is wanted here\n"
+        "  found:   '2 m/s', a speed (2 m/s)\n"
+        "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s",
+    ),
+    "driver too fast to be followed": (
+        blocks.TWO, "2 rad/s", "1e200 rad/s", "1e20",
+        "driver[1].speed: link 4 is driven more than 100 times as fast as link 1, whose places are looked at "
+        "one by one\n"
+        "  found:   1e200 rad/s\n"
+        "  allowed: the fastest driver first",
+    ),
+    "two drivers: no real assembly": (
+        blocks.TWO, "[A, B], length: 200", "[A, B], length: 20", "90 deg,",
+        "sketch.at: links 2 and 3, group II(2,3), cannot be assembled with the driver at 90 deg\n"
+        "  found:   80 mm short of closing\n"
+        "  allowed: lengths that reach, or another place of the driver",
+    ),
+    "one driver for two freedoms": (
+        blocks.TWO, "driver:\n  - {link: 1, speed: 1 rad/s}\n  - {link: 4, speed: 2 rad/s, at: 90 deg}\n",
+        "driver: {link: 1, speed: 1 rad/s}\n", "2:",
+        "links.2: mobility is not 1: links 2, 3, 4 are loose\n"
+        "  found:   W = 3*4 - 2*5 = 2\n"
+        "  allowed: W = 1, as one link is driven; or 2 drivers",
+    ),
+    "three drivers for two freedoms": (
+        blocks.TWO, "  - {link: 4, speed: 2 rad/s, at: 90 deg}\n",
+        "  - {link: 4, speed: 2 rad/s, at: 90 deg}\n  - {link: 2, on: 1, speed: 1 rad/s, at: 0}\n", "2,",
+        "driver[2].link: link 2 cannot be driven: other drivers and pairs hold it already\n"
+        "  found:   W = 3*4 - 2*5 = 2; over-held: links 0, 1, 2, 3, 4\n"
+        "  allowed: W = 3, and drivers on links that can still move",
+    ),
+    "two drivers for one freedom": (
+        blocks.SLIDER, "driver: {link: 1, speed: 60 rpm}",
+        "driver: [{link: 1, speed: 60 rpm}, {link: 3, speed: 1 m/s, at: 160}]", "3,",
+        "driver[1].link: link 3 cannot be driven: other drivers and pairs hold it already\n"
+        "  found:   W = 3*3 - 2*4 = 1; over-held: links 0, 1, 2, 3\n"
+        "  allowed: W = 2, and drivers on links that can still move",
+    ),
+    "driver on a link of a truss": (
+        blocks.LOCKED, "driver: {link: 1", "driver: {link: 4", "4,",
+        "driver.link: link 4 cannot be driven: pairs hold it already\n"
+        "  found:   W = 3*5 - 2*7 = 1; over-held: links 0, 4, 5; links 1, 2, 3 are loose\n"
+        "  allowed: W = 1, and a driver on a link that can still move",
+    ),
+    "one of two drivers on a link of a truss": (
+        blocks.LOCKED, "driver: {link: 1, speed: 1 rad/s}",
+        "driver: [{link: 1, speed: 1 rad/s}, {link: 5, speed: 1 rad/s, at: 0}]", "5,",
+        "driver[1].link: link 5 cannot be driven: other drivers and pairs hold it already\n"
+        "  found:   W = 3*5 - 2*7 = 1; over-held: links 0, 4, 5\n"
+        "  allowed: W = 2, and drivers on links that can still move",
+    ),
+    "ring of three wheels outside one another": (
+        blocks.RING, "driver:", "driver:", "c:",
+        "gears.c: contradictory gear ratios: wheels 1, 2, 3 lock one another\n"
+        "  found:   a turn of 3 turns 1 by -0.5 in gear c, by 0.5 through a, b\n"
+        "  allowed: gears round a ring whose ratios agree (an outer mesh changes the sense), or one gear less",
+    ),
+    "two ratios between two wheels": (
+        blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [1, 2], ratio: 3}", "c:",
+        "gears.c: contradictory gear ratios: wheels 1, 2 lock one another\n"
+        "  found:   a turn of 1 turns 2 by -3 in gear c, by -1 through a\n"
+        "  allowed: gears round a ring whose ratios agree (an outer mesh changes the sense), or one gear less",
+    ),
+    "cylinder that is not one": (
+        blocks.CYLINDER, "link: 2, on: 1", "link: 3, on: 1", "1, s",
+        "driver.on: link 3 is neither hinged to link 1 nor slides on it\n"
+        "  found:   '1'\n"
+        "  allowed: 0, 2",
+    ),
+    "cylinder too long": (
+        blocks.CYLINDER, "sketch: {at: 280, B: [250, 140]}", "sketch: {at: 700}", "700",
+        "sketch.at: links 1, 2 and 3, group II(1,2,3), cannot be assembled with the driver at 700 mm\n"
+        "  found:   78.3398 mm short of closing\n"
+        "  allowed: lengths that reach, or another place of the driver",
+    ),
+    "cylinder whose lever may lie on either side": (
+        blocks.CYLINDER, "sketch: {at: 280, B: [250, 140]}", "sketch: {at: 280}", "sket",
+        "sketch: the sketch does not say which way round links 1, 2 and 3, group II(1,2,3), are assembled; "
+        "tmm kinematics x.yaml --assemblies lists all\n"
+        "  allowed: with the driver at 280 mm, P: [86.8452, -49.5773] or [86.8452, 49.5773]; 1: -29.7207 deg "
+        "or 29.7207 deg; B: [243.167, -138.816] or [243.167, 138.816]; 2: -29.7207 deg or 29.7207 deg",
+    ),
+    "cylinder in line with its lever": (
+        blocks.CYLINDER, "sketch: {at: 280, B: [250, 140]}", "sketch: {at: 450, B: [450, 0]}", "450",
+        "sketch.at: links 1, 2 and 3, group II(1,2,3), are in a dead position in the sketch\n"
+        "  found:   450 mm\n"
+        "  allowed: another place of the driver, where the two assemblies differ",
+    ),
+    "working stroke of a cylinder": (
+        blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: working stroke}", "work",
+        "positions.from: a driven slider has no working stroke to start from\n"
+        "  allowed: a length",
+    ),
+    "class III group without real assembly": (
+        blocks.TRIAD, "[C, E], length: 90", "[C, E], length: 900", "90 d",
+        "sketch.at: links 2, 3, 4 and 5, group III(2,3,4,5), cannot be assembled with the driver at 90 deg\n"
+        "  found:   150.603 mm short of closing\n"
+        "  allowed: lengths that reach, or another place of the driver",
+    ),
+    "class III group with a flat middle link": (
+        blocks.TRIAD, "D: [40, 60]}}", "D: [40, 0]}}", "90 d",
+        "sketch.at: links 2, 3, 4 and 5, group III(2,3,4,5), cannot be assembled with the driver at 90 deg\n"
+        "  found:   7.11707 mm short of closing\n"
+        "  allowed: lengths that reach, or another place of the driver",
+    ),
+    "class III group that the sketch leaves open": (
+        blocks.TRIAD, "sketch: {at: 90 deg, B: [110, 60], C: [190, 50], D: [155, 115]}", "sketch: {at: 90 deg}",
+        "sket",
+        "sketch: the sketch does not say which way round links 2, 3, 4 and 5, group III(2,3,4,5), are "
+        "assembled; tmm kinematics x.yaml --assemblies lists all\n"
+        "  allowed: with the driver at 90 deg, B: [119.322, 52.7353] or [104.675, 98.679]; 2: 6.09211 deg or "
+        "29.2743 deg; C: [199.275, 49.9971] or [139.56, 26.6859]; D: [161.352, 111.331] or [176.112, 88.8464]",
+    ),
+}  # fmt: skip
+
+
+def changed(text, old, new):
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def solved(text):
+    return solve(build(read_text(text, "x.yaml")))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_one_error_that_names_links_and_group(case):
+    base, old, new, at, message = CASES[case]
+    text = changed(base, old, new)
+    assert refusal(text) == f"x.yaml:{place(text, at)}: {message}"
+
+
+def test_the_command_ends_with_2_and_writes_nothing(tmp_path):
+    names = (
+        "axes too far apart for the module", "ring of three wheels outside one another", "driver on a link of a truss",
+        "class III group without real assembly", "law that does not come back", "spring in a hinge",
+    )  # fmt: skip
+    files = []
+    for number, name in enumerate(names):
+        base, old, new, _, _ = CASES[name]
+        files.append(tmp_path / f"{number}.yaml")
+        files[-1].write_text(changed(base, old, new), encoding="utf-8")
+    done = tmm("run", *files, "-o", tmp_path / "out")
+    assert (done.returncode, done.stdout, done.stderr.count("error: ")) == (2, "", len(names))
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+    told = json.loads(tmm("forces", files[2], "--json").stdout)
+    assert (told["error"]["path"], told["error"]["line"]) == (["driver", "link"], 10)
+
+
+# ---------------------------------------------------------------- wheels
+
+
+def test_an_idle_wheel_in_a_ring_that_agrees_is_a_result():
+    """3 turns with 1 inside an annulus and meets it through 2 as well: all ratios agree, one gear is passive."""
+    text = changed(blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [3, 1], ratio: 0.5, inner: true}")
+    results = solved(text)
+    omega = [float(results.motion.link(n).omega[0]) for n in "123"]
+    assert omega == pytest.approx([1, -1, 2])
+    assert bool(results.motion.moving.all())
+
+
+def test_100_wheels_in_a_train_are_solved():
+    points = ", ".join(f"O{k}: [{50 * k}, 0]" for k in range(100))
+    links = "".join(f"  w{k}: {{points: [O{k}]}}\n" for k in range(100))
+    gears = "".join(f"  g{k}: {{between: [w{k}, w{k + 1}], teeth: [20, 21]}}\n" for k in range(99))
+    text = f"tmm: 1\npoints: {{{points}}}\nlinks:\n{links}gears:\n{gears}driver: {{link: w0, speed: 1 rad/s}}\n"
+    results = solved(text)
+    assert float(results.motion.link("w99").omega[0]) == pytest.approx(-((20 / 21) ** 99))
+    assert any(word.startswith("no number of turns was found") for word in words(results))
+
+
+def test_contradictory_wheels_are_named_without_the_train_that_hangs_on_them():
+    text = changed(blocks.RING, "points: {O: [0, 0],", "points: {T: [-90, 0], O: [0, 0],")
+    text = changed(text, "gears:", "  4: {points: [T]}\ngears:\n  d: {between: [4, 1], ratio: 7}")
+    assert "contradictory gear ratios: wheels 1, 2, 3 lock one another" in refusal(text)
+
+
+# ---------------------------------------------------------------- cams
+
+
+def test_a_law_of_many_pieces_is_looked_up():
+    law = CamLaw(tuple(Piece(math.tau / 100, (-1) ** k * 0.001, "3-4-5") for k in range(100)), 0.3)
+    angle = np.linspace(-7, 7, 1001)
+    value, first, second = law(angle)
+    step = 1e-5
+    assert np.max(np.abs((law(angle + step)[0] - law(angle - step)[0]) / (2 * step) - first)) < 1e-6
+    assert np.max(np.abs((law(angle + step)[1] - law(angle - step)[1]) / (2 * step) - second)) < 1e-3
+    assert value.min() >= 0 and value.max() == pytest.approx(0.001)
+    assert law.jumps() == ()
+
+
+def test_a_jump_of_the_followers_speed_is_named():
+    text = changed(blocks.CAM, "{over: 120 deg, rise: 20}", "{over: 120 deg, rise: 20, law: linear}")
+    assert list(words(solved(text))) == [
+        "the law of cam 1 lets the speed of follower 2 jump (0, 120 deg of the cam): a hard impact, the acceleration "
+        "there is not finite and is not in the tables"
+    ]
+
+
+# ---------------------------------------------------------------- springs
+
+
+def test_a_torsion_spring_past_half_a_turn_is_named():
+    spring = "springs: {t: {between: [0, 1], torsion: 2 N*m/rad, free: 30 deg}}\ndriver:"
+    results = solved(changed(blocks.SLIDER, "driver:", spring))
+    assert (
+        "torsion spring t is turned by more than half a turn from its free angle at 209.5 deg: its moment jumps there, "
+        "as angles are counted within half a turn"
+    ) in list(words(results))
+
+
+# ---------------------------------------------------------------- friction
+
+
+@pytest.mark.parametrize("coefficient, locks", [(0.1, False), (2.8, False), (2.85, True), (10, True)])
+def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coefficient, locks):
+    """At 270 deg the rod leans by asin(1/3): it cannot push the slider where mu tan(lean) > 1, mu > 2.828."""
+    friction = f"{{pairs: {{x: {{coefficient: {coefficient}}}}}}}"
+    results = solved(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
+    assert bool(results.locked[9]) is locks
+    said = [word for word in words(results) if "locks itself" in word]
+    moment = results.reactions.balance.moment[9]
+    if locks:
+        assert "9" in said[0] and "pair x of links 0 and 3" in said[0]
+        assert math.isnan(moment)
+        assert to_json(results)["positions"]["state"][9] == "locks by friction"
+    else:
+        lean = math.asin(1 / 3)
+        push = 1000 / (math.cos(lean) - coefficient * math.sin(lean))
+        assert (said, moment) == ([], pytest.approx(push * math.cos(lean) * 0.05))
+    assert results.lever_holds
+
+
+def test_a_locked_position_in_detail_is_no_crash(tmp_path):
+    text = changed(blocks.SLIDER, "coefficient: 0.1", "coefficient: 10") + "positions: {count: 12, detail: [3, 9]}\n"
+    file = tmp_path / "locked.yaml"
+    file.write_text(text, encoding="utf-8")
+    done = tmm("run", file, "-o", tmp_path / "out")
+    assert (done.returncode, "Traceback" in done.stderr, "RuntimeWarning" in done.stderr) == (0, False, False)
+    assert "the mechanism locks itself by friction: in positions " in done.stderr
+    assert "locks by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
+
+
+# ---------------------------------------------------------------- drivers
+
+
+def test_a_cylinder_driven_beyond_its_range_says_how_far():
+    """Piston and lever reach 300 + 150 from the cylinder's hinge: at 460 mm they are 10 mm short."""
+    text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", "at: [140, 300, 460, 1000]")
+    results = solved(text)
+    assert results.motion.moving.tolist() == [False, True, False, False]
+    said = [word for word in words(results) if "cannot be assembled" in word]
+    assert said == [
+        f"position {number} ({place}): II(1,2,3) cannot be assembled, {short} short"
+        for number, place, short in ((0, "140 mm", "10 mm"), (2, "460 mm", "10 mm"), (3, "1000 mm", "550 mm"))
+    ]
+
+
+def test_where_the_first_of_two_drivers_stops_its_way_ends():
+    text = changed(blocks.TWO, "1 rad/s}", "1 rad/s, acceleration: -1 rad/s^2}")
+    results = solved(text)
+    assert results.way.end == pytest.approx(math.pi / 2 + 0.5, abs=1e-7)
+    assert "driving link 1 goes from -90 deg to 118.64789 deg only: it slows down and stops there" in " ".join(
+        words(results)
+    )
+    assert np.isfinite(results.motion.named("B").a[:-1]).all()
+
+
+def test_the_limits_of_two_drivers_that_never_come_back_together_are_not_taken_from_a_turn_later():
+    text = changed(blocks.TWO, "2 rad/s", "3.14159265 rad/s")
+    results = solved(text)
+    assert not results.way.repeats
+    assert bool(results.motion.moving.all())
+
+
+def test_a_second_driver_at_rest_is_a_link_that_stands():
+    results = solved(changed(blocks.TWO, "2 rad/s", "0"))
+    assert np.max(np.abs(results.motion.link("4").omega)) == 0
+
+
+# ---------------------------------------------------------------- groups
+
+
+def ladder(number):
+    """One group of 2 n + 2 links: n triangles in a row, each on a leg, between a crank and a last leg."""
+    links = ["  1: {points: [O, A], length: 0.3}", f"  a: {{points: [A, T0], length: {math.hypot(0.7, 0.1)!r}}}"]
+    points = {"O": (-1, 1)}
+    places = {"T0": (0, 1.1)}
+    for k in range(number):
+        y, after = 1 + 0.1 * (-1) ** k, 1 - 0.1 * (-1) ** k
+        long, turned = math.hypot(1, after - y), complex(1, after - y) / math.hypot(1, after - y)
+        at = complex(0.5, -0.4) / turned
+        points[f"G{k}"] = (k + 0.4 + 0.2 * (k % 2), 0)
+        places |= {f"T{k + 1}": (k + 1, after), f"C{k}": (k + 0.5, y - 0.4)}
+        leg = math.dist(places[f"C{k}"], points[f"G{k}"])
+        links.append(f"  t{k}: {{points: {{T{k}: [0, 0], T{k + 1}: [{long!r}, 0], C{k}: [{at.real!r}, {at.imag!r}]}}}}")
+        links.append(f"  g{k}: {{points: [C{k}, G{k}], length: {leg!r}}}")
+    points["E"] = (number + 0.6, 0.2)
+    links.append(f"  e: {{points: [T{number}, E], length: {math.dist(places[f'T{number}'], points['E'])!r}}}")
+    frame, sketch = (", ".join(f"{n}: [{x}, {y}]" for n, (x, y) in some.items()) for some in (points, places))
+    return (
+        f"tmm: 1\nunits: {{length: m}}\npoints: {{{frame}}}\nlinks:\n" + "\n".join(links)
+        + f"\ndriver: {{link: 1, speed: 1 rad/s}}\nsketch: {{at: 0, {sketch}}}\n"
+    )  # fmt: skip
+
+
+def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
+    text = ladder(48)
+    assert refusal(text).startswith(
+        f"x.yaml:{place(text, 'links:')}: links: a group of so many links is not solved: III(a,t0,g0,t1,"
+    )
+    assert refusal(text).endswith("found:   98\n  allowed: at most 16 in one group; any number of groups")
+    results = solved(ladder(2))
+    assert results.structure.groups[0].title == "III(a,t0,g0,t1,g1,e)"
+    assert bool(results.motion.moving.all())
+
+
+def test_a_group_that_moves_by_itself_is_in_a_dead_position():
+    """Three parallel legs of one length: the platform translates with the crank at rest."""
+    text = changed(blocks.TRIAD, "E: [200, -40], F: [260, 160]", "E: [160, 0], F: [260, 0]")
+    text = changed(text, "length: 40", "length: 60")
+    text = changed(text, "{B: [0, 0], C: [80, 0], D: [40, 60]}", "{B: [0, 0], C: [100, 0], D: [200, 0]}")
+    text = changed(changed(text, "[C, E], length: 90", "[C, E], length: 120"), "length: 110", "length: 120")
+    text = changed(
+        text, "{at: 90 deg, B: [110, 60], C: [190, 50], D: [155, 115]}", "{at: 0, B: [60, 120], C: [160, 120]}"
+    )
+    assert "sketch.at: links 2, 3, 4 and 5, group III(2,3,4,5), are in a dead position in the sketch" in refusal(text)
+
+
+@pytest.mark.parametrize("name", ["triad", "planet", "rack", "cam", "cylinder", "two", "slider"])
+@pytest.mark.parametrize("unit, size", [("um", 1e-6), ("km", 1e3)])
+def test_no_size_of_a_mechanism_is_special(name, unit, size):
+    """Angles are those of the same mechanism in millimetres, lengths in proportion."""
+    text = blocks.EVERYTHING[name]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        one, other = solved(text).motion, solved(text.replace("length: mm", f"length: {unit}")).motion
+    assert one.moving.tolist() == other.moving.tolist()
+    assert bool(one.moving.all())
+    for link in one.linkage.moving:
+        if name not in ("rack", "cylinder"):  # their drivers' speeds or radii are in millimetres still
+            assert np.allclose(one.poses[link].z, other.poses[link].z, atol=1e-9)
+            assert np.allclose(one.poses[link].x * size / 1e-3, other.poses[link].x, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("name", blocks.EVERYTHING)
+def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
+    text = "\n".join(
+        x for x in blocks.EVERYTHING[name].splitlines() if not x.startswith(("masses", "loads", "springs"))
+    )
+    results = solved(text + "\n")
+    assert all(np.all(r.force[results.motion.moving] == 0) for r in results.reactions.all)
+    assert results.lever_holds
+
+
+def test_no_mutant_of_these_files_ends_in_anything_but_one_error_or_a_result():
+    """Every number of every file, one at a time, made zero, negative, or a thousand times as large."""
+    for text in blocks.EVERYTHING.values():
+        numbers = [(a, b) for a, b in _numbers(text) if text[:a].count("\n") > 1]
+        for start, end in numbers[:: max(1, len(numbers) // 6)]:
+            for new in ("0", "-" + text[start:end], f"{float(text[start:end]) * 1000:g}"):
+                try:
+                    results = solved(text[:start] + new + text[end:])
+                except ProblemError as error:
+                    assert error.message
+                else:
+                    json.dumps(to_json(results), allow_nan=False)
+
+
+def _numbers(text):
+    """Places of numbers that stand by themselves."""
+    inside, found = "0123456789.", []
+    k = 0
+    while k < len(text):
+        end = k
+        while end < len(text) and text[end] in inside:
+            end += 1
+        if end > k and text[k - 1] in " [" and text[end] in " ,]}":
+            found.append((k, end))
+        k = max(end, k + 1)
+    return found
