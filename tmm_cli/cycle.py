@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import FRAME, Linkage
 
 MOST = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
 TEETH = 500  # denominators of ratios that are looked for
@@ -14,9 +14,8 @@ TEETH = 500  # denominators of ratios that are looked for
 def turns_of_cycle(linkage: Linkage) -> int | None:
     """Turns of the first driver in a cycle; None when there are more than anyone counts, or none at all."""
     turns = 1
-    for mesh in linkage.meshes:
-        if mesh.kind == "gear":
-            turns = math.lcm(turns, _denominator(mesh.ratio) or MOST + 1)
+    for share in _shares(linkage).values():
+        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
     lead = linkage.driver
     for driver in linkage.others:
         if driver.kind != "turn" or not lead.rate or driver.acceleration or lead.acceleration:
@@ -25,6 +24,41 @@ def turns_of_cycle(linkage: Linkage) -> int | None:
     return turns if turns <= MOST else None
 
 
-def _denominator(ratio: float) -> int | None:
+def _shares(linkage: Linkage) -> dict[str, Fraction | None]:
+    """Turns of each wheel in a turn of the driver, as far as other wheels and the driver tell; None: not in any number.
+
+    Links that no wheel turns come round with the driver: their turns are whole, which is all that counts here.
+    """
+    whole, lead = Fraction(1), linkage.driver
+    found: dict[str, Fraction | None] = {FRAME: Fraction(0)}
+    for driver in linkage.cranks:
+        found[driver.link] = whole if driver is lead or not lead.rate else _fraction(driver.rate / lead.rate)
+    gears = [mesh for mesh in linkage.meshes if mesh.kind == "gear"]
+    while gears:
+        known = [m for m in gears if m.carrier in found and (m.i in found or m.j in found)]
+        if not known:
+            wheels = {m.i for m in gears} | {m.j for m in gears}
+            free = [n for m in gears for n in (m.carrier, m.i) if n not in found]
+            found[next((n for n in free if n not in wheels), free[0])] = whole
+            continue
+        mesh = known[0]
+        gears.remove(mesh)
+        ratio, carrier = _fraction(mesh.ratio), found[mesh.carrier]
+        for one, other, step in ((mesh.i, mesh.j, ratio), (mesh.j, mesh.i, ratio and 1 / ratio)):
+            if one in found and other not in found:
+                share = found[one]
+                sound = step is not None and share is not None and carrier is not None
+                found[other] = carrier + step * (share - carrier) if sound else None  # type: ignore[operator]
+                break
+    return found
+
+
+def _fraction(ratio: float) -> Fraction | None:
+    """The ratio of two whole numbers that it is, if it is one."""
     near = Fraction(ratio).limit_denominator(TEETH)
-    return near.denominator if abs(float(near) - ratio) <= 1e-12 * max(1.0, abs(ratio)) else None
+    return near if abs(float(near) - ratio) <= 1e-12 * max(1.0, abs(ratio)) else None
+
+
+def _denominator(ratio: float) -> int | None:
+    near = _fraction(ratio)
+    return None if near is None else near.denominator

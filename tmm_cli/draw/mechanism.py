@@ -100,7 +100,7 @@ def detailed(results: Results) -> list[int]:
     motion = results.motion
     assert motion is not None
     wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
-    return [k for k, n in enumerate(results.numbers) if n in wanted and bool(motion.moving[k])]
+    return [k for k, n in enumerate(results.numbers) if n in wanted and motion.moving[k] and not results.locked[k]]
 
 
 def stem(name: str, results: Results, k: int) -> str:

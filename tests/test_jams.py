@@ -1,0 +1,268 @@
+"""What jams, stops, jumps, locks or is too large: results that say where and in which group, never a crash or a nan."""
+
+from __future__ import annotations
+
+import json
+import math
+import warnings
+
+import blocks
+import numpy as np
+import pytest
+from test_bad_input import place, refusal
+from test_bad_linkages import changed
+from test_commands import tmm
+
+from tmm_cli import solve
+from tmm_cli.camlaw import CamLaw, Piece
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.results.as_json import to_json
+from tmm_cli.results.warnings import warnings as words
+
+
+def solved(text):
+    return solve(build(read_text(text, "x.yaml")))
+
+
+# ---------------------------------------------------------------- wheels
+
+
+def test_an_idle_wheel_in_a_ring_that_agrees_is_a_result():
+    """3 turns with 1 inside an annulus and meets it through 2 as well: all ratios agree, one gear is passive."""
+    text = changed(blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [3, 1], ratio: 0.5, inner: true}")
+    results = solved(text)
+    omega = [float(results.motion.link(n).omega[0]) for n in "123"]
+    assert omega == pytest.approx([1, -1, 2])
+    assert bool(results.motion.moving.all())
+
+
+def train(number, teeth):
+    """So many wheels in a row, each with the next one in mesh."""
+    points = ", ".join(f"O{k}: [{50 * k}, 0]" for k in range(number))
+    links = "".join(f"  w{k}: {{points: [O{k}]}}\n" for k in range(number))
+    gears = "".join(f"  g{k}: {{between: [w{k}, w{k + 1}], teeth: {teeth}}}\n" for k in range(number - 1))
+    return f"tmm: 1\npoints: {{{points}}}\nlinks:\n{links}gears:\n{gears}driver: {{link: w0, speed: 1 rad/s}}\n"
+
+
+def test_100_wheels_in_a_train_are_solved():
+    results = solved(train(100, [20, 21]))
+    assert float(results.motion.link("w99").omega[0]) == pytest.approx(-((20 / 21) ** 99))
+    assert any(word.startswith("no number of turns was found") for word in words(results))
+
+
+@pytest.mark.parametrize("number, teeth, turns", [(2, [20, 40], 2), (3, [20, 40], 4), (4, [20, 40], 8), (3, [3, 1], 1)])
+def test_a_train_comes_back_when_its_last_wheel_does(number, teeth, turns):
+    """Each halving of the speed doubles the turns of the driver after which all is as it was."""
+    assert (solved(train(number, teeth)).way.turns, solved(train(number, teeth)).way.repeats) == (turns, True)
+
+
+def test_contradictory_wheels_are_named_without_the_train_that_hangs_on_them():
+    text = changed(blocks.RING, "points: {O: [0, 0],", "points: {T: [-90, 0], O: [0, 0],")
+    text = changed(text, "gears:", "  4: {points: [T]}\ngears:\n  d: {between: [4, 1], ratio: 7}")
+    assert "contradictory gear ratios: wheels 1, 2, 3 lock one another" in refusal(text)
+
+
+# ---------------------------------------------------------------- cams
+
+
+def test_a_law_of_many_pieces_is_looked_up():
+    law = CamLaw(tuple(Piece(math.tau / 100, (-1) ** k * 0.001, "3-4-5") for k in range(100)), 0.3)
+    angle = np.linspace(-7, 7, 1001)
+    value, first, second = law(angle)
+    step = 1e-5
+    assert np.max(np.abs((law(angle + step)[0] - law(angle - step)[0]) / (2 * step) - first)) < 1e-6
+    assert np.max(np.abs((law(angle + step)[1] - law(angle - step)[1]) / (2 * step) - second)) < 1e-3
+    assert value.min() >= 0 and value.max() == pytest.approx(0.001)
+    assert law.jumps() == ()
+
+
+def test_a_jump_of_the_followers_speed_is_named():
+    text = changed(blocks.CAM, "{over: 120 deg, rise: 20}", "{over: 120 deg, rise: 20, law: linear}")
+    assert list(words(solved(text))) == [
+        "the law of cam 1 lets the speed of follower 2 jump (0, 120 deg of the cam): a hard impact, the acceleration "
+        "there is not finite and is not in the tables"
+    ]
+
+
+# ---------------------------------------------------------------- springs
+
+
+def test_a_torsion_spring_past_half_a_turn_is_named():
+    spring = "springs: {t: {between: [0, 1], torsion: 2 N*m/rad, free: 30 deg}}\ndriver:"
+    results = solved(changed(blocks.SLIDER, "driver:", spring))
+    assert (
+        "torsion spring t is turned by more than half a turn from its free angle at 209.5 deg: its moment jumps there, "
+        "as angles are counted within half a turn"
+    ) in list(words(results))
+
+
+# ---------------------------------------------------------------- friction
+
+
+@pytest.mark.parametrize("coefficient, locks", [(0.1, False), (2.8, False), (2.85, True), (10, True)])
+def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coefficient, locks):
+    """At 270 deg the rod leans by asin(1/3): it cannot push the slider where mu tan(lean) > 1, mu > 2.828."""
+    friction = f"{{pairs: {{x: {{coefficient: {coefficient}}}}}}}"
+    results = solved(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
+    assert bool(results.locked[9]) is locks
+    said = [word for word in words(results) if "locks itself" in word]
+    moment = results.reactions.balance.moment[9]
+    if locks:
+        assert "9" in said[0] and "pair x of links 0 and 3" in said[0]
+        assert math.isnan(moment)
+        assert to_json(results)["positions"]["state"][9] == "locks by friction"
+    else:
+        lean = math.asin(1 / 3)
+        push = 1000 / (math.cos(lean) - coefficient * math.sin(lean))
+        assert (said, moment) == ([], pytest.approx(push * math.cos(lean) * 0.05))
+    assert results.lever_holds
+
+
+def test_a_locked_position_in_detail_is_no_crash(tmp_path):
+    text = changed(blocks.SLIDER, "coefficient: 0.1", "coefficient: 10") + "positions: {count: 12, detail: [3, 9]}\n"
+    file = tmp_path / "locked.yaml"
+    file.write_text(text, encoding="utf-8")
+    done = tmm("run", file, "-o", tmp_path / "out")
+    assert (done.returncode, "Traceback" in done.stderr, "RuntimeWarning" in done.stderr) == (0, False, False)
+    assert "the mechanism locks itself by friction: in position" in done.stderr
+    assert "locks by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
+
+
+# ---------------------------------------------------------------- drivers
+
+
+def test_a_cylinder_driven_beyond_its_range_says_how_far():
+    """Piston and lever reach 300 + 150 from the cylinder's hinge: at 460 mm they are 10 mm short."""
+    text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", "at: [140, 300, 460, 1000]")
+    results = solved(text)
+    assert results.motion.moving.tolist() == [False, True, False, False]
+    said = [word for word in words(results) if "cannot be assembled" in word]
+    assert said == [
+        f"position {number} ({place}): II(1,2,3) cannot be assembled, {short} short"
+        for number, place, short in ((0, "140 mm", "10 mm"), (2, "460 mm", "10 mm"), (3, "1000 mm", "550 mm"))
+    ]
+
+
+def test_where_the_first_of_two_drivers_stops_its_way_ends():
+    text = changed(blocks.TWO, "1 rad/s}", "1 rad/s, acceleration: -1 rad/s^2}")
+    results = solved(text)
+    assert results.way.end == pytest.approx(math.pi / 2 + 0.5, abs=1e-7)
+    assert "driving link 1 goes from -90 deg to 118.64789 deg only: it slows down and stops there" in " ".join(
+        words(results)
+    )
+    assert np.isfinite(results.motion.named("B").a[:-1]).all()
+
+
+def test_the_limits_of_two_drivers_that_never_come_back_together_are_not_taken_from_a_turn_later():
+    results = solved(changed(blocks.TWO, "2 rad/s", "3.14159265 rad/s"))
+    assert [limit.group for limit in results.way.limits] == ["II(2,3)"]
+    assert bool(results.motion.moving.all())
+
+
+def test_a_second_driver_at_rest_is_a_link_that_stands():
+    results = solved(changed(blocks.TWO, "2 rad/s", "0"))
+    assert np.max(np.abs(results.motion.link("4").omega)) == 0
+
+
+# ---------------------------------------------------------------- groups
+
+
+def ladder(number):
+    """One group of 2 n + 2 links: n triangles in a row, each on a leg, between a crank and a last leg."""
+    links = ["  1: {points: [O, A], length: 0.3}", f"  a: {{points: [A, T0], length: {math.hypot(0.7, 0.1)!r}}}"]
+    points = {"O": (-1, 1)}
+    places = {"T0": (0, 1.1)}
+    for k in range(number):
+        y, after = 1 + 0.1 * (-1) ** k, 1 - 0.1 * (-1) ** k
+        long, turned = math.hypot(1, after - y), complex(1, after - y) / math.hypot(1, after - y)
+        at = complex(0.5, -0.4) / turned
+        points[f"G{k}"] = (k + 0.4 + 0.2 * (k % 2), 0)
+        places |= {f"T{k + 1}": (k + 1, after), f"C{k}": (k + 0.5, y - 0.4)}
+        leg = math.dist(places[f"C{k}"], points[f"G{k}"])
+        links.append(f"  t{k}: {{points: {{T{k}: [0, 0], T{k + 1}: [{long!r}, 0], C{k}: [{at.real!r}, {at.imag!r}]}}}}")
+        links.append(f"  g{k}: {{points: [C{k}, G{k}], length: {leg!r}}}")
+    points["E"] = (number + 0.6, 0.2)
+    links.append(f"  e: {{points: [T{number}, E], length: {math.dist(places[f'T{number}'], points['E'])!r}}}")
+    frame, sketch = (", ".join(f"{n}: [{x}, {y}]" for n, (x, y) in some.items()) for some in (points, places))
+    return (
+        f"tmm: 1\nunits: {{length: m}}\npoints: {{{frame}}}\nlinks:\n" + "\n".join(links)
+        + f"\ndriver: {{link: 1, speed: 1 rad/s}}\nsketch: {{at: 0, {sketch}}}\n"
+    )  # fmt: skip
+
+
+def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
+    text = ladder(48)
+    assert refusal(text).startswith(
+        f"x.yaml:{place(text, 'links:')}: links: a group of so many links is not solved: III(a,t0,g0,t1,"
+    )
+    assert refusal(text).endswith("found:   98\n  allowed: at most 16 in one group; any number of groups")
+    results = solved(ladder(2))
+    assert results.structure.groups[0].title == "III(a,t0,g0,t1,g1,e)"
+    assert bool(results.motion.moving.all())
+
+
+def test_a_group_that_moves_by_itself_is_in_a_dead_position():
+    """Three parallel legs of one length: the platform translates with the crank at rest."""
+    text = changed(blocks.TRIAD, "E: [200, -40], F: [260, 160]", "E: [160, 0], F: [260, 0]")
+    text = changed(text, "length: 40", "length: 60")
+    text = changed(text, "{B: [0, 0], C: [80, 0], D: [40, 60]}", "{B: [0, 0], C: [100, 0], D: [200, 0]}")
+    text = changed(changed(text, "[C, E], length: 90", "[C, E], length: 120"), "length: 110", "length: 120")
+    text = changed(
+        text, "{at: 90 deg, B: [110, 60], C: [190, 50], D: [155, 115]}", "{at: 0, B: [60, 120], C: [160, 120]}"
+    )
+    assert "sketch.at: links 2, 3, 4 and 5, group III(2,3,4,5), are in a dead position in the sketch" in refusal(text)
+
+
+@pytest.mark.parametrize("name", ["triad", "planet", "rack", "cam", "cylinder", "two", "slider"])
+@pytest.mark.parametrize("unit, size", [("um", 1e-6), ("km", 1e3)])
+def test_no_size_of_a_mechanism_is_special(name, unit, size):
+    """Angles are those of the same mechanism in millimetres, lengths in proportion."""
+    text = blocks.EVERYTHING[name]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        one, other = solved(text).motion, solved(text.replace("length: mm", f"length: {unit}")).motion
+    assert one.moving.tolist() == other.moving.tolist()
+    assert bool(one.moving.all())
+    for link in one.linkage.moving:
+        if name not in ("rack", "cylinder"):  # their drivers' speeds or radii are in millimetres still
+            assert np.allclose(one.poses[link].z, other.poses[link].z, atol=1e-9)
+            assert np.allclose(one.poses[link].x * size / 1e-3, other.poses[link].x, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("name", blocks.EVERYTHING)
+def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
+    text = blocks.EVERYTHING[name]
+    text = "\n".join(line for line in text.splitlines() if not line.startswith(("masses", "loads", "springs")))
+    results = solved(text.replace("points: [A, B], length: 20}", "points: {A: [0, 0], B: [20, 0]}}") + "\n")
+    assert all(np.all(r.force[results.motion.moving] == 0) for r in results.reactions.all)
+    assert results.lever_holds
+
+
+def test_no_mutant_of_these_files_ends_in_anything_but_one_error_or_a_result():
+    """Every number of every file, one at a time, made zero, negative, or a thousand times as large."""
+    for text in blocks.EVERYTHING.values():
+        numbers = [(a, b) for a, b in _numbers(text) if text[:a].count("\n") > 1]
+        for start, end in numbers[:: max(1, len(numbers) // 3)]:
+            for new in ("0", "-" + text[start:end], f"{float(text[start:end]) * 1000:g}"):
+                try:
+                    results = solved(text[:start] + new + text[end:])
+                except ProblemError as error:
+                    assert error.message
+                else:
+                    json.dumps(to_json(results), allow_nan=False)
+
+
+def _numbers(text):
+    """Places of numbers that stand by themselves."""
+    inside, found = "0123456789.", []
+    k = 0
+    while k < len(text):
+        end = k
+        while end < len(text) and text[end] in inside:
+            end += 1
+        if end > k and text[k - 1] in " [" and text[end] in " ,]}":
+            found.append((k, end))
+        k = max(end, k + 1)
+    return found
