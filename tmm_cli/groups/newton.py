@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, spread
+from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, reach, spread
 from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
 from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
 from tmm_cli.groups.track import State, Track
@@ -27,7 +27,7 @@ from tmm_cli.vectors import Real, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
 NEAR = 1e-9  # a step below this squares to less than rounding
-DEAD = 1e-14  # a margin below this is rounding
+DEAD = 1e-16  # a margin below this is rounding
 CONVERGED = 1e-6  # a last step above this has not converged
 
 
@@ -49,7 +49,7 @@ class Newton(Kernel):
         pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
         known = {pair.other(link) for pair in group.outer for link in group.links if link in (pair.i, pair.j)}
-        size = max(spread(linkage, link) for link in {*group.links, *known}) or 1.0
+        size = max(spread(linkage, link) for link in {*group.links, *known}) or reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
