@@ -13,9 +13,9 @@ from higher import PROBLEMS
 from tmm_cli import solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.actuators import BARREL, cylinder, springs
+from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.scheme import placer
 from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.symbols import Scene
 from tmm_cli.draw.wheels import contact, extent, shape
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans

@@ -296,15 +296,15 @@ def test_cam_lever_rests_in_the_dwells_and_peaks_half_way():
     resting = [4, 5, 6, 10, 11, 0]
     assert np.max(np.abs(slider.v[resting])) == 0
     assert np.max(np.abs(slider.a[resting])) < 1e-12
-    assert lever[[2, 8]] == pytest.approx([15 / 8 * 20 / 120, -2 * 20 / 120], abs=1e-14)
+    assert lever[[2, 8]] == pytest.approx([15 / 8 * 20 / 110, -2 * 20 / 110], abs=1e-14)
 
 
 def test_flat_follower_touches_its_slope_away_from_the_cams_axis():
     results = solved("valve-drive")
     contact = results.reactions.of("cam")
-    slope = 15 / 8 * 12 / math.radians(60)
+    slope = 15 / 8 * 12 / math.radians(50)
     assert 1000 * contact.at[[2, 6]].real == pytest.approx([slope, -slope], abs=1e-12)
-    assert slope == pytest.approx(21.486, abs=5e-4)
+    assert slope == pytest.approx(25.783, abs=5e-4)
     force = at_places(results, results.closely(361)).reactions.of("cam").onto("2")
     assert np.all(force.imag > 0)
 

@@ -191,6 +191,11 @@ def screws(pair, kind, poses):
 
     origin, z = poses[pair.i]
     up = np.array([0.0, 0.0, 1.0])
+    if pair.touch is not None:
+        place, along = (spatial(part) for part in pair.touch)
+        across = np.cross(up, along)
+        line = [run(along), run(up), turn(place, up), turn(place, across)]
+        return np.column_stack(line if kind == "cylinder on plane" else [*line, turn(place, along)])
     if pair.slide is None:
         place = spatial(origin + z * pair.local)
         axes = np.eye(3)
@@ -209,19 +214,27 @@ def screws(pair, kind, poses):
 
 
 class Placed:
-    """A pair with the place of its hinge in the axes of its first link."""
+    """A pair with the place of its hinge in the axes of its first link; of teeth and cams a place where they touch.
 
-    def __init__(self, linkage, pair):
-        self.i, self.slide = pair.i, pair.slide
-        self.local = 0j if pair.slide else linkage.local(pair.i, pair.point)
+    Any place will do for these, as long as the links slide there along the common tangent.
+    """
+
+    def __init__(self, linkage, pair, poses, rates):
+        self.i, self.slide, self.touch = pair.i, pair.slide, None
+        self.local = 0j if pair.slide or pair.mesh else linkage.local(pair.i, pair.point)
+        if pair.mesh is not None:
+            place = complex(0.03, 0.05)
+            one, two = (rates[link][0] + 1j * rates[link][1] * (place - poses[link][0]) for link in (pair.i, pair.j))
+            sliding = two - one
+            self.touch = (place, sliding / abs(sliding) if abs(sliding) > 1e-9 else 0.6 + 0.8j)
 
 
-def jacobian(linkage, structure, poses, kinds):
+def jacobian(linkage, structure, poses, kinds, rates=None):
     """All conditions in space on the motions of all links, in the file's own position."""
     links = structure.links
     blocks = []
     for pair in structure.pairs:
-        free = screws(Placed(linkage, pair), kinds.get(pair.name, CHOICES[pair.kind][0]), poses)
+        free = screws(Placed(linkage, pair, poses, rates), kinds.get(pair.name, CHOICES[pair.kind][0]), poses)
         conditions = np.linalg.svd(free)[0][:, np.linalg.matrix_rank(free) :].T
         block = np.zeros((len(conditions), 6 * len(links)))
         for link, sign in ((pair.i, 1), (pair.j, -1)):
@@ -248,15 +261,20 @@ def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_ja
     linkage, structure, motion = results.linkage, results.structure, results.motion
     found = space(linkage, structure)
     kinds = proposal(found)
-    assert (found.redundant, found.redundant_then) == (3 * structure.contours, 0)
+    # a lower pair asks for three conditions out of the plane, teeth and cams for one
+    assert (found.redundant, found.redundant_then) == (3 * structure.contours - 2 * structure.higher, 0)
     for k in np.flatnonzero(motion.moving)[::2]:
         poses = {
             name: tuple(complex(np.broadcast_to(part, motion.q.shape)[k]) for part in (pose.x, pose.z))
             for name, pose in motion.poses.items()
         }
-        as_is = jacobian(linkage, structure, poses, {})
+        rates = {
+            name: tuple(complex(np.broadcast_to(part, motion.q.shape)[k]) for part in (rate.v, rate.w))
+            for name, rate in motion.first.items()
+        }
+        as_is = jacobian(linkage, structure, poses, {}, rates)
         assert len(as_is) - np.linalg.matrix_rank(as_is, tol=1e-9) == found.redundant
-        then = jacobian(linkage, structure, poses, kinds)
+        then = jacobian(linkage, structure, poses, kinds, rates)
         assert np.linalg.matrix_rank(then, tol=1e-9) == len(then)
         # W is what can move: the mechanism, and links by themselves
         assert then.shape[1] - len(then) == found.proposed.mobility == len(structure.drivers) + found.rank.local

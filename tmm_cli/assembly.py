@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Kernel, Turn
+from tmm_cli.groups.base import Dyad, Kernel, Turn, reach
 from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
@@ -62,7 +62,7 @@ def _assembled(
 def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
     """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
-    half = turns * np.pi if linkage.driver.kind == "turn" else 4 * max(k.size for k in kernels)
+    half = turns * np.pi if linkage.driver.kind == "turn" else reach(linkage)
     q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
     motion = move(linkage, kernels, q, Law(at, 1.0, 0.0, 1))
     middle = len(q) // 2

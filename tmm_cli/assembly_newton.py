@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_cli.assembly import nearest_to_sketch, sketch_distance, source
 from tmm_cli.cycle import turns_of_cycle
-from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.base import Kernel, reach
 from tmm_cli.groups.continuation import Upstream, Walker
 from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import CONVERGED, Newton
@@ -66,8 +66,7 @@ def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: 
         return Upstream(motion.poses, motion.first, motion.second, motion.drives, bool(motion.placed[0]))
 
     turns = linkage.driver.kind == "turn"
-    size = max(k.size for k in (kernel, *before))
-    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else 4 * size
+    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
     track = Walker(kernel, upstream, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return track if track is None or turns else replace(track, unit=kernel.size)
 

@@ -236,8 +236,9 @@ def move(linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law) -> Moti
         for kernel in kernels:
             at = kernel.place(poses, q, drives)
             sound = at.assembled & np.isfinite(sum(pose.x + pose.z for pose in at.poses))
-            missing[kernel.group.title] = placed & ~sound
-            dead[kernel.group.title] = placed & sound & at.dead
+            # with its stone exactly on its pivot a link may lie in any direction: it has no place, and is dead
+            missing[kernel.group.title] = placed & ~sound & ~at.dead
+            dead[kernel.group.title] = placed & at.dead
             placed = placed & sound
             moving = moving & placed & ~at.dead
             det = np.where(at.dead, np.nan, at.det)

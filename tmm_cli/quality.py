@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from tmm_cli.cycle import MOST, turns_of_cycle
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Dyad, Kernel, reach
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.roots import least, roots
@@ -18,6 +18,8 @@ from tmm_cli.vectors import Real
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
 PARTS = 64  # into which an interval is cut at once
+BACK = 1e-6  # of its size: what is no farther off than this has come back
+ALMOST = 1e-5  # of its way: so near to infinity a group is not found
 DEAD = 1e-6  # a margin below this, refined, is a dead position
 
 
@@ -74,7 +76,7 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
     cycle = cycle_of(linkage, kernels) if turns else 1
     number = cycle or 1
-    half = np.pi * number if turns else 4 * max((d.size for d in kernels), default=1.0)
+    half = np.pi * number if turns else reach(linkage)
     low, high = _looked_at(kernels, at, half)
     steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
     steps = np.unique(np.append(steps, 0.0))
@@ -85,7 +87,8 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     lost = _lost(move(linkage, kernels, at + steps, law), side)
     stopped = _stopped(linkage, at + steps)
     if not bool(np.any(lost)) and not bool(np.any(stopped)):
-        return Range(at - half, at + half, turns, turns=number, repeats=cycle is not None)
+        back = cycle is not None and (not turns or _returned(linkage, kernels, at, half))
+        return Range(at - half, at + half, turns, turns=number, repeats=back)
     blocked = np.flatnonzero(np.any(lost, axis=0) | stopped)
     middle = int(np.argmin(np.abs(steps)))
 
@@ -107,7 +110,7 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
             good, bad = places[there - 1], places[there]
         if stopped[index]:
             return Limit(float(good), "", linkage.driver.link)
-        return Limit(float(good), first.group.title)
+        return Limit(_at_infinity(first, float(good), towards), first.group.title)
 
     below, above = blocked[blocked < middle], blocked[blocked > middle]
     first = limit(int(below[-1]), -1) if below.size else None
@@ -130,6 +133,25 @@ def _stopped(linkage: Linkage, q: Real) -> Real:
     law = Law(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
     found: Real = ~np.isfinite(law.time(q))
     return found
+
+
+def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
+    """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
+    motion = move(linkage, kernels, np.array([at, at + 2 * half]), Law(at, 1.0, 0.0, 1))
+    size = max((kernel.size for kernel in kernels), default=1.0)
+    moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
+    return bool(max(moved) < BACK)
+
+
+def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
+    """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
+    track = kernel.followed
+    end = (0, -1)[towards > 0]
+    if track is None or not track.lost[end]:
+        return place
+    infinite, last = float(track.q[end]), float(track.q[end - towards])
+    close = abs(infinite - place) < ALMOST * float(track.q[-1] - track.q[0])
+    return infinite if close or abs(infinite - place) < abs(infinite - last) else place
 
 
 def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
@@ -214,7 +236,8 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tupl
     motion = move(linkage, kernels, q, law)
     found = []
     for number, dyad in enumerate(kernels):
-        margin = np.where(motion.placed, motion.placements[number].margin, np.inf)
+        at = motion.placements[number]
+        margin = np.where(motion.placed | at.dead, at.margin, np.inf)
         inner = margin[1:-1]
         low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1)) + 1
         places = list(q[low])

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.scene import BEYOND, BOX, HINGE, Form, Scene, fitted, form
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 from tmm_cli.draw.structure import (
     Part,
@@ -24,22 +25,7 @@ from tmm_cli.draw.structure import (
     spot,
     where,
 )
-from tmm_cli.draw.symbols import (
-    BEYOND,
-    BOX,
-    FREE,
-    HINGE,
-    Form,
-    Scene,
-    body,
-    box,
-    fitted,
-    form,
-    number,
-    quiet,
-    settle,
-    symbol_size,
-)
+from tmm_cli.draw.symbols import FREE, body, box, number, quiet, settle, symbol_size
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.structure.assur import ROMAN, Pair

@@ -12,17 +12,12 @@ from matplotlib.figure import Figure
 
 from tmm_cli.draw.actuators import driver_name
 from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.scene import BEYOND, BOX, Form, Scene, fitted, form
 from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, Sheet
 from tmm_cli.draw.symbols import (
-    BEYOND,
-    BOX,
     PALETTE,
-    Form,
-    Scene,
     body,
     box,
-    fitted,
-    form,
     hinge,
     number,
     rails,

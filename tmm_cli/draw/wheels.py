@@ -100,6 +100,8 @@ def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = 
         if isinstance(one, CamShape):
             places += [*one.disk.tolist(), one.touch, *one.face]
             continue
+        if one.side != 0 and (links is None or one.mesh.j in links):
+            places.append(one.pitch)
         apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
         for disc in one.discs:
             if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
@@ -258,7 +260,7 @@ def _tooth_hint(sheet: Sheet, centre: complex, radius: float, pitch: complex, al
 
 
 def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float] | None) -> None:
-    """A bar with teeth on its pitch line, joined to the running point of the rack."""
+    """A bar with teeth on its pitch line, joined to the running point of the rack; hatched where it is the frame."""
     pitch, along, side = sheet.on(found.pitch), found.along, found.side
     low, high = (-16.0, 16.0) if span is None else (span[0] / sheet.mu - 8, span[1] / sheet.mu + 8)
     run = np.linspace(low, high, int(np.clip(30 * (high - low) / TOOTH, 60, 20_000)))
@@ -266,6 +268,11 @@ def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float]
     back = [pitch + high * along + side * RIM, pitch + low * along + side * RIM]
     _curve(sheet, np.concatenate([teeth, back, teeth[:1]]), colour, 1.1, "-", 2.6)
     _curve(sheet, pitch + np.array([low - 3, high + 3]) * along, colour, 0.8, CHAIN, 2.05)
+    if found.mesh.j == FRAME:
+        for foot in np.linspace(low, high, max(int((high - low) / 2.0), 2)):
+            stroke = np.array([0, -1.2 * along + 1.7 * side])
+            _curve(sheet, pitch + foot * along + RIM * side + stroke, THIN, 0.6, "-", 2.4)
+        return
     start = sheet.on(found.start)
     foot = float(np.clip(dot(along, start - pitch), low, high))
     end = pitch + foot * along + side * RIM

@@ -184,6 +184,11 @@ def spread(linkage: Linkage, link: str) -> float:
     return float(np.max(np.abs(points - points[..., :1])))
 
 
+def reach(linkage: Linkage) -> float:
+    """How far (m) to both sides of the sketch a sliding driver is looked at: nothing is as long as that."""
+    return 4 * (max(spread(linkage, link) for link in linkage.links) or 1.0)
+
+
 def epsilon(values: Any) -> float:
     """Unit roundoff of an array's own precision."""
     return float(np.finfo(np.asarray(values).real.dtype).eps) / 2

@@ -8,7 +8,7 @@ Methods, ch. 2 and 6.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -23,6 +23,9 @@ FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divi
 LEAST_STEP = 1e-9
 CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
 TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
+MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longer steps
+SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
+FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
 FEW = 6  # rounds of Newton's method: more than that begin too far away
 SAME = 1e-7  # states this near are the same
 HALVINGS = 80
@@ -60,6 +63,7 @@ class Walker:
     def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
         self.kernel, self.source, self.scale = kernel, source, scale
         self.home: State | None = None
+        self.at = 0.0
 
     def node(self, q: float, start: State) -> tuple[_Node, float] | None:
         """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
@@ -89,10 +93,24 @@ class Walker:
 
     def apart(self, one: State, other: State) -> float:
         """How far two states are apart: lengths against the group's size, angles in rad."""
-        # links that go far away, as guides become parallel, have that distance for their size
-        home = one.x if self.home is None else self.home.x
-        far = max(self.kernel.size, float(np.max(np.abs(one.x - home))))
-        return float(max(np.max(np.abs(one.x - other.x)) / far, np.max(np.abs(one.turn - other.turn))))
+        away, wound = self.gone(one)
+        return float(
+            max(
+                np.max(np.abs(one.x - other.x)) / (self.kernel.size * max(1.0, away)),
+                np.max(np.abs(one.turn - other.turn)) / max(1.0, wound / MANY_TURNS),
+            )
+        )
+
+    def gone(self, state: State) -> tuple[float, float]:
+        """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).
+
+        As guides become parallel links go away, and wheels on them round, for ever; steps grow with them then.
+        """
+        home = state if self.home is None else self.home
+        return (
+            float(np.max(np.abs(state.x - home.x))) / self.kernel.size,
+            float(np.max(np.abs(state.turn - home.turn))),
+        )
 
     def leg(self, start: _Node, end: float) -> tuple[list[_Node], Literal["reached", "limit", "lost"]]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node."""
@@ -108,6 +126,8 @@ class Walker:
                 step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
                 here, failures = found[0], 0
                 nodes.append(here)
+                if self.spins(here):
+                    return [*nodes, *self.beyond(here)], "lost"
                 continue
             step = (q - here.q) / 2
             failures += 1
@@ -116,8 +136,29 @@ class Walker:
                 if limit is not None and (limit.q - end) * way <= 0:
                     return [*nodes, limit], "limit"
             if abs(step) < least:
-                return nodes, "lost"
+                return [*nodes, *self.beyond(here)], "lost"
         return nodes, "reached"
+
+    def spins(self, here: _Node) -> bool:
+        """Whether it goes round so much faster than the driver that there is no following it."""
+        return self.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
+
+    def beyond(self, last: _Node) -> list[_Node]:
+        """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
+
+        Nothing where it does not go away.
+        """
+        home = last.state if self.home is None else self.home
+        if self.gone(last.state)[0] > FAR:
+            far = (last.state.x - home.x).ravel()
+            k = int(np.argmax(np.abs(far)))
+            speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(far[k])  # the other part grows less
+            return [replace(last, q=last.q + float(abs(far[k]) / speed))]
+        if self.spins(last):
+            wound = (last.state.turn - home.turn).ravel()
+            k = int(np.argmax(np.abs(wound)))
+            return [replace(last, q=last.q + float(wound[k] / last.first.turn.ravel()[k]))]
+        return []
 
     def limit(self, last: _Node, sense: float) -> _Node | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
@@ -208,7 +249,7 @@ class Walker:
 
         When all has come back to where it was after some turns, the track is closed.
         """
-        self.home = state
+        self.home, self.at = state, at
         found = self.node(at, state)
         if found is None:
             return None
@@ -228,7 +269,13 @@ class Walker:
             if turns and below == "reached" and above != "reached":
                 more, below = self.leg(nodes[0], at - half - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        return _track(nodes, False, (below == "reached", above == "reached"), (below == "limit", above == "limit"))
+        return _track(
+            nodes,
+            False,
+            (below == "reached", above == "reached"),
+            (below == "limit", above == "limit"),
+            (below == "lost", above == "lost"),
+        )
 
     def returned(self, one: State, other: State) -> bool:
         """Whether two states are the same but for full turns."""
@@ -261,10 +308,11 @@ def _track(
     closed: bool,
     open_ends: tuple[bool, bool] = (False, False),
     limits: tuple[bool, bool] = (False, False),
+    lost: tuple[bool, bool] = (False, False),
 ) -> Track:
     def stacked(part: str) -> State:
         states = [getattr(node, part) for node in nodes]
         return State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
 
     first, second = stacked("first"), stacked("second")
-    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits)
+    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits, lost)

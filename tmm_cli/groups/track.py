@@ -24,8 +24,9 @@ class Track:
 
     closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the track
     ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
-    first, the last node is a place where the driver turns back; derivatives are infinite there. unit: what gaps are
-    counted in, 1 rad for a driver that turns, the group's size (m) for one that slides.
+    first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the track
+    ends there for another reason: the links it hangs on go no further, or links of its own go to infinity. unit: what
+    gaps are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides.
     """
 
     q: Real
@@ -35,6 +36,7 @@ class Track:
     closed: bool
     open_ends: tuple[bool, bool] = (False, False)
     limits: tuple[bool, bool] = (False, False)
+    lost: tuple[bool, bool] = (False, False)
     unit: float = 1.0
 
     @cached_property

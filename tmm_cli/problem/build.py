@@ -10,10 +10,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Mesh, Output, Request, Sketch, Slide
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Mesh, Output, Sketch, Slide
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_drivers import build_drivers
 from tmm_cli.problem.build_loads import build_loads, with_masses
+from tmm_cli.problem.build_positions import build_request
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
@@ -27,7 +28,6 @@ from tmm_cli.problem.units import (
     UnitSystem,
 )
 
-MAX_WORK = 2_000_000  # positions times links
 UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
 
 
@@ -97,7 +97,8 @@ class _Builder:
         allowed, given = self.allowed()
         file = self.tree.file
         return Problem(
-            PurePath(file).stem, shape.title or PurePath(file).stem, linkage, self.request(driver), self.sense.units,
+            PurePath(file).stem, shape.title or PurePath(file).stem, linkage,
+            build_request(shape, driver, self.sense), self.sense.units,
             limit, shape.description, file, allowed, given, self.tree, partial(build, self.tree, extended=True),
         )  # fmt: skip
 
@@ -311,37 +312,6 @@ class _Builder:
             found.append(Output(self.sense.known(given.link, moving, path, "link"), given.working))
         return tuple(found)
 
-    def request(self, driver: Driver) -> Request:
-        given = self.shape.positions
-        wanted = ANGLE if driver.kind == "turn" else LENGTH
-        places = tuple(
-            self.sense.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ())
-        )  # fmt: skip
-        count = len(places) or given.count
-        if count * len(self.shape.links) > MAX_WORK:
-            raise ProblemError(
-                "too many positions for so many links", path=("positions", "count"), found=str(count),
-                allowed=f"at most {MAX_WORK // len(self.shape.links)}",
-            )  # fmt: skip
-        for k, number in enumerate(given.detail):
-            if not 0 <= number < count:
-                raise ProblemError(
-                    "there is no such position", path=("positions", "detail", k), found=str(number),
-                    allowed=f"0 to {count - 1}",
-                )  # fmt: skip
-        if given.from_ is None:
-            return Request(count, 0.0, places, tuple(given.detail))
-        if driver.kind == "slide" and not places:
-            raise ProblemError(
-                "positions of a driven slider go from one end of its way to the other", path=("positions", "from"),
-                found=quote(given.from_) if isinstance(given.from_, str) else str(given.from_),
-                allowed="driver: {stroke: [first, last]}, or positions: {at: [...]}", key=True,
-            )  # fmt: skip
-        if given.from_ == "working stroke":
-            return Request(count, "working stroke", places, tuple(given.detail))
-        start = self.sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))
-        return Request(count, start, places, tuple(given.detail))
-
 
 def _extended_units(names: dict[str, str]) -> UnitSystem:
     from tmm_cli.problem.extended import ExtendedUnits  # only near dead positions
@@ -352,10 +322,4 @@ def _extended_units(names: dict[str, str]) -> UnitSystem:
 def _two(value: list[Any], path: Path) -> list[Any]:
     if len(value) != 2:
         raise ProblemError("two coordinates [x, y] are wanted", path=path, found=quote(value))
-    return value
-
-
-def _value(value: Any, path: Path) -> Any:
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ProblemError("an angle or `working stroke` is wanted", path=path, found=quote(value))
     return value
