@@ -514,9 +514,10 @@ CASES = {
         "  allowed: another place of the driver, where the two assemblies differ",
     ),
     "working stroke of a cylinder": (
-        blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: working stroke}", "work",
-        "positions.from: a driven slider has no working stroke to start from\n"
-        "  allowed: a length",
+        blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: working stroke}", "from",
+        "positions.from: positions of a driven slider go from one end of its way to the other\n"
+        "  found:   'working stroke'\n"
+        "  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}",
     ),
     "class III group without real assembly": (
         blocks.TRIAD, "[C, E], length: 90", "[C, E], length: 900", "90 d",

@@ -15,6 +15,7 @@ from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.camlaw import CamLaw, Piece
+from tmm_cli.groups.linear import solve as solve_linear
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -62,6 +63,22 @@ def test_contradictory_wheels_are_named_without_the_train_that_hangs_on_them():
     text = changed(blocks.RING, "points: {O: [0, 0],", "points: {T: [-90, 0], O: [0, 0],")
     text = changed(text, "gears:", "  4: {points: [T]}\ngears:\n  d: {between: [4, 1], ratio: 7}")
     assert "contradictory gear ratios: wheels 1, 2, 3 lock one another" in refusal(text)
+
+
+def test_a_system_with_only_one_side_in_longdouble_is_solved_in_longdouble():
+    """Rows of wheels alone are ratios: they stay float64 where the angles next to a dead position are longer."""
+    right = np.array([[1, 2]], dtype=np.longdouble) / 3
+    found = solve_linear(np.array([[[2.0, 0.0], [0.0, 4.0]]]), right)
+    assert found.dtype == np.longdouble
+    assert np.all(found * np.array([2, 4]) == right)
+
+
+def test_wheels_next_to_a_dead_position_are_solved():
+    text = changed(blocks.GEARED, "{at: 90 deg, B: [139, 120]}", "{at: 90 deg, B: [139, 120]}\npositions: {at: [DEAD]}")
+    end = solved(text.replace("DEAD", "0")).way.limits
+    place = end[0].place if end else 0.0
+    results = solved(text.replace("DEAD", f"{place!r} rad"))
+    assert np.isfinite(results.motion.point("2", 0j).x).all()
 
 
 # ---------------------------------------------------------------- cams
@@ -164,6 +181,25 @@ def test_the_limits_of_two_drivers_that_never_come_back_together_are_not_taken_f
 def test_a_second_driver_at_rest_is_a_link_that_stands():
     results = solved(changed(blocks.TWO, "2 rad/s", "0"))
     assert np.max(np.abs(results.motion.link("4").omega)) == 0
+
+
+def test_the_output_of_a_cylinder_is_what_it_lifts_and_two_points_of_a_link_are_its_guide():
+    text = blocks.CYLINDER.replace("slides: {on: 1, along: OP}", "slides: {on: 1}")
+    assert solved(text).travels[0].link == "3"
+
+
+def test_positions_of_a_cylinder_do_not_start_somewhere():
+    text = changed(blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: 250}")
+    assert refusal(text) == (
+        f"x.yaml:{place(text, 'from')}: positions.from: positions of a driven slider go from one end of its way to the "
+        "other\n  found:   250\n  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
+    )
+
+
+def test_positions_out_of_reach_are_not_named_one_by_one_without_end():
+    text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", f"at: {[300, *range(500, 900)]}")
+    said = [word for word in words(solved(text)) if "cannot be" in word]
+    assert (len(said), said[-1]) == (101, "... and 300 positions more that cannot be reached or are dead")
 
 
 # ---------------------------------------------------------------- groups

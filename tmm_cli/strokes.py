@@ -67,11 +67,13 @@ class Strokes:
 
 
 def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
-    """The output: named in the file, or the last link that is joined to the frame and not the driver."""
+    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder."""
     if linkage.output is not None:
         return linkage.output.link
+    driving = {link for driver in linkage.drivers for link in (driver.link, driver.base)}
     for group in reversed(groups):
         held = [link for link in group.links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
+        held = [link for link in held if link not in driving] or held
         if held:
             return next((link for link in held if linkage.slides_on_frame(link)), held[0])
     return None

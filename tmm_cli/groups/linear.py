@@ -17,8 +17,9 @@ def solve(matrix: Real, right: Real) -> Real:
     rows, columns = matrix.shape[-2:]
     if rows != columns:
         return _least_squares(matrix, right)
-    if matrix.dtype != np.float64:
-        return _eliminate(matrix, right)
+    kind = np.result_type(matrix, right)
+    if kind != np.float64:
+        return _eliminate(matrix.astype(kind), right)
     try:
         found: Real = np.linalg.solve(matrix, right[..., None])[..., 0]
         return found

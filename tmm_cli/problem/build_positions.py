@@ -34,13 +34,13 @@ def build_request(shape: schema.File, driver: Driver, sense: Sense) -> Request:
             )  # fmt: skip
     if given.from_ is None:
         return Request(count, 0.0, places, tuple(given.detail))
+    if driver.kind == "slide" and not places:
+        raise ProblemError(
+            "positions of a driven slider go from one end of its way to the other", path=("positions", "from"),
+            found=quote(given.from_) if isinstance(given.from_, str) else str(given.from_),
+            allowed="driver: {stroke: [first, last]}, or positions: {at: [...]}", key=True,
+        )  # fmt: skip
     if given.from_ == "working stroke":
-        if driver.kind == "slide":
-            raise ProblemError(
-                "a driven slider has no working stroke to start from",
-                path=("positions", "from"),
-                allowed="a length",
-            )
         return Request(count, "working stroke", places, tuple(given.detail))
     start = sense.number(_value(given.from_, ("positions", "from")), wanted, ("positions", "from"))
     return Request(count, start, places, tuple(given.detail))

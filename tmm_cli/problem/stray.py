@@ -45,6 +45,9 @@ def _named_twice(
     elsewhere: set[str] = set()
     for word in _words_outside_points(data):
         elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
+    for slide in (s for link in shape.links.values() for s in _slides(link)):
+        if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
+            elsewhere |= set(links[slide.on].points)  # its two points are the guide
     for name, link in links.items():
         given = list(link.points) if name == FRAME else shape.links[name].points
         running = {s.at for s in slides if s.runner == name}

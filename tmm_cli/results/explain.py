@@ -84,6 +84,12 @@ def _facts(problem: Problem) -> Table:
         asked = ", ".join(_show(problem, q, measure) for q in request.places[:12])
     else:
         start = request.start if isinstance(request.start, str) else _show(problem, request.start, measure)
+        if driver.stroke is not None:
+            start = say(
+                "explain.stroke", **{n: _show(problem, q, measure) for n, q in zip("ab", driver.stroke, strict=True)}
+            )
+        elif not crank:
+            start = say("explain.whole_way")
         asked = say("explain.count", count=request.count, start=start)
     units = problem.units
     rows = [

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tmm_cli.linkage import Load
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
+MOST_POSITIONS = 100  # that cannot be reached, each with its own words
 MOST_IMPACTS = 6  # jumps of one cam that are named
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
@@ -36,7 +37,10 @@ def warnings(results: Results) -> Iterable[str]:
     def place(q: float) -> str:
         return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
 
-    given = "" if results.problem.request.places else say("warning.given")
+    request = results.problem.request
+    given = "" if request.places else say("warning.given")
+    if given and not isinstance(request.start, str) and request.start:
+        given += say("warning.from", start=place(request.start))
     ends = {"link": results.linkage.driver.link, "start": place(way.start), "end": place(way.end)}
     groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits if limit.group))
     if groups and results.linkage.driver.kind == "turn":
@@ -49,7 +53,9 @@ def warnings(results: Results) -> Iterable[str]:
             yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
     for dead in results.dead:
         yield say("warning.dead", place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
-    for k, number in enumerate(results.numbers):
+    unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
+    for k in unreached[:MOST_POSITIONS]:
+        number = results.numbers[k]
         for title, lost in motion.missing.items():
             if lost[k]:
                 gap = motion.placements[list(motion.missing).index(title)].gap[k]
@@ -58,6 +64,8 @@ def warnings(results: Results) -> Iterable[str]:
         for title, dead_here in motion.dead.items():
             if dead_here[k]:
                 yield say("warning.dead_here", number=number, place=place(float(motion.q[k])), group=title)
+    if len(unreached) > MOST_POSITIONS:
+        yield say("warning.more", count=len(unreached) - MOST_POSITIONS)
     stopped = [n for k, n in enumerate(results.numbers) if not np.isfinite(motion.rate[k])]
     if stopped:
         yield say("warning.stopped", link=results.linkage.driver.link, number=stopped[0])

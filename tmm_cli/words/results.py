@@ -20,6 +20,8 @@ WORDS: dict[str, str] = {
     "explain.gravity": "gravity",
     "explain.positions": "positions",
     "explain.count": "{count} from {start}",
+    "explain.stroke": "{a} to {b}",
+    "explain.whole_way": "one end of its way to the other",
     "explain.sketch": "sketch, driver at",
     "explain.limit": "limit of the lever check",
     "explain.masses": "Masses",

@@ -14,6 +14,8 @@ WORDS: dict[str, str] = {
     "warning.range": "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} comes to "
     "its dead position",
     "warning.range_stopped": "driving link {link} goes from {start} to {end} only: it slows down and stops there",
+    "warning.more": "... and {count} positions more that cannot be reached or are dead",
+    "warning.from": "; positions.from ({start}) is for a driver that turns fully",
     "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
