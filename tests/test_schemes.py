@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from itertools import combinations, permutations
 
+import numpy as np
 import pytest
 from rich.console import Console
 from test_commands import tmm
@@ -282,7 +283,6 @@ def test_the_command_counts_chains_by_assortment():
         (("--links", 9), "more than 2000"),
         (("--links", 5, "--mobility", 0), "1 to 3"),
         (("--links", 3, "--groups", "RRR,RRX"), "did you mean 'RRR'?"),
-        (("--links", 4, "--mobility", 2, "--out", "out"), "a problem file has one driver"),
         (("--links", 7, "--groups", "RRR,RRP", "--out", "out"), "at most 300"),
         (("--chains", 12), "for W = 1: 4, 6, 8, 10"),
         (("--chains", 8, "--mobility", -1), "1 to 8"),
@@ -295,3 +295,13 @@ def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_pa
     assert words in done.stderr and "Traceback" not in done.stderr
     told = json.loads(tmm("schemes", *arguments, "--json").stdout)
     assert set(told) == {"error"}
+
+
+@pytest.mark.parametrize("links, mobility", [(4, 2), (5, 3), (6, 2)])
+def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
+    for scheme in schemes(links, mobility, named_types("RRR,RRP")):
+        made = skeleton(scheme, scheme.formula)
+        assert made is not None
+        results = solve(build(read_text(made.text, "scheme.yaml")))
+        assert len(results.linkage.drivers) == results.structure.mobility == mobility
+        assert np.max(results.lever.difference[results.motion.moving]) < 1e-9

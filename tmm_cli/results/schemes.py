@@ -95,11 +95,6 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     each: the schemes once more, as a progress bar counts them. Nothing is written before all files are made, and no
     file that is there already with other contents is touched. Raises ProblemError.
     """
-    if any(scheme.cranks != 1 for scheme in found):
-        raise ProblemError(
-            "a problem file has one driver", path=("--out",), found=f"--mobility {found[0].cranks}",
-            allowed="--mobility 1, or the table without --out",
-        )  # fmt: skip
     if len(found) > MOST_FILES:
         raise ProblemError(
             "these are too many files", path=("--out",), found=f"{len(found)} schemes",

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.structure.layout import CRANK_AT, Layout, layouts
+from tmm_cli.structure.layout import Layout, layouts
 from tmm_cli.structure.schemes import Scheme
 from tmm_cli.words import say
 
@@ -113,8 +113,11 @@ def _slides(link: int, layout: Layout) -> Iterable[str]:
 
 
 def _driven(scheme: Scheme, layout: Layout) -> Iterable[str]:
-    yield "driver: {link: 1, speed: 60 rpm, turns: ccw}"
-    sketch = [f"at: {CRANK_AT}", *(f"{name}: {_vector(place)}" for name, place in layout.places.items())]
+    first, *others = layout.cranks
+    driven = ["{link: 1, speed: 60 rpm, turns: ccw}"]
+    driven += [f"{{link: {k}, speed: 60 rpm, turns: ccw, at: {at}}}" for k, at in enumerate(others, 2)]
+    yield f"driver: {driven[0]}" if not others else f"driver: [{', '.join(driven)}]"
+    sketch = [f"at: {first}", *(f"{name}: {_vector(place)}" for name, place in layout.places.items())]
     sketch += [f"{link}: {angle}" for link, angle in layout.angles.items()]
     yield f"sketch: {{{', '.join(sketch)}}}"
     yield "masses:"

@@ -15,7 +15,7 @@ from random import Random
 
 from tmm_cli.structure.schemes import Placed, Scheme
 
-CRANK, CRANK_AT = 60, 60
+CRANK, CRANK_AT = 60, (60, 120, 30)  # mm; deg, of the first, second and third crank
 TRIALS = 250
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"  # O is the crank's pivot, and I looks like 1
 NEAREST = 30  # mm: points closer to one another cannot be told apart on a drawing
@@ -39,18 +39,19 @@ class Layout:
     """Dimensions of a scheme and its sketch.
 
     points: of every link, in its own axes (of the frame: in the drawing); places: where those of the moving links are
-    in the sketch, angles: of the links that slide on one another and are hung on two others.
+    in the sketch, angles: of the links that slide on one another and are hung on two others; cranks: where they stand.
     """
 
     points: dict[int, dict[str, complex]]
     slides: tuple[Guided, ...]
     places: dict[str, complex]
     angles: dict[int, int]
+    cranks: tuple[int, ...]
     cost: float
 
 
 def layouts(scheme: Scheme, seed: int = 1) -> tuple[Layout, ...]:
-    """Poses of a scheme with one crank, the best first."""
+    """Poses of a scheme, the best first."""
     random = Random(seed)
     found = (_Sheet(scheme, random).layout() for _ in range(TRIALS))
     return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
@@ -73,8 +74,14 @@ class _Sheet:
     losses: list[float] = field(default_factory=list)
 
     def layout(self) -> Layout | None:
-        self.where = {0: {"O": 0j}, 1: {"O": 0j}}
-        self.turn = {0: 0.0, 1: math.radians(CRANK_AT)}
+        self.where, self.turn = {0: {}}, {0: 0.0}
+        pivot = 0j
+        for crank in self.cranks:
+            name = "O" if crank == 1 else f"O{crank}"
+            pivot = 0j if crank == 1 else _whole(pivot + self.polar(220, 320, -25, 25))
+            self.where[0][name] = pivot
+            self.where[crank] = {name: pivot}
+            self.turn[crank] = math.radians(CRANK_AT[crank - 1])
         self.names = iter(LETTERS)
         build = {"RRR": self.rrr, "RRP": self.rrp, "RPR": self.rpr, "PRP": self.prp, "RPP": self.rpp,
                  "III": self.iii, "IV": self.iv}  # fmt: skip
@@ -84,6 +91,14 @@ class _Sheet:
             return self.measured()
         except _Unfit:
             return None
+
+    @property
+    def cranks(self) -> range:
+        return range(1, self.scheme.cranks + 1)
+
+    def pivot(self, crank: int) -> complex:
+        """Where a crank stands on the frame."""
+        return next(iter(self.where[crank].values()))
 
     # --- chance
 
@@ -111,9 +126,9 @@ class _Sheet:
         points = list(self.where[link].values())
         if link == 0:
             return None
-        if link == 1:
+        if link in self.cranks:
             first = len(points) == 1
-            return cmath.rect(CRANK, self.turn[1]) * (1 if first else self.polar(1, 1, 70, 290))
+            return points[0] + cmath.rect(CRANK, self.turn[link]) * (1 if first else self.polar(1, 1, 70, 290))
         if len(points) == 1:
             return points[0] + self.polar(60, 140)
         A, B = self.random.sample(points, 2)
@@ -186,8 +201,10 @@ class _Sheet:
         self.link(b, self.turn[Y], **{nB: B})
         self.slide(Y, b, B, turn, nB)
         self.lose(math.cos(cmath.phase(B - A) - turn))
-        # off the guide, or off the guide of a crank that turns about O
-        off = abs(_across(A - B, turn)) if Y != 1 else abs(A) + abs(_across(B, turn))
+        # off the guide, or off the guide of a crank that turns about its pivot
+        off = abs(_across(A - B, turn))
+        if Y in self.cranks:
+            off = abs(A - self.pivot(Y)) + abs(_across(B - self.pivot(Y), turn))
         self.spare(abs(B - A) - off)
 
     def rpr(self, group: Placed) -> None:
@@ -205,10 +222,11 @@ class _Sheet:
         (a, b), (X, Y) = group.links, _held(group)
         middles = [x for x in (self.near(X), self.near(Y)) if x is not None]
         C = sum(middles) / len(middles) + self.polar(60, 220)
-        one, other = (X, Y) if X == 1 or (Y != 1 and X > Y) else (Y, X)
-        if one == 1:  # a slotted crank has its slot through its pivot
-            C = cmath.rect(self.random.uniform(120, 260), self.turn[1])
-        turns = {one: self.turn[1] if one == 1 else self.direction(one, 0, 180)}
+        one, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
+        slotted = one in self.cranks
+        if slotted:  # a slotted crank has its slot through its pivot
+            C = self.pivot(one) + cmath.rect(self.random.uniform(120, 260), self.turn[one])
+        turns = {one: self.turn[one] if slotted else self.direction(one, 0, 180)}
         turns[other] = self.direction(other, turns[one] + math.pi / 2, 35)
         name = next(self.names)
         for link, known in ((a, X), (b, Y)):
@@ -296,7 +314,8 @@ class _Sheet:
         )  # fmt: skip
         moving = {name: _whole(place) for name, place in places.items() if name not in self.where[0]}
         angles = {link: round(math.degrees(self.turn[link])) for link in self.slotted}
-        return Layout(points, slides, moving, angles, sum(spans) / 1000 + WEIGHT * sum(self.losses))
+        cranks = tuple(CRANK_AT[crank - 1] for crank in self.cranks)
+        return Layout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.losses))
 
     def local(self, link: int, place: complex) -> complex:
         """A place in a link's axes, in whole millimetres."""
