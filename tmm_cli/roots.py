@@ -20,6 +20,8 @@ def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """
     b, a = np.asarray(low, float), np.asarray(high, float)
     fb, fa = function(b), function(a)
+    if bool(np.any((fa == 0) | (fb == 0))):
+        return _edges(function, b, a, fb)
     c, fc, share = b, fb, np.full(np.shape(a), 0.5)
     with np.errstate(all="ignore"):
         for _ in range(HALVINGS):
@@ -40,6 +42,15 @@ def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
             share = np.clip(share, np.minimum(least_step, 0.5), 1 - np.minimum(least_step, 0.5))
     found: Real = np.where(np.abs(fa) <= np.abs(fb), a, b)
     return found
+
+
+def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
+    """Where the sign of the lower end ends, by halving: beside a dwell that is its edge, not any place of it."""
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        same = np.sign(function(middle)) == np.sign(at_low)
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return (low + high) / 2
 
 
 def least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import math
 
 from tmm_cli.camlaw import CamLaw, Piece
 from tmm_cli.linkage import FRAME, Hinge, Link, Mesh, Slide
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_more
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense, check_name
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
@@ -114,7 +114,7 @@ class _Maker:
             + ("; carrier: the link that carries the axes" if carried else ""),
         )  # fmt: skip
 
-    def gear(self, name: str, given: schema.Gear, path: Path) -> Mesh:
+    def gear(self, name: str, given: schema_more.Gear, path: Path) -> Mesh:
         i, j = (self.sense.known(n, self.links, (*path, "between", k), "link") for k, n in enumerate(given.between))
         carrier = self.sense.known(given.carrier, self.links, (*path, "carrier"), "link")
         if len({i, j, carrier}) < 3:
@@ -162,7 +162,7 @@ class _Maker:
             )  # fmt: skip
         return angle
 
-    def _ratio(self, given: schema.Gear, path: Path) -> float:
+    def _ratio(self, given: schema_more.Gear, path: Path) -> float:
         """First radius over second; all that is given must agree."""
         found: list[tuple[str, float]] = []
         for key in ("teeth", "radii"):
@@ -200,7 +200,7 @@ class _Maker:
                 )  # fmt: skip
         return size
 
-    def _meshes(self, given: schema.Gear, distance: float, size: float, path: Path) -> None:
+    def _meshes(self, given: schema_more.Gear, distance: float, size: float, path: Path) -> None:
         """Whether the pitch circles touch at the distance of the axes."""
         radii = None
         if given.radii is not None:
@@ -224,7 +224,7 @@ class _Maker:
                 allowed=f"a distance of {shown[1]}" + ("" if given.inner else ", or inner: true"),
             )  # fmt: skip
 
-    def rack(self, name: str, given: schema.Rack, path: Path) -> Mesh:
+    def rack(self, name: str, given: schema_more.Rack, path: Path) -> Mesh:
         wheel, rack, carrier = (
             self.sense.known(getattr(given, key), self.links, (*path, key), "link")
             for key in ("wheel", "rack", "carrier")
@@ -266,7 +266,7 @@ class _Maker:
         ends = [(s.carrier, s.runner) for s in self.slides] + [(s.runner, s.carrier) for s in self.slides]
         return list(dict.fromkeys(other for one, other in ends if one == carrier))
 
-    def cam(self, name: str, given: schema.Cam, path: Path) -> Mesh:
+    def cam(self, name: str, given: schema_more.Cam, path: Path) -> Mesh:
         cam, follower = (
             self.sense.known(getattr(given, k), self.links, (*path, k), "link") for k in ("cam", "follower")
         )

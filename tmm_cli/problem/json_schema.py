@@ -6,13 +6,14 @@ from typing import Any
 
 from tmm_cli.problem.schema import File, OnLine, Output, Tabulated
 from tmm_cli.problem.schema_chain import SpatialFile
+from tmm_cli.problem.schema_more import Cam, Friction, Gear, Rack, Spring
 
 
 def file_schema() -> dict[str, Any]:
     """Made by pydantic from the shape; models that have validators of their own around them are put in by name."""
     schema = File.model_json_schema(by_alias=True)
     definitions = schema.setdefault("$defs", {})
-    for model in (OnLine, Output, Tabulated, SpatialFile):
+    for model in (OnLine, Output, Tabulated, SpatialFile, Gear, Rack, Cam, Spring, Friction):
         inner = model.model_json_schema(by_alias=True)
         for name, definition in inner.pop("$defs", {}).items():
             definitions.setdefault(name, definition)

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from tmm_cli.problem import schema, schema_chain
+from tmm_cli.problem import schema, schema_chain, schema_more
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.reader import Tree, decimal_comma_hint
 from tmm_cli.problem.record import Problem
@@ -38,13 +38,13 @@ MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
     (("links", ANY, "slides", ANY), schema.Slide),
     (("driver",), schema.Driver),
     (("driver", ANY), schema.Driver),
-    (("gears", ANY), schema.Gear),
-    (("racks", ANY), schema.Rack),
-    (("cams", ANY), schema.Cam),
-    (("cams", ANY, "law", ANY), schema.CamPiece),
-    (("springs", ANY), schema.Spring),
-    (("friction",), schema.Friction),
-    (("friction", "pairs", ANY), schema.PairFriction),
+    (("gears", ANY), schema_more.Gear),
+    (("racks", ANY), schema_more.Rack),
+    (("cams", ANY), schema_more.Cam),
+    (("cams", ANY, "law", ANY), schema_more.CamPiece),
+    (("springs", ANY), schema_more.Spring),
+    (("friction",), schema_more.Friction),
+    (("friction", "pairs", ANY), schema_more.PairFriction),
     (("masses", ANY), schema.Mass),
     (("loads", ANY), schema.Load),
     (("loads", ANY, "force"), schema.Tabulated),

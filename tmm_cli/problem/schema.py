@@ -7,6 +7,7 @@ the file is built into a linkage (build), which knows the parameters and units. 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
@@ -122,83 +123,22 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
-class Gear(Strict):
-    """Two toothed wheels in mesh, hinged to a common carrier."""
+def _shaped(name: str) -> Callable[[Any], Any]:
+    """The shape of a block that few files have: its model is made only for those."""
 
-    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
-    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
-    teeth: list[int] | None = Field(default=None, description="numbers of teeth of both")
-    radii: list[Value] | None = Field(default=None, description="radii of both pitch circles")
-    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
-    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
-    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
-    offset: Value = Field(
-        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
-    )
-    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+    def shaped(found: Any) -> Any:
+        from tmm_cli.problem import schema_more
+
+        return getattr(schema_more, name).model_validate(found)
+
+    return shaped
 
 
-class Rack(Strict):
-    """A wheel that rolls on a rack."""
-
-    wheel: Name
-    rack: Name = Field(description="the link with the rack; it slides on the carrier")
-    carrier: Name = Field(default="0", description="the link that holds both")
-    radius: Value = Field(description="of the wheel's pitch circle")
-    side: Literal["left", "right"] | None = Field(
-        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
-    )
-    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
-    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
-
-
-class CamPiece(Strict):
-    """A part of a cam's turn."""
-
-    over: Value = Field(description="angle of the cam")
-    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
-    law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
-
-
-class Cam(Strict):
-    """A cam on the frame and its follower, by the follower's law of motion."""
-
-    cam: Name
-    follower: Name = Field(description="it slides on the frame, or swings about a hinge on it")
-    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
-    start: Value = Field(default=0, description="angle of the cam where the first piece starts")
-    offset: Value = Field(default=0, description="run (or angle) of the follower there")
-
-
-class Spring(Strict):
-    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
-
-    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
-    at: list[Place] | None = Field(
-        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
-    )
-    rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
-    torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
-    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
-    preload: Value = Field(
-        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
-    )
-    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
-
-
-class PairFriction(Strict):
-    """Friction in one pair."""
-
-    coefficient: Value | None = None
-    radius: Value | None = Field(default=None, description="of the journal of a hinge")
-
-
-class Friction(Strict):
-    """Coulomb friction in pairs. Without this block nothing of it is computed."""
-
-    coefficient: Value = Field(default=0, description="in every pair that is not named")
-    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
-    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
+Gear = Annotated[Any, BeforeValidator(_shaped("Gear")), WithJsonSchema({"$comment": "Gear"})]
+Rack = Annotated[Any, BeforeValidator(_shaped("Rack")), WithJsonSchema({"$comment": "Rack"})]
+Cam = Annotated[Any, BeforeValidator(_shaped("Cam")), WithJsonSchema({"$comment": "Cam"})]
+Spring = Annotated[Any, BeforeValidator(_shaped("Spring")), WithJsonSchema({"$comment": "Spring"})]
+Friction = Annotated[Any, BeforeValidator(_shaped("Friction")), WithJsonSchema({"$comment": "Friction"})]
 
 
 class Mass(Strict):
@@ -299,7 +239,7 @@ class File(Strict):
     racks: dict[Name, Rack] = Field(default_factory=dict, max_length=100)
     cams: dict[Name, Cam] = Field(default_factory=dict, max_length=100)
     springs: dict[Name, Spring] = Field(default_factory=dict, max_length=100)
-    friction: Friction | None = None
+    friction: Friction = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
         description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
