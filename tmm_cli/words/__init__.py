@@ -1,15 +1,26 @@
-"""Every word that a user reads in a table, a drawing or a report has its place here; another language: another folder.
+"""Every word that a user reads in a table, a drawing or a report has its place here, and another language its folder.
 
-Keys are dotted: the part before the first dot says where the words are used.
+Keys are dotted: the part before the first dot says where the words are used. Files are read when a word of theirs is
+asked for, so that a short command reads few.
 """
 
 from __future__ import annotations
 
-from tmm_cli.words import drawings, results, structure, warnings
+from functools import cache
+from importlib import import_module
 
-ENGLISH: dict[str, str] = {**structure.WORDS, **results.WORDS, **warnings.WORDS, **drawings.WORDS}
+FILES = ("common", "structure", "results", "warnings", "drawings")
+
+
+@cache
+def _text(key: str) -> str:
+    for name in FILES:
+        words: dict[str, str] = import_module(f"{__name__}.{name}").WORDS
+        if key in words:
+            return words[key]
+    raise KeyError(key)
 
 
 def say(key: str, **values: object) -> str:
     """The words of a key, with values put in their places."""
-    return ENGLISH[key].format(**values)
+    return _text(key).format(**values)
