@@ -98,3 +98,32 @@ def test_at_every_position_it_is_the_angle_of_the_force_to_the_velocity():
     moving = np.abs(velocity) > 1e-6
     cosine = np.abs((force * np.conj(velocity)).real) / np.abs(force) / np.abs(velocity)
     assert np.allclose(np.cos(found.angles[moving]), cosine[moving], rtol=0, atol=1e-12)
+
+
+def test_a_link_driven_in_two_pairs_has_the_angle_of_their_power():
+    """The lead of a class IV contour: without other forces the drawn reactions are those of the definition."""
+    results = results_of(
+        {
+            "tmm": 1, "units": {"length": "mm", "angle": "deg"}, "points": {"O": [0, 0], "G": [310, 110]},
+            "links": {
+                "1": {"points": ["O", "A"], "length": 52},
+                "2": {"points": {"A": [0, 0], "B": [110, 0], "C": [40, 195]}},
+                "3": {"points": ["B", "D"], "length": 260},
+                "4": {"points": {"G": [0, 0], "D": [265, 0], "E": [145, 5]}},
+                "5": {"points": ["C", "E"], "length": 295},
+            },
+            "driver": {"link": 1, "speed": 5}, "positions": {"count": 24},
+            "sketch": {"at": 90, "B": [95, -5], "C": [135, 198], "D": [308, -156], "E": [311, -36]},
+            "loads": {"M": {"on": 4, "moment": -60}}, "gravity": 0,
+        }
+    )  # fmt: skip
+    (found,) = results.pressure
+    assert found.link == "4" and found.pair == "D, E"
+    power, most = 0.0, 0.0
+    for name in "DE":
+        force, velocity = results.reactions.of(name).onto("4"), results.motion.named(name).v
+        power = power + (force * np.conj(velocity)).real
+        most = most + np.abs(force) * np.abs(velocity)
+    assert np.allclose(power, 60 * results.motion.link("4").omega, rtol=1e-12)
+    assert np.allclose(np.cos(found.angles), np.abs(power) / most, rtol=0, atol=1e-12)
+    assert found.largest >= np.max(found.angles)

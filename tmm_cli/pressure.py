@@ -5,6 +5,10 @@ velocity of the point where it acts (I. I. Artobolevsky, Theory of Mechanisms an
 from statics: the link is resisted by a moment (a force along its guide), the rest of its group carries nothing, and the
 reactions of the group say where it is driven and in what direction. So it holds for a group of any class, with no
 formula of its own.
+
+A link that is driven in several pairs at once (a lead of a class IV contour) has a force and a velocity in each. Its
+angle is that whose cosine is the power of these forces over what they would give along the velocities: for one pair
+that is the angle above, and it is 90 deg in dead positions only.
 """
 
 from __future__ import annotations
@@ -31,8 +35,9 @@ NOTHING = 1e-9  # rad: below this the angle is zero everywhere and has no larges
 class Pressure:
     """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
 
-    pair: where the link is driven. slides: whether it slides on what holds it (else it turns). angles: at the positions
-    that were asked for. allowed: rad; gain: the coefficient of force increase, 1/cos of the largest.
+    pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
+    turns). angles: at the positions that were asked for. allowed: rad; gain: the coefficient of force increase, 1/cos
+    of the largest.
     """
 
     group: str
@@ -59,25 +64,33 @@ class Pressure:
         return self.largest <= self.allowed
 
 
-def followers(group: Group) -> Iterable[tuple[str, Pair, Pair]]:
-    """Links of a group that it drives: with the pair that holds them and the one in which they are driven.
+Lead = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
 
-    They have one inner pair; those held by the frame count, or the last one where none is.
+
+def named(lead: Lead) -> str:
+    """The pairs in which a link is driven."""
+    return ", ".join(pair.name for pair in lead[2])
+
+
+def followers(group: Group) -> Iterable[Lead]:
+    """Links of a group that it drives: with the pair that holds them and those in which they are driven.
+
+    Those held by the frame count, or the last one where none is.
     """
     leads = []
     for outer in group.outer:
         link = outer.i if outer.i in group.links else outer.j
-        inner = [p for p in group.inner if link in (p.i, p.j)]
+        inner = tuple(p for p in group.inner if link in (p.i, p.j))
         held = [p for p in group.outer if link in (p.i, p.j)]
-        if outer.lower and len(inner) == 1 and len(held) == 1 and inner[0].lower:
-            leads.append((link, outer, inner[0]))
+        if outer.lower and inner and len(held) == 1 and all(p.lower for p in inner):
+            leads.append((link, outer, inner))
     on_frame = [lead for lead in leads if FRAME in (lead[1].i, lead[1].j)]
     return on_frame or leads[-1:]
 
 
-def angle(motion: Motion, kernel: Kernel, at: Placement, lead: tuple[str, Pair, Pair]) -> Real:
+def angle(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> Real:
     """Pressure angle of a driven link at every position, rad; nan where there is none."""
-    link, outer, inner = lead
+    link, outer, pairs = lead
     group, poses = kernel.group, motion.poses
     pose = poses[link]
     still = np.zeros(np.shape(motion.q))
@@ -88,18 +101,25 @@ def angle(motion: Motion, kernel: Kernel, at: Placement, lead: tuple[str, Pair, 
         u = poses[outer.slide.carrier].z * unit(outer.slide.direction)
         resistance = Wrench(u, cross(poses[outer.slide.runner].at(outer.slide.at) - pose.x, u))
     on = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
-    held = kernel.reactions(at, poses, on).inner[group.inner.index(inner)]
-    size = np.abs(held.force)
-    if inner.slide is None:
-        point = poses[inner.i].at(motion.linkage.local(inner.i, inner.point))
-    else:
-        point = poses[inner.slide.runner].at(inner.slide.at)
-        guide = poses[inner.slide.carrier].z * unit(inner.slide.direction)
-        assert held.couple is not None
-        point = point + guide * held.couple / dot(held.force, 1j * guide)
-    along = u if outer.slide is not None else 1j * (point - pivot) / np.abs(point - pivot)
-    across = np.abs(cross(held.force, along)) / size
-    found: Real = np.arctan2(across, np.abs(dot(held.force, along)) / size)
+    reactions = kernel.reactions(at, poses, on).inner
+    along, across, loose = still, still, still
+    for pair in pairs:
+        held = reactions[group.inner.index(pair)]
+        force = held.force if kernel.inner_on(pair) == link else -held.force
+        if pair.slide is None:
+            point = poses[pair.i].at(motion.linkage.local(pair.i, pair.point))
+        else:
+            point = poses[pair.slide.runner].at(pair.slide.at)
+            guide = poses[pair.slide.carrier].z * unit(pair.slide.direction)
+            assert held.couple is not None
+            point = point + guide * held.couple / dot(held.force, 1j * guide)
+        velocity = u if outer.slide is not None else 1j * (point - pivot)
+        along = along + dot(force, velocity)
+        across = across + np.abs(cross(force, velocity))
+        loose = loose + np.abs(force) * np.abs(velocity)
+    # of one pair by both components, which tells small angles; of several by the cosine
+    sine = across if len(pairs) == 1 else np.sqrt(np.maximum((loose - along) * (loose + along), 0))
+    found: Real = np.arctan2(sine, np.abs(along))
     return found
 
 
@@ -128,12 +148,12 @@ def find_pressure(
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
                 found.append(
-                    Pressure(kernel.group.title, lead[0], lead[2].name, slides, value, place, limit, of(motion))
+                    Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit, of(motion))
                 )
     return tuple(found)
 
 
-def _of(number: int, kernel: Kernel, lead: tuple[str, Pair, Pair], motion: Motion) -> Real:
+def _of(number: int, kernel: Kernel, lead: Lead, motion: Motion) -> Real:
     return angle(motion, kernel, motion.placements[number], lead)
 
 

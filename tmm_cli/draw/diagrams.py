@@ -16,7 +16,7 @@ from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_places
 from tmm_cli.plans.record import balance_name, reaction_name
-from tmm_cli.pressure import angle, followers
+from tmm_cli.pressure import angle, followers, named
 from tmm_cli.problem.dimensions import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension
 from tmm_cli.results.reports.cycle import output_links, output_motion
 from tmm_cli.words import say
@@ -145,7 +145,7 @@ def _pressure(results: Results, motion: Motion) -> list[Panel]:
     panels: list[Panel] = []
     with np.errstate(all="ignore"):
         curves = {
-            (kernel.group.title, lead[0], lead[2].name): angle(motion, kernel, at, lead)
+            (kernel.group.title, lead[0], named(lead)): angle(motion, kernel, at, lead)
             for kernel, at in zip(motion.kernels, motion.placements, strict=True)
             for lead in followers(kernel.group)
         }
