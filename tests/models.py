@@ -7,12 +7,14 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tmm_cli import solve
+from tmm_cli import load, solve
+from tmm_cli.linkage import Linkage
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
 DATA = Path(__file__).parent / "data"
+PROBLEMS = Path(__file__).parent.parent / "problems"
 PARALLELOGRAM = """tmm: 1
 points: {O: [0, 0], D: [300, 0]}
 links:
@@ -31,6 +33,17 @@ def results_of(content: dict[str, Any], stage: str = "forces", positions: list[i
     """Write a problem file and solve it."""
     text = json.dumps(content, ensure_ascii=False)  # JSON is YAML
     return solve(build(read_text(text, "case.yaml")), stage, positions)  # type: ignore[arg-type]
+
+
+def linkage_of(name: str) -> Linkage:
+    """The linkage of a problem of the bank."""
+    return load(PROBLEMS / f"{name}.yaml").linkage
+
+
+def bank() -> list[tuple[str, Linkage]]:
+    """All planar linkages of the bank by name."""
+    paths = [path for path in sorted(PROBLEMS.glob("*.yaml")) if "spatial:" not in path.read_text(encoding="utf-8")]
+    return [(path.stem, load(path).linkage) for path in paths]
 
 
 def reference(name: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.state import Accel, Drive, Placement, Pose, Rate
+from tmm_cli.groups.state import Accel, Drive, Drives, Placement, Pose, Rate
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide
 from tmm_cli.splice import Part, spliced
 from tmm_cli.vectors import Real, Vector, dot, unit
@@ -215,17 +215,21 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
     return found
 
 
-def move(linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law) -> Motion:
+def move(
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law, *, blank: bool = True, drives: Drives | None = None
+) -> Motion:
     """Kinematics at the first driver's places q (rad or m), each found alone.
 
-    A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it.
+    A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it. blank:
+    whether there are no numbers in such positions, but nan; else they are what the formulas give. drives: where the
+    drivers are, if by another parameter than q; law is that of the parameter then.
     """
     kernels = tuple(kernels)
-    q = np.atleast_1d(np.asarray(q))
+    q = np.atleast_1d(q)
     poses, first, second = {}, {}, {}
     poses[FRAME], first[FRAME], second[FRAME] = frame_state(q)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        drives = drives_at(linkage, q)
+        drives = drives_at(linkage, q) if drives is None else drives
         for driver in linkage.cranks:
             link = driver.link
             poses[link], first[link], second[link] = driven_state(linkage, driver, drives[link])
@@ -241,8 +245,9 @@ def move(linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law) -> Moti
             dead[kernel.group.title] = placed & at.dead
             placed = placed & sound
             moving = moving & placed & ~at.dead
-            det = np.where(at.dead, np.nan, at.det)
-            at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
+            if blank:
+                det = np.where(at.dead, np.nan, at.det)
+                at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
             links = kernel.group.links
             poses.update(zip(links, at.poses, strict=True))
             first.update(zip(links, kernel.rates(at, poses, first, drives), strict=True))

@@ -14,11 +14,12 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import Linkage
+from tmm_cli.mobile import mobile
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.problem.record import Problem
 from tmm_cli.quality import DeadPosition, Range, find_dead, find_range
-from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused, WrongMobility
-from tmm_cli.structure.assur import Structure, analyse
+from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused
+from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
@@ -107,14 +108,7 @@ def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | 
     Raises Refused: WrongMobility, NoSuchPosition, NoStrokes, and what assembly raises.
     """
     linkage = problem.linkage
-    structure = analyse(linkage)
-    if not structure.sound:
-        from tmm_cli.rank import by_rank  # few linkages need it
-
-        moving = by_rank(linkage, structure)
-        if moving is None:
-            raise WrongMobility(structure)
-        structure = moving
+    structure = mobile(linkage)
     if stage == "structure":
         return _structure_only(problem, structure)
     from tmm_cli.pressure import find_pressure

@@ -62,7 +62,7 @@ class Strokes:
         inside = np.zeros(np.shape(q), dtype=bool)
         for stroke in self.working:
             way = np.mod(sense * (q - stroke.start) + 1e-9, self.cycle) - 1e-9
-            inside |= way < stroke.length - 1e-9
+            inside = inside | (way < stroke.length - 1e-9)
         return inside
 
 

@@ -21,6 +21,11 @@ def cross(a: Any, b: Any) -> Any:
     return a.real * b.imag - a.imag * b.real
 
 
+def square(a: Any) -> Any:
+    """The square of its length."""
+    return a.real * a.real + a.imag * a.imag
+
+
 def along(a: Any, amount: Any) -> Any:
     """The vector a scaled by a real amount (no complex product, so no spurious rounding)."""
     return a * amount

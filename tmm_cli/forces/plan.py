@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -108,9 +109,10 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
     """Reactions in all pairs and what balances the drivers, at every position of the motion."""
     linkage = motion.linkage
     on = {name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links}
-    for load in loads:
-        arm = load.at * motion.poses[load.link].z
-        on[load.link] += Wrench(load.force, cross(arm, load.force) + load.moment)
+    for acting in _by_place(loads):
+        link, arm = acting[0].link, acting[0].at * motion.poses[acting[0].link].z
+        force = reduce(np.add, [load.force for load in acting])
+        on[link] += Wrench(force, cross(arm, force) + reduce(np.add, [load.moment for load in acting]))
     borne: dict[str, list[Reaction]] = {name: [] for name in linkage.links}
     groups: list[GroupForces] = []
     frames: list[Reaction] = []
@@ -144,6 +146,14 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
     )  # fmt: skip
 
 
+def _by_place(loads: tuple[Applied, ...]) -> list[list[Applied]]:
+    """Loads that act at the same point of a link, such as weight and inertia, together."""
+    found: dict[tuple[str, int], list[Applied]] = {}
+    for load in loads:
+        found.setdefault((load.link, id(load.at)), []).append(load)
+    return list(found.values())
+
+
 def power(motion: Motion, reactions: Reactions) -> Real:
     """What all drivers do per unit of the first one's motion; with one driver its balancing moment or force."""
     total = np.zeros(np.shape(motion.q))
@@ -172,14 +182,16 @@ def _reaction(motion: Motion, pair: Pair, own: str, held: Held) -> Reaction:
 
 def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
     """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
-    far = FAR * max((kernel.size for kernel in motion.kernels), default=1.0)
+    far = FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
 def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
     """The same reaction on the other link, reduced to that link's origin."""
-    arm = reaction.at - motion.poses[reaction.by].x
+    by, pair = motion.poses[reaction.by], reaction.pair
+    own = pair.slide is None and pair.mesh is None
+    arm = motion.linkage.local(reaction.by, pair.point) * by.z if own else reaction.at - by.x
     moment = cross(arm, -reaction.force)
     if reaction.back is not None:
         moment = moment + reaction.back
@@ -218,7 +230,7 @@ def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) 
         moment = -total.about(pivot - pose.x)
         end = _end(linkage, driver)
         radius = pose.at(end) - pivot
-        arm = float(np.abs(end - linkage.local(driver.link, driver.joint)))
+        arm = np.abs(end - linkage.local(driver.link, driver.joint))
         size = moment / arm
         vector = 1j * radius * (moment / (arm * arm))
         force = -total.force - (vector if driver.balance == "force" else 0)
@@ -247,4 +259,4 @@ def _end(linkage: Linkage, driver: Driver) -> complex:
     if driver.end:
         return points[driver.end]
     pivot = points[driver.joint]
-    return next((p for name, p in points.items() if name != driver.joint and p != pivot), pivot + 1.0)
+    return next((p for name, p in points.items() if name != driver.joint and np.any(p != pivot)), pivot + 1.0)

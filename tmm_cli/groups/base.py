@@ -11,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -157,7 +158,7 @@ class Dyad(Kernel):
 
         a, b = group.links
         ends = (seen(group.outer[0], a), seen(group.outer[1], b))
-        size = max(spread(linkage, link) for link in (a, b, *(end.known for end in ends)))
+        size = reduce(np.maximum, [spread(linkage, link) for link in (a, b, *(end.known for end in ends))])
         return cls(group, size, ends, seen(group.inner[0], b), sign)
 
     def again(self, linkage: Linkage) -> Kernel:
@@ -179,9 +180,10 @@ class Dyad(Kernel):
         """The rate at which its gap grows, from the motion of the links it hangs on alone."""
 
 
-def spread(linkage: Linkage, link: str) -> float:
-    points = np.array(list(linkage.links[link].points.values()) or [0j])
-    return float(np.max(np.abs(points - points[..., :1])))
+def spread(linkage: Linkage, link: str) -> Any:
+    """The farthest that a point of a link is from its first one, m."""
+    points = list(linkage.links[link].points.values()) or [0j]
+    return reduce(np.maximum, [np.abs(point - points[0]) for point in points])
 
 
 def reach(linkage: Linkage) -> float:
@@ -191,7 +193,7 @@ def reach(linkage: Linkage) -> float:
 
 def epsilon(values: Any) -> float:
     """Unit roundoff of an array's own precision."""
-    return float(np.finfo(np.asarray(values).real.dtype).eps) / 2
+    return float(np.finfo(values.real.dtype).eps) / 2
 
 
 def line(run: Run, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:

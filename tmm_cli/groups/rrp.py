@@ -26,7 +26,7 @@ from tmm_cli.groups.base import (
     line,
 )
 from tmm_cli.groups.state import Drives
-from tmm_cli.vectors import Real, Vector, cross, dot, unit
+from tmm_cli.vectors import Real, Vector, cross, dot, square, unit
 
 
 @dataclass(frozen=True)
@@ -114,9 +114,9 @@ class RRP(Dyad):
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
         """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
         on_a, on_b = on
-        _, b, c = self._ends
+        a, b, c = self._ends
         ra, u, _ = self._arms(at, poses)
-        tau = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
+        tau = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
         rest = on_a.force + on_b.force + tau
         normal = ra * (-dot(rest, u) / at.det)
         guide = 1j * u * (-dot(rest + normal, 1j * u))

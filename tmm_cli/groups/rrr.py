@@ -24,7 +24,7 @@ from tmm_cli.groups.base import (
     epsilon,
 )
 from tmm_cli.groups.state import Drives
-from tmm_cli.vectors import Real, Vector, cross, dot
+from tmm_cli.vectors import Real, Vector, dot, square
 
 
 @dataclass(frozen=True)
@@ -112,17 +112,22 @@ class RRR(Dyad):
         )
 
     def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
-        """Moments of each link about C give the tangential components, the polygon the normal ones."""
+        """Moments of each link about its outer hinge give the reaction in C, the polygon of each link the outer ones.
+
+        Tangential components follow from the moments about C alone, normal ones are the rest.
+        """
         on_a, on_b = on
-        _, _, c = self._ends
+        a, b, c = self._ends
         ra, rb = self._arms(at)
-        tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / dot(ra, ra))
-        tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / dot(rb, rb))
-        rest = on_a.force + on_b.force + tau_a + tau_b
-        n_a, n_b = ra * (-cross(rest, rb) / at.det), rb * (cross(rest, ra) / at.det)
-        RA, RB = tau_a + n_a, tau_b + n_b
-        inner = -(RB + on_b.force)
-        return Holding((Held(RA, tangential=tau_a, normal=n_a), Held(RB, tangential=tau_b, normal=n_b)), (Held(inner),))
+        t_a, t_b = on_a.about(a.here * at.a.z), -on_b.about(b.here * at.b.z)
+        inner = (t_a * rb - t_b * ra) / at.det  # ra x inner = t_a, rb x inner = t_b
+        RA, RB = inner - on_a.force, -(inner + on_b.force)
+        tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
+        tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / square(c.here - b.here))
+        return Holding(
+            (Held(RA, tangential=tau_a, normal=RA - tau_a), Held(RB, tangential=tau_b, normal=RB - tau_b)),
+            (Held(inner),),
+        )
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:

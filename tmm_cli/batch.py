@@ -1,0 +1,146 @@
+"""Many positions of a linkage, or many linkages of one kind, at once: the stages written on a tape and played back.
+
+The tape holds what the ordinary stages do for this linkage, without what its numbers and the wanted results make
+superfluous; it is worth its writing (some milliseconds) from thousands of positions on. Groups that are found by
+iteration cannot be written on a tape; linkages that have them are solved one after another by the ordinary stages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.assembly import assemble
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import Reactions, react
+from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.state import Drive
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.mobile import mobile
+from tmm_cli.motion import Law, Motion, drives_at, move
+from tmm_cli.stack import changed, parts, varying
+from tmm_cli.strokes import Strokes
+from tmm_cli.structure.assur import Structure
+from tmm_cli.tape import Outputs, Program, record
+from tmm_cli.vectors import Real
+
+Asked = Callable[[Motion, Reactions | None], Mapping[str, Any]]
+TIME = Law(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
+
+
+def everything(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+    """Motion of all named points, centres of mass and links, all reactions, what balances the drivers.
+
+    Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's second
+    link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
+    """
+    linkage = motion.linkage
+    found: dict[str, Any] = {}
+    for name in linkage.moving:
+        link = linkage.links[name]
+        for point, local in {**link.points, f"S{name}": link.centre}.items():
+            if point not in linkage.links[FRAME].points and f"{point}.x" not in found:
+                p = motion.point(name, local)
+                found |= {f"{point}.x": p.x, f"{point}.v": p.v, f"{point}.a": p.a}
+        turning = motion.link(name)
+        found |= {f"{name}.omega": turning.omega, f"{name}.epsilon": turning.epsilon}
+    for r in reactions.all if reactions is not None else ():
+        found[f"R.{r.pair.name}"] = r.force
+        if r.couple is not None:
+            found[f"M.{r.pair.name}"] = r.couple
+    for b in reactions.balances if reactions is not None else ():
+        found[f"T.{b.driver.link}"] = b.generalized
+    return found
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Linkages of one kind, ready to be solved at places of their driver; all assembled as the first one is.
+
+    program is None where the groups are found by iteration; checks tells where they can be assembled. columns: what
+    varies, (variants, 1).
+    """
+
+    linkages: tuple[Linkage, ...]
+    structure: Structure
+    kernels: tuple[Kernel, ...]
+    asked: Asked
+    forces: bool
+    strokes: Strokes | None
+    program: Program | None
+    checks: Program | None = None
+    columns: tuple[Real, ...] = ()
+
+    def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
+        """What was asked, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
+
+        Results are (variants, positions), or (positions,) of one linkage. Where `sound` says no they mean nothing.
+        """
+        return self._one_by_one(q) if self.program is None else self.program(*self.columns, q)
+
+    def sound(self, q: Real) -> Outputs | Mapping[str, Real]:
+        """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`."""
+        return self._one_by_one(q) if self.checks is None else self.checks(*self.columns, q)
+
+    def _one_by_one(self, q: Real) -> Mapping[str, Real]:
+        found = []
+        for k, linkage in enumerate(self.linkages):
+            kernels = self.kernels if k == 0 else assemble(linkage, self.structure)
+            here = q[k] if np.ndim(q) > 1 else q
+            found.append(_solved(linkage, self.structure, kernels, here, self.asked, self.forces, self.strokes))
+        if len(found) == 1:
+            return found[0]
+        return {name: np.stack([one[name] for one in found]) for name in found[0]}
+
+
+def prepare(
+    linkages: Sequence[Linkage] | Linkage, asked: Asked = everything, *, forces: bool = True, own_places: bool = False,
+    strokes: Strokes | None = None,
+) -> Batch:  # fmt: skip
+    """Linkages that differ in their numbers only, ready to be solved for what is asked.
+
+    forces: whether that needs reactions. own_places: whether each variant will be solved at places of its own.
+    strokes: those of a single linkage, if its loads act in them; without strokes such loads act always.
+    Raises NotAlikeError, ValueError (loads by the strokes of several linkages), and what assembly raises.
+    """
+    linkages = (linkages,) if isinstance(linkages, Linkage) else tuple(linkages)
+    first = linkages[0]
+    by_stroke = [x.name for x in first.loads if x.table is not None and x.table.against in ("stroke", "crank turn")]
+    if by_stroke and (strokes is None or len(linkages) > 1):
+        raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
+    structure = mobile(first)
+    kernels = assemble(first, structure)
+    if not all(isinstance(kernel, Dyad) and kernel.winding is None for kernel in kernels) or first.friction:
+        return Batch(linkages, structure, kernels, asked, forces, strokes, None)
+    columns, together = parts(varying(linkages))
+
+    def stages(*data: Any) -> Mapping[str, Any]:
+        linkage = changed(first, together(*data[:-1])) if columns else first
+        own = tuple(kernel.again(linkage) for kernel in kernels) if columns else kernels
+        return _solved(linkage, structure, own, data[-1], asked, forces, strokes, blank=False)
+
+    axes = (*[1] * len(columns), 3 if own_places else 2)
+    whole = record(stages, *axes, data=dict(enumerate(columns)))
+    checks = whole.only("placed", "moving")
+    values = whole.only(*(name for name in whole.outputs if name not in ("placed", "moving")))
+    return Batch(linkages, structure, kernels, asked, forces, strokes, values, checks, tuple(columns))
+
+
+def _solved(
+    linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: Any, asked: Asked, forces: bool,
+    strokes: Strokes | None, *, blank: bool = True,
+) -> Mapping[str, Any]:  # fmt: skip
+    """The stages with time as the parameter of the motion, so that no transfer function needs be scaled."""
+    lead = linkage.driver
+    law = Law(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+    speed = law.speed(q)
+    drives = {
+        link: Drive(d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration))
+        for link, d in drives_at(linkage, q).items()
+    }
+    motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
+    reactions = react(motion, structure, applied(motion, strokes)) if forces else None
+    return {**asked(motion, reactions), "placed": motion.placed, "moving": motion.moving}

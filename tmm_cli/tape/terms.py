@@ -1,0 +1,238 @@
+"""What is written on a tape: real numbers that are not there yet, and what is done to them.
+
+A term knows its operation and its operands, which are terms or plain numbers. Every operation is written once: the same
+operation on the same operands is the same term. Numbers are worked out at once, and what does not depend on the data
+(a frame at rest, a coordinate that is zero) vanishes from the work. Signs are carried outward, where they mostly vanish
+in the next sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+Number = Any  # float, bool, or a NumPy scalar of any precision
+
+ONE_BY_ONE: dict[str, Any] = {
+    "sqrt": np.sqrt, "cos": np.cos, "sin": np.sin, "arctan2": np.arctan2, "minimum": np.minimum,
+    "maximum": np.maximum, "add": np.add, "subtract": np.subtract, "multiply": np.multiply, "divide": np.true_divide,
+    "negative": np.negative, "absolute": np.absolute, "sign": np.sign, "isfinite": np.isfinite, "floor": np.floor,
+    "less": np.less, "less_equal": np.less_equal, "greater": np.greater, "greater_equal": np.greater_equal,
+    "equal": np.equal, "not_equal": np.not_equal, "bitwise_and": np.logical_and, "bitwise_or": np.logical_or,
+    "invert": np.logical_not, "logical_and": np.logical_and, "logical_or": np.logical_or,
+    "logical_not": np.logical_not, "remainder": np.remainder,
+}  # fmt: skip
+SWAPPED = {"add", "multiply", "minimum", "maximum", "bitwise_and", "bitwise_or", "logical_and", "logical_or", "equal"}
+TRUTHS = {
+    "isfinite", "less", "less_equal", "greater", "greater_equal", "equal", "not_equal", "bitwise_and", "bitwise_or",
+    "invert", "logical_and", "logical_or", "logical_not",
+}  # fmt: skip
+
+
+@dataclass(eq=False)
+class Term:
+    """A number for every variant and position. axes: on which of the data's axes it depends, a bit each.
+
+    op: `input` (args: its number among the data), `where`, `table` (args: what it is read by, then the table) or the
+    name of a NumPy function.
+    """
+
+    number: int
+    op: str
+    args: tuple[Any, ...]
+    axes: int
+    truth: bool
+
+    def __repr__(self) -> str:
+        return f"<{self.op} {self.number}>"  # operands of operands without end would follow
+
+
+@dataclass(repr=False)
+class Tape:
+    """All terms in the order in which they were written.
+
+    data: of inputs, where they are known already; what is true of all of them needs not be asked for each.
+    """
+
+    data: dict[int, Any] = field(default_factory=dict)
+    terms: list[Term] = field(default_factory=list)
+    written: dict[tuple[Any, ...], Term] = field(default_factory=dict)
+    known: dict[int, Any] = field(default_factory=dict)
+
+    def term(self, op: str, *args: Any, axes: int = 0, truth: bool = False) -> Term:
+        """The term of an operation, written if it is new."""
+        key = (op, *(("term", a.number) if isinstance(a, Term) else (type(a).__name__, a) for a in args))
+        found = self.written.get(key)
+        if found is None:
+            for arg in args:
+                axes |= arg.axes if isinstance(arg, Term) else 0
+            found = Term(len(self.terms), op, args, axes, truth or op in TRUTHS)
+            self.terms.append(found)
+            self.written[key] = found
+        return found
+
+    def apply(self, op: str, *args: Any) -> Any:
+        """An operation on terms and numbers: a number where it can be worked out, else a term."""
+        if not any(isinstance(a, Term) for a in args):
+            return ONE_BY_ONE[op](*args)[()]
+        simple: Any = SIMPLER.get(op)
+        if simple is not None:
+            found = simple(self, *args)
+            if found is not None:
+                return found
+        if op in SWAPPED:
+            args = tuple(sorted(args, key=lambda a: (0, a.number) if isinstance(a, Term) else (1, 0)))
+        return self.term(op, *args)
+
+    def value(self, term: Term) -> Any:
+        """What a term is for the data that are known; None where it depends on others."""
+        if term.number not in self.known:
+            args = [self.value(a) if isinstance(a, Term) else a for a in term.args]
+            if term.op == "input":
+                found = self.data.get(term.args[0])
+            elif any(a is None for a in args) or term.op == "table":
+                found = None
+            else:
+                with np.errstate(all="ignore"):
+                    found = np.where(*args) if term.op == "where" else ONE_BY_ONE[term.op](*args)
+            self.known[term.number] = found
+        return self.known[term.number]
+
+    def settled(self, truth: Any) -> Any:
+        """A truth as a plain one, if it is the same for all data that are known."""
+        found = self.value(truth) if isinstance(truth, Term) else None
+        return truth if found is None or np.any(found != found.flat[0]) else bool(found.flat[0])
+
+    def where(self, truth: Any, one: Any, other: Any) -> Any:
+        """One of two numbers."""
+        truth = self.settled(truth)
+        if not isinstance(truth, Term):
+            return one if truth else other
+        if one is other or (not isinstance(one, Term) and not isinstance(other, Term) and one == other):
+            return one
+        both = [x.truth if isinstance(x, Term) else isinstance(x, (bool, np.bool_)) for x in (one, other)]
+        return self.term("where", truth, one, other, truth=all(both))
+
+
+def axes_of(value: Any) -> int:
+    """The axes on which an operand depends."""
+    return value.axes if isinstance(value, Term) else 0
+
+
+def is_number(value: Any, number: float) -> bool:
+    """Whether an operand is this very number."""
+    return not isinstance(value, Term) and bool(value == number)
+
+
+def negated(value: Any) -> Any:
+    """What an operand is the negative of, if it is one."""
+    return value.args[0] if isinstance(value, Term) and value.op == "negative" else None
+
+
+def _add(tape: Tape, a: Any, b: Any) -> Any:
+    if is_number(a, 0):
+        return b
+    if is_number(b, 0):
+        return a
+    if negated(b) is not None:
+        return tape.apply("subtract", a, negated(b))
+    if negated(a) is not None:
+        return tape.apply("subtract", b, negated(a))
+    return None
+
+
+def _subtract(tape: Tape, a: Any, b: Any) -> Any:
+    if is_number(b, 0):
+        return a
+    if is_number(a, 0):
+        return tape.apply("negative", b)
+    if a is b:
+        return 0.0
+    if negated(b) is not None:
+        return tape.apply("add", a, negated(b))
+    if negated(a) is not None:
+        return tape.apply("negative", tape.apply("add", negated(a), b))
+    return None
+
+
+def _multiply(tape: Tape, a: Any, b: Any) -> Any:
+    for one, other in ((a, b), (b, a)):
+        if is_number(one, 0):
+            return 0.0
+        if is_number(one, 1):
+            return other
+        if is_number(one, -1):
+            return tape.apply("negative", other)
+        if negated(one) is not None:
+            return tape.apply("negative", tape.apply("multiply", negated(one), other))
+        if not isinstance(one, Term) and one < 0:
+            return tape.apply("negative", tape.apply("multiply", -one, other))
+    return _gathered(tape, a, b)
+
+
+def _gathered(tape: Tape, a: Any, b: Any) -> Any:
+    """Factors that are the same everywhere, or in all positions, are multiplied among themselves."""
+    if isinstance(a, Term) and isinstance(b, Term):
+        for one, other in ((a, b), (b, a)):
+            if one.op == "divide" and one.args[1] is other:
+                return one.args[0]  # (x / y) y
+        if a is b and a.op == "absolute":
+            return tape.apply("multiply", a.args[0], a.args[0])
+    for one, other in ((a, b), (b, a)):
+        if isinstance(one, Term) and one.op == "multiply" and axes_of(other) < one.axes:
+            for x, factor in (one.args, one.args[::-1]):
+                if axes_of(factor) < one.axes and axes_of(x) == one.axes and axes_of(factor) | axes_of(other) != x.axes:
+                    return tape.apply("multiply", x, tape.apply("multiply", factor, other))
+    return None
+
+
+def _sqrt(tape: Tape, a: Any) -> Any:
+    return tape.apply("absolute", a.args[0]) if a.op == "multiply" and a.args[0] is a.args[1] else None
+
+
+def _divide(tape: Tape, a: Any, b: Any) -> Any:
+    if is_number(a, 0):
+        return 0.0
+    if is_number(b, 1):
+        return a
+    if isinstance(b, Term) and b.op == "multiply" and a in b.args:  # x / (x y)
+        return tape.apply("divide", 1.0, b.args[1] if b.args[0] is a else b.args[0])
+    for k, part in enumerate((a, b)):
+        if negated(part) is not None:
+            return tape.apply("negative", tape.apply("divide", *((part.args[0], b) if k == 0 else (a, part.args[0]))))
+    return None
+
+
+def _negative(tape: Tape, a: Any) -> Any:
+    if a.op == "negative":
+        return a.args[0]
+    if a.op == "subtract":
+        return tape.apply("subtract", a.args[1], a.args[0])
+    return None
+
+
+def _and(tape: Tape, a: Any, b: Any) -> Any:
+    for one, other in ((a, b), (b, a)):
+        if not isinstance(one, Term):
+            return other if one else False
+    return a if a is b else None
+
+
+def _or(tape: Tape, a: Any, b: Any) -> Any:
+    for one, other in ((a, b), (b, a)):
+        if not isinstance(one, Term):
+            return True if one else other
+    return a if a is b else None
+
+
+def _absolute(tape: Tape, a: Any) -> Any:
+    return tape.apply("absolute", a.args[0]) if a.op == "negative" else a if a.op in ("absolute", "sqrt") else None
+
+
+SIMPLER = {
+    "add": _add, "subtract": _subtract, "multiply": _multiply, "divide": _divide, "negative": _negative,
+    "absolute": _absolute, "sqrt": _sqrt, "bitwise_and": _and, "logical_and": _and, "bitwise_or": _or,
+    "logical_or": _or,
+}  # fmt: skip
