@@ -209,6 +209,21 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     assert [len(case) for case in suite] == [0, 1]
 
 
+def test_a_table_that_is_cut_advises_only_options_that_its_command_has(capsys):
+    from tmm_cli.cli.check import _show
+    from tmm_cli.results.compare import Difference
+    from tmm_cli.results.terminal import MOST_ROWS
+    from tmm_cli.words.results import WORDS
+
+    _show([("shaper", "", [Difference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)])])
+    assert "... and 7 rows more\n" in capsys.readouterr().out
+    for commands, word in ((("run", "structure", "forces"), "table.more"), (("schemes",), "table.more_json")):
+        advised = set(re.findall(r"(?<=\s)-{1,2}\w+", WORDS[word]))
+        assert advised
+        for command in commands:
+            assert advised <= set(re.findall(r"(?<!\S)-{1,2}\w+", tmm(command, "--help").stdout))
+
+
 def test_templates_run_as_they_are(tmp_path):
     listed = tmm("new").stdout.split("\n")
     names = [line.split()[0] for line in listed if line]

@@ -60,6 +60,8 @@ WORDS: dict[str, str] = {
     "explain.no_detail": "plans of single positions",
     "explain.detailless": "positions.detail names none",
     "table.more": "... and {rows} rows more: -o DIR writes them all, --json too",
+    "table.more_json": "... and {rows} rows more: --json prints them all",
+    "table.more_only": "... and {rows} rows more",
     "table.continued": "{title} (continued)",
     "quality.title": "Quality",
     "quality.from": "driver can go from",
