@@ -73,6 +73,7 @@ WORDS: dict[str, str] = {
     "quality.idle": "idle stroke",
     "quality.start": "{stroke} starts at",
     "quality.length": "{stroke} lasts",
+    "quality.rest": "dwell after the {stroke}",
     "quality.travel_slide": "stroke H of link {link} over the positions asked",
     "quality.travel_swing": "swing psi of link {link} over the positions asked",
     "quality.lowest": "extreme position of link {link}",
