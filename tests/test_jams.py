@@ -48,6 +48,31 @@ def test_an_idle_wheel_in_a_ring_gives_its_group_no_higher_class():
     assert (structure.mechanism_class, structure.redundant, structure.passive[0].pair) == (2, 1, "c")
 
 
+@pytest.mark.parametrize("offsets, wanted", [((0, 0, 30), 0), ((10, 0, 0), 10), ((10, 20, 0), 0), ((10, 20, 5), 0)])
+def test_contradictory_offsets_in_a_ring_are_told_with_the_one_that_closes_it(offsets, wanted):
+    """phi2 = -phi1 + a, phi3 = -2 phi2 + b, phi1 = phi3/2 + c: the ring closes with c = a - b/2."""
+    ring = blocks.RING.replace("ratio: 0.5", "ratio: 0.5, inner: true")
+
+    def text(*angles):
+        changed_ring = ring
+        for name, ratio, angle in zip("abc", ("1", "2", "0.5"), angles, strict=True):
+            number = f"ratio: {ratio}" + (", inner: true" if name == "c" else "")
+            changed_ring = changed(changed_ring, number + "}", f"{number}, offset: {angle} deg}}")
+        return changed_ring
+
+    a, b, c = offsets
+    assert wanted == a - b / 2
+    if c == wanted:
+        for rounding in (0, 2e-5):
+            assert solved(text(a, b, c + rounding)).structure.redundant == 1
+    else:
+        assert refusal(text(*offsets)) == (
+            f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: contradictory offsets: wheels 1, 2, 3 do not fit "
+            f"together\n  found:   gear c puts 1 {c - wanted:g} deg further than a, b"
+            f"\n  allowed: offset: {wanted:g} deg, or one gear less"
+        )
+
+
 def planets(number, driver):
     """A sun of radius 40 and as many planets of radius 20 on one carrier, in a fixed ring of radius 80."""
     ends = [60 * np.exp(2j * math.pi * k / number) for k in range(number)]
