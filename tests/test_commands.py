@@ -143,8 +143,8 @@ def test_position_7_alone_is_position_7_of_the_cycle():
 def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heavy():
     code = (
         "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
-        "from tmm_cli.cli.app import app\n"
-        "try: app()\n"
+        "from tmm_cli.cli.app import main\n"
+        "try: main()\n"
         "except SystemExit: pass\n"
         "print([m for m in ('numpy', 'pydantic', 'matplotlib', 'scipy', 'yaml') if m in sys.modules], file=sys.stderr)"
     )
@@ -158,6 +158,23 @@ def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heav
     assert imported("structure", SHAPER) == "['numpy', 'pydantic', 'yaml']"
     assert imported("forces", SHAPER) == "['numpy', 'pydantic', 'yaml']"
     assert imported("--version") == "[]"
+
+
+def test_a_command_makes_no_other_one_and_no_masked_arrays():
+    code = (
+        "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
+        "from tmm_cli.cli.app import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "names = ('numpy.ma', *(f'tmm_cli.cli.{name}' for name in ('check', 'new', 'schemes', 'structure')))\n"
+        "print([m for m in names if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, "structure", str(SHAPER)], capture_output=True, text=True, cwd=ROOT
+    )
+    assert done.stderr.strip().splitlines()[-1] == "['tmm_cli.cli.structure']"
+    slip = tmm("structre", SHAPER)
+    assert slip.returncode == 2 and "Did you mean 'structure'?" in slip.stderr
 
 
 def test_several_files_at_once_and_one_bad_among_them(tmp_path):
