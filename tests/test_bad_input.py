@@ -50,6 +50,11 @@ CASES = {
         "links.1.lenght: unknown key\n  found:   'lenght'\n  allowed: name, points, length, also, slides\n"
         "  did you mean 'length'?",
     ),
+    "unknown key for one that must be there": (
+        "1: {name: crank, points", "1: {name: crank, pionts", "pionts",
+        "links.1.pionts: unknown key\n  found:   'pionts'\n  allowed: name, points, length, also, slides\n"
+        "  did you mean 'points'?",
+    ),
     "length where an angle is wanted": (
         "{at: 30 deg", "{at: 30 mm", "30 mm",
         "sketch.at: an angle is wanted here\n  found:   '30 mm', a length (30 mm)\n"

@@ -143,8 +143,8 @@ def test_position_7_alone_is_position_7_of_the_cycle():
 def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heavy():
     code = (
         "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
-        "from tmm_cli.cli.app import app\n"
-        "try: app()\n"
+        "from tmm_cli.cli.app import main\n"
+        "try: main()\n"
         "except SystemExit: pass\n"
         "print([m for m in ('numpy', 'pydantic', 'matplotlib', 'scipy', 'yaml') if m in sys.modules], file=sys.stderr)"
     )
@@ -158,6 +158,23 @@ def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heav
     assert imported("structure", SHAPER) == "['numpy', 'pydantic', 'yaml']"
     assert imported("forces", SHAPER) == "['numpy', 'pydantic', 'yaml']"
     assert imported("--version") == "[]"
+
+
+def test_a_command_makes_no_other_one_and_no_masked_arrays():
+    code = (
+        "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
+        "from tmm_cli.cli.app import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "names = ('numpy.ma', *(f'tmm_cli.cli.{name}' for name in ('check', 'new', 'schemes', 'structure')))\n"
+        "print([m for m in names if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, "structure", str(SHAPER)], capture_output=True, text=True, cwd=ROOT
+    )
+    assert done.stderr.strip().splitlines()[-1] == "['tmm_cli.cli.structure']"
+    slip = tmm("structre", SHAPER)
+    assert slip.returncode == 2 and "Did you mean 'structure'?" in slip.stderr
 
 
 def test_several_files_at_once_and_one_bad_among_them(tmp_path):
@@ -207,6 +224,21 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     suite = ElementTree.parse(report).getroot()
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
     assert [len(case) for case in suite] == [0, 1]
+
+
+def test_a_table_that_is_cut_advises_only_options_that_its_command_has(capsys):
+    from tmm_cli.cli.check import _show
+    from tmm_cli.results.compare import Difference
+    from tmm_cli.results.terminal import MOST_ROWS
+    from tmm_cli.words.results import WORDS
+
+    _show([("shaper", "", [Difference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)])])
+    assert "... and 7 rows more\n" in capsys.readouterr().out
+    for commands, word in ((("run", "structure", "forces"), "table.more"), (("schemes",), "table.more_json")):
+        advised = set(re.findall(r"(?<=\s)-{1,2}\w+", WORDS[word]))
+        assert advised
+        for command in commands:
+            assert advised <= set(re.findall(r"(?<!\S)-{1,2}\w+", tmm(command, "--help").stdout))
 
 
 def test_templates_run_as_they_are(tmp_path):

@@ -280,8 +280,8 @@ def test_tmm_structure_draws_only_when_asked(tmp_path):
     assert {"structure.png", "structure.svg", "groups.png", "groups.svg", "pairs.csv", "result.json"} <= names
     code = (
         "import sys; sys.argv = ['tmm', *sys.argv[1:]]\n"
-        "from tmm_cli.cli.app import app\n"
-        "try: app()\n"
+        "from tmm_cli.cli.app import main\n"
+        "try: main()\n"
         "except SystemExit: print('matplotlib' in sys.modules, file=sys.stderr)"
     )
     for option, imported in (((), "False"), (("--drawings", "-o", str(tmp_path)), "True")):

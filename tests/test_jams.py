@@ -39,6 +39,66 @@ def test_an_idle_wheel_in_a_ring_that_agrees_is_a_result():
     assert bool(results.motion.moving.all())
 
 
+def test_an_idle_wheel_in_a_ring_gives_its_group_no_higher_class():
+    """Without the gear that only repeats the others each wheel hangs by its axis and one gear: class II, order 2."""
+    text = changed(blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [3, 1], ratio: 0.5, inner: true}")
+    structure = solved(text).structure
+    assert structure.formula == "I(0,1) -> II(2) -> II(3)"
+    assert [group.order for group in structure.groups] == [2, 2]
+    assert (structure.mechanism_class, structure.redundant, structure.passive[0].pair) == (2, 1, "c")
+
+
+@pytest.mark.parametrize("offsets, wanted", [((0, 0, 30), 0), ((10, 0, 0), 10), ((10, 20, 0), 0), ((10, 20, 5), 0)])
+def test_contradictory_offsets_in_a_ring_are_told_with_the_one_that_closes_it(offsets, wanted):
+    """phi2 = -phi1 + a, phi3 = -2 phi2 + b, phi1 = phi3/2 + c: the ring closes with c = a - b/2."""
+    ring = blocks.RING.replace("ratio: 0.5", "ratio: 0.5, inner: true")
+
+    def text(*angles):
+        changed_ring = ring
+        for name, ratio, angle in zip("abc", ("1", "2", "0.5"), angles, strict=True):
+            number = f"ratio: {ratio}" + (", inner: true" if name == "c" else "")
+            changed_ring = changed(changed_ring, number + "}", f"{number}, offset: {angle} deg}}")
+        return changed_ring
+
+    a, b, c = offsets
+    assert wanted == a - b / 2
+    if c == wanted:
+        for rounding in (0, 2e-5):
+            assert solved(text(a, b, c + rounding)).structure.redundant == 1
+    else:
+        assert refusal(text(*offsets)) == (
+            f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: contradictory offsets: wheels 1, 2, 3 do not fit "
+            f"together\n  found:   gear c puts 1 {c - wanted:g} deg further than a, b"
+            f"\n  allowed: offset: {wanted:g} deg, or one gear less"
+        )
+
+
+def planets(number, driver):
+    """A sun of radius 40 and as many planets of radius 20 on one carrier, in a fixed ring of radius 80."""
+    ends = [60 * np.exp(2j * math.pi * k / number) for k in range(number)]
+    axes = "".join(f", P{k}: [{end.real:.17g}, {end.imag:.17g}]" for k, end in enumerate(ends))
+    links = "".join(f"  p{k}: {{points: [P{k}]}}\n" for k in range(number))
+    gears = "".join(
+        f"  s{k}: {{between: [s, p{k}], carrier: h, radii: [40, 20]}}\n"
+        f"  r{k}: {{between: [0, p{k}], carrier: h, radii: [80, 20], inner: true}}\n"
+        for k in range(number)
+    )
+    return (
+        f"tmm: 1\nunits: {{length: mm}}\npoints: {{O: [0, 0]}}\nlinks:\n  s: {{points: [O]}}\n"
+        f"  h: {{points: {{O: [0, 0]{axes}}}}}\n{links}gears:\n{gears}driver: {{link: {driver}, speed: 1 rad/s}}\n"
+    )
+
+
+@pytest.mark.parametrize("driver, ratio", [("h", 3.0), ("s", 1 / 3)])
+def test_further_planets_share_the_load_and_leave_the_class_as_it_is(driver, ratio):
+    """Willis: (omega_s - omega_h)/(0 - omega_h) = -80/40. Each planet beyond the first brings one passive gear."""
+    alone, three = solved(planets(1, driver)), solved(planets(3, driver))
+    for results in (alone, three):
+        assert float(results.motion.link("s" if driver == "h" else "h").omega[0]) == pytest.approx(ratio)
+    assert three.structure.redundant == 2
+    assert three.structure.mechanism_class == alone.structure.mechanism_class
+
+
 def train(number, teeth):
     """So many wheels in a row, each with the next one in mesh."""
     points = ", ".join(f"O{k}: [{50 * k}, 0]" for k in range(number))

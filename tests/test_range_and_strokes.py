@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+import pytest
+from higher import PROBLEMS
 from models import results_of
+
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+from tmm_cli.results.reports import tables
 
 UNITS = {"length": "mm", "angle": "deg"}
 
@@ -46,3 +54,43 @@ def test_a_dwell_at_the_end_of_a_stroke_makes_no_strokes_of_rounding():
     assert math.degrees(top) - 90 < 1e-9
     assert abs(math.degrees(bottom) - 270) < 0.2
     assert abs(results.strokes.travel - 0.2) < 1e-15
+
+
+@pytest.mark.parametrize("cam", ["flat follower", "swinging follower"])
+@pytest.mark.parametrize("output", ["2", "4"])
+@pytest.mark.parametrize(("turns", "first_rest", "second_rest"), [("ccw", 60, 80), ("cw", 80, 60)])
+@pytest.mark.parametrize("start", [0, -50, 77.3])
+def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, turns, first_rest, second_rest, start):
+    """Rise over 120 deg, dwell over 60, return over 100, dwell over 80; whichever way the cam turns the rise is slower.
+
+    Turned the other way the cam has its second dwell after what was the rise.
+    """
+    text = PROBLEMS[cam].replace("output: 4", f"output: {output}").replace("speed: 60 rpm", f"speed: 1, turns: {turns}")
+    text = text.replace("    follower: 2\n", f"    follower: 2\n    start: {start}\n")
+    text = text.replace("at: 0 deg", f"at: {start} deg")
+    strokes = solve(build(read_text(text, "cam.yaml")), "kinematics").strokes
+    assert strokes.k == pytest.approx(1.2, rel=1e-12)
+    found = [math.degrees(x) for stroke in strokes.strokes for x in (stroke.length, stroke.rest)]
+    assert found == pytest.approx([120, first_rest, 100, second_rest], abs=1e-9)
+    assert [stroke.working for stroke in strokes.strokes] == [True, False]
+    begins = start if turns == "ccw" else start + 120
+    assert math.remainder(strokes.strokes[0].start - math.radians(begins), 2 * math.pi) == pytest.approx(0, abs=1e-12)
+
+
+def test_a_dwell_within_the_rise_makes_one_stroke_of_it_and_one_at_the_top_is_told_in_the_table():
+    law = "[{over: 60, rise: 20, law: linear}, {over: 30}, {over: 50, rise: 20}, {over: 20}, {over: 200, rise: -40}]"
+    text = PROBLEMS["flat follower"]
+    old = text[text.index("[{over: 120") : text.index("\ndriver")]
+    results = solve(build(read_text(text.replace(old, law).replace("output: 4", "output: 2"), "cam.yaml")))
+    back, forth = results.strokes.strokes
+    assert [math.degrees(x) for x in (back.length, forth.length)] == pytest.approx([200, 140], abs=1e-9)
+    assert (back.run, forth.run) == pytest.approx((-0.04, 0.04), abs=1e-15)
+    quality = next(table for table in tables(results) if table.name == "quality")
+    told = dict(zip(quality.columns[0].values, quality.columns[1].values, strict=True))
+    assert told["dwell after the idle stroke"] == pytest.approx(20, abs=1e-9)
+    assert "dwell after the working stroke" not in told
+
+
+def test_the_useful_resistance_of_a_working_stroke_does_not_act_in_its_dwell():
+    strokes = solve(build(read_text(PROBLEMS["flat follower"], "cam.yaml")), "kinematics").strokes
+    assert strokes.share(np.radians([10, 110, 130, 170, 190, 300, 350]), 1).tolist() == [True] * 2 + [False] * 5

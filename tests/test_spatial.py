@@ -544,7 +544,10 @@ def test_mistakes_are_told_where_they_are(text, message):
 def test_a_slip_beside_or_in_the_name_of_the_block_is_told_in_terms_of_such_a_file():
     with pytest.raises(ProblemError) as error:
         build_chain(read_text(f"tmm: 1\nstructure: {{spacial: {{pairs: {PAIRS}}}}}\n", "x.yaml"))
-    assert str(error.value) == "x.yaml:2:1: structure.spatial: the key `spatial` is missing"
+    assert str(error.value) == (
+        "x.yaml:2:13: structure.spacial: unknown key\n  found:   'spacial'\n  allowed: spatial\n"
+        "  did you mean 'spatial'?"
+    )
     with pytest.raises(ProblemError) as error:
         spatial(f"pairs: {PAIRS}", "tmm: 1\ndriver: {link: 1}\nstructure:\n  spatial:\n")
     assert str(error.value) == (

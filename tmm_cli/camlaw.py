@@ -39,7 +39,8 @@ def _cosine(x: Any) -> tuple[Any, Any, Any]:
 
 
 def _sine(x: Any) -> tuple[Any, Any, Any]:
-    return x - np.sin(TAU * x) / TAU, 1 - np.cos(TAU * x), TAU * np.sin(TAU * x)
+    # 2 sin^2(pi x) is 1 - cos(2 pi x), which rounds to zero before the follower rests
+    return x - np.sin(TAU * x) / TAU, 2 * np.sin(np.pi * x) ** 2, TAU * np.sin(TAU * x)
 
 
 def _polynomial5(x: Any) -> tuple[Any, Any, Any]:

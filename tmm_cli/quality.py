@@ -79,7 +79,8 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     half = np.pi * number if turns else reach(linkage)
     low, high = _looked_at(kernels, at, half)
     steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
-    steps = np.unique(np.append(steps, 0.0))
+    # np.unique would import masked arrays, which costs more than all the rest of this stage
+    steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
     law = Law(at, 1.0, 0.0, 1)
     side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law).placements]
     scan = move(linkage, kernels, at + steps, law)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,17 +16,22 @@ from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real
 
 RESTS = 1e-12  # of the longest run: a run below that is rounding
+DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed)."""
+    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed).
+
+    rest: how far the driver goes on in the dwell after it (a follower on the round of its cam), before the next stroke.
+    """
 
     start: float
     length: float
     low: float
     run: float
     working: bool
+    rest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,8 @@ class Strokes:
     """Strokes of the output link in a turn of the driver, beginning with the working one; empty when it has none.
 
     kind: the output slides (m), or swings (rad). k is the time of the working strokes over that of the idle ones at
-    constant speed. rule: why that stroke is the working one. cycle: how far the driver goes until they repeat (rad).
+    constant speed, without the dwells between them. rule: why that stroke is the working one. cycle: how far the
+    driver goes until they repeat (rad).
     """
 
     link: str
@@ -142,38 +149,64 @@ def find_strokes(
     if way.full:  # one step more: at the seam of the scan rounding may hide the end of a stroke
         q = np.append(q, q[-1] + (q[1] - q[0]))
     cycle = 2 * np.pi * way.turns
-    slope = output_run(move(linkage, kernels, q, law), link)[1]
-    signs = np.sign(slope)
-    change = np.flatnonzero((signs[:-1] * signs[1:] < 0) | ((signs[:-1] == 0) & (signs[1:] != 0)))
-    if not change.size or not way.full:
-        return Strokes(link, kind, (), "")
 
     def slope_at(x: Real) -> Real:
         return output_run(move(linkage, kernels, x, law), link)[1]
 
-    turns = roots(slope_at, q[change], q[change + 1])
-    # at a change point the slope jumps from one sign to the other without passing zero: that is no end of a stroke
-    turns = turns[np.abs(slope_at(turns)) < 1e-6 * np.nanmax(np.abs(slope))]
+    slope = slope_at(q)
+    moves = np.flatnonzero(slope)
+    if way.full and moves.size and moves[0] > 0:  # a dwell at the seam is not to be cut in two
+        q = q + (q[moves[0]] - q[0])
+        slope = slope_at(q)
+    turns, rests = _stops(slope_at, q, slope, sense) if way.full else (np.zeros(0), np.zeros(0))
     turns = np.mod(turns, cycle)
-    turns = np.sort(np.where(cycle - turns < 1e-12, 0.0, turns))
+    turns = np.where(cycle - turns < 1e-12, 0.0, turns)
+    order = np.argsort(turns)
+    turns, rests = turns[order], rests[order]
     again = np.diff(turns, append=turns[:1] + cycle) < 1e-9  # found at both ends of the scan
+    rest_before = dict(zip(turns[~again].tolist(), rests[~again].tolist(), strict=True))
     turns = turns[~again][::sense]
     turns = _ends(linkage, kernels, turns, cycle, (link, kind))
     if turns.size < 2:
         return Strokes(link, kind, (), "")
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
     runs = _runs(linkage, kernels, turns, lengths, link, kind)
+    rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
+    lengths = lengths - rests
     lows = output_run(move(linkage, kernels, turns, law), link)[0]
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
     direction, rule = _working(linkage, forward, back, resists)
     strokes = [
-        Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction))
-        for t, n, s, r in zip(turns, lengths, lows, runs, strict=True)
+        Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction), float(rest))
+        for t, n, s, r, rest in zip(turns, lengths, lows, runs, rests, strict=True)
     ]
     if not any(s.working for s in strokes):  # the output stands still but for rounding
         return Strokes(link, kind, (), "")
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
+
+
+def _stops(slope_at: Callable[[Real], Real], q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
+    """Where the output turns back: the driver's places from which it goes the other way, and the dwells before them.
+
+    slope: the output's first transfer function at the places q, which rise; it is exactly zero in a dwell, and jumps
+    from one sign to the other, without passing zero, at a change point, which is no end of a stroke.
+    """
+    moves = np.flatnonzero(slope)
+    back = slope[moves[:-1]] * slope[moves[1:]] < 0
+    if not np.any(back):
+        return np.zeros(0), np.zeros(0)
+    last, first = moves[:-1][back], moves[1:][back]
+    stops = goes_on = roots(slope_at, q[last], q[last + 1])
+    still = first > last + 1
+    if np.any(still):
+        goes_on = stops.copy()
+        goes_on[still] = roots(slope_at, q[first[still] - 1], q[first[still]])
+    rests = goes_on - stops
+    rests[rests < DWELL] = 0.0
+    ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
+    true = (rests > 0) | (np.abs(slope_at(ends)) < 1e-6 * np.nanmax(np.abs(slope)))
+    return ends[true], rests[true]
 
 
 def _ends(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, cycle: float, output: tuple[str, str]) -> Real:

@@ -1,35 +1,35 @@
-"""The command `tmm`. A new command is a file beside this one and a line here."""
+"""The command `tmm`. A new command is a file beside this one, with a function of the same name, and a word here."""
 
 from __future__ import annotations
 
 import gc
 import os
 import sys
+from collections.abc import Iterable
+from importlib import import_module
 from typing import Annotated
 
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli import check, explain, forces, kinematics, new, run, schema, schemes, structure
 
-app = typer.Typer(
-    name="tmm",
-    help="Course-project calculator for the theory of mechanisms and machines: planar lever mechanisms.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
+COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes")
 
-app.command("run")(run.run)
-app.command("structure")(structure.structure)
-app.command("kinematics")(kinematics.kinematics)
-app.command("forces")(forces.forces)
-app.command("check")(check.check)
-app.command("explain")(explain.explain)
-app.command("new")(new.new)
-app.command("schema")(schema.schema)
-app.command("schemes")(schemes.schemes)
+
+def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
+    """The application with these commands: one that is asked for by its name needs no others made for it."""
+    app = typer.Typer(
+        name="tmm",
+        help="Course-project calculator for the theory of mechanisms and machines: planar lever mechanisms.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    app.callback()(_options)
+    for name in names:
+        app.command(name)(getattr(import_module(f"tmm_cli.cli.{name}"), name))
+    return app
 
 
 def _version(asked: bool) -> None:
@@ -38,7 +38,6 @@ def _version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _options(
     version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print it.")] = False,
 ) -> None:
@@ -53,8 +52,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
+    asked = [name for name in sys.argv[1:2] if name in COMMANDS]
     try:
-        app()
+        application(asked or COMMANDS)()
     except BrokenPipeError:  # `tmm ... | head` is not an error
         sys.stderr.close()
         sys.exit(0)

@@ -100,7 +100,7 @@ def _show(outcomes: list[Outcome]) -> None:
     if rows:
         keys = ("check.problem", "check.quantity", "word.position", "check.expected", "check.found", "check.relative")
         columns = tuple(Column(word(key), [row[k] for row in rows]) for k, key in enumerate(keys))
-        show(Table("check", word("check.title"), columns), UnitSystem(), console())
+        show(Table("check", word("check.title"), columns), UnitSystem(), console(), more="table.more_only")
     for name, wrong, _ in outcomes:
         if wrong:
             say(f"error: {name}: {wrong}")

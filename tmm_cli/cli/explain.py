@@ -16,7 +16,7 @@ def explain(files: Files) -> None:
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
         for table in tables(results):
-            show(table, results.problem.units, screen)
+            show(table, results.problem.units, screen, most=None)  # there is no other place that has them all
         return OK
 
     each(files, work)

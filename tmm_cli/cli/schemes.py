@@ -60,7 +60,7 @@ def _chains(links: int, mobility: int, as_json: bool) -> None:
     if as_json:
         emit_json(chains_json(found, links, mobility))
     else:
-        show(chains_table(found, links, mobility), UnitSystem(), console())
+        show(chains_table(found, links, mobility), UnitSystem(), console(), more="table.more_json")
 
 
 def _schemes(links: int, mobility: int, groups: str, out: Path | None, as_json: bool) -> None:
@@ -73,6 +73,6 @@ def _schemes(links: int, mobility: int, groups: str, out: Path | None, as_json: 
     if as_json:
         emit_json(schemes_json(found, links, mobility, written))
     else:
-        show(schemes_table(found, links, mobility, written), UnitSystem(), console())
+        show(schemes_table(found, links, mobility, written), UnitSystem(), console(), more="table.more_json")
     if out is not None and written:
         say(f"written: {sum(x is not None for x in written)} files in {out}; next: tmm run {out}/FILE")

@@ -13,6 +13,9 @@ from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
 from tmm_cli.vectors import cross, unit
 
 MESHES = 1e-6  # of the distance of the axes: pitch circles that miss one another by less touch
+IN_PHASE = (
+    5e-7  # rad: wheels that come round a ring to the same place but for less fit together, as offsets are rounded
+)
 MANY_TEETH = 100_000
 
 
@@ -36,24 +39,26 @@ def build_meshes(
         return path
 
     found += [maker.gear(name, gear, named("gears", name)) for name, gear in shape.gears.items()]
-    _no_contradiction(found)
+    _no_contradiction(found, sense)
     found += [maker.rack(name, rack, named("racks", name)) for name, rack in shape.racks.items()]
     found += [maker.cam(name, cam, named("cams", name)) for name, cam in shape.cams.items()]
     return tuple(found)
 
 
-def _no_contradiction(gears: list[Mesh]) -> None:
-    """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn."""
+def _no_contradiction(gears: list[Mesh], sense: Sense) -> None:
+    """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn, or out of phase."""
     turn: dict[tuple[str, str], dict[str, float]] = {}  # of each wheel a turn of the first one of its train
+    phase: dict[tuple[str, str], dict[str, float]] = {}  # angle (rad) of each wheel where that of the first is zero
     trains: dict[tuple[str, str], tuple[str, str]] = {}
     used: dict[tuple[str, str], list[Mesh]] = {}
     for gear in gears:
         one, other = ((gear.carrier, n) for n in (gear.i, gear.j))
         for end in (one, other):
             if end not in trains:
-                trains[end], turn[end], used[end] = end, {end[1]: 1.0}, []
+                trains[end], turn[end], phase[end], used[end] = end, {end[1]: 1.0}, {end[1]: 0.0}, []
         first, second = trains[one], trains[other]
         asked = gear.ratio * turn[first][gear.i]
+        angle = gear.ratio * phase[first][gear.i] + gear.offset
         if first == second:
             found = turn[first][gear.j]
             if abs(asked - found) > MESHES * max(abs(asked), abs(found)):
@@ -68,11 +73,30 @@ def _no_contradiction(gears: list[Mesh]) -> None:
                     allowed="gears round a ring whose ratios agree (an outer mesh changes the sense), or one gear less",
                     key=True,
                 )  # fmt: skip
+            if abs(angle - phase[first][gear.j]) > IN_PHASE:
+                raise _out_of_phase(gear, _ring([*used[first], gear]), angle, phase[first][gear.j], sense)
             continue
         scale = asked / turn[second][gear.j]
+        shift = (angle - phase[second][gear.j]) / turn[second][gear.j]
+        phase[first] |= {wheel: turn[second][wheel] * shift + value for wheel, value in phase[second].items()}
         turn[first] |= {wheel: scale * value for wheel, value in turn[second].items()}
         used[first] += [*used[second], gear]
         trains = {end: first if train == second else train for end, train in trains.items()}
+
+
+def _out_of_phase(gear: Mesh, ring: list[Mesh], asked: float, found: float, sense: Sense) -> ProblemError:
+    """The refusal of a gear whose offset puts its second wheel elsewhere than the others of its ring do."""
+    wheels = list(dict.fromkeys(n for mesh in ring for n in (mesh.i, mesh.j)))
+
+    def shown(angle: float, digits: int = 6) -> str:
+        return f"{sense.units.from_si(angle, ANGLE):.{digits}g} {sense.units.symbol(ANGLE)}"
+
+    return ProblemError(
+        f"contradictory offsets: wheels {', '.join(wheels)} do not fit together", path=("gears", gear.name),
+        found=f"gear {gear.name} puts {gear.j} {shown(asked - found)} further than "
+        f"{', '.join(mesh.name for mesh in ring if mesh is not gear)}",
+        allowed=f"offset: {shown(gear.offset + found - asked, 9)}, or one gear less", key=True,
+    )  # fmt: skip
 
 
 def _ring(gears: list[Mesh]) -> list[Mesh]:

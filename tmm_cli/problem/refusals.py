@@ -68,8 +68,11 @@ WORDS = {
 
 def shape_error(error: ValidationError, tree: Tree) -> ProblemError:
     """The first mistake of the file's shape, by its place in the file."""
-    refusals = [_refusal(kind, path, context, tree) for kind, path, context in _meant(_flat(error, ()), tree)]
-    located = [r.located(tree.file, tree) for r in refusals]
+    meant = _meant(_flat(error, ()), tree)
+    refusals = [(kind, _refusal(kind, path, context, tree)) for kind, path, context in meant]
+    misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
+    # a key that stands there misspelt is not missing
+    located = [r.located(tree.file, tree) for kind, r in refusals if kind != "missing" or r.path not in misspelt]
     return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
 
 

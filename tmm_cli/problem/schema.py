@@ -59,7 +59,8 @@ def _place(found: Any) -> Any:
 class Strict(BaseModel):
     """Every key is known or refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+    # built when it first validates: a model that is part of another needs no validator of its own
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
 
 
 class OnLine(Strict):

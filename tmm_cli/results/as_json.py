@@ -163,6 +163,7 @@ def _strokes(strokes: Strokes) -> dict[str, Any]:
         "rule": strokes.rule,
         "strokes": [
             {"start": s.start, "length": s.length, "from": s.low, "run": s.run, "working": s.working}
+            | ({"rest": s.rest} if s.rest else {})
             for s in strokes.strokes
         ],
     }  # fmt: skip

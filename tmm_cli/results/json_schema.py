@@ -174,6 +174,7 @@ def _output() -> dict[str, Any]:
         strokes=_list("the working one first", _object(
             "a stroke", start=_number("driver's place at its start"), length=_number("driver's way"),
             run=_number("of the output, signed"), working=_flag("working stroke"),
+            rest=_number("driver's way in the dwell after it, if there is one"),
             **{"from": _number("place of the output at its start")})),
     )  # fmt: skip
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.structure.layout import Layout, layouts
+from tmm_cli.structure.layout import layouts
+from tmm_cli.structure.pose import Layout
 from tmm_cli.structure.schemes import Scheme
 from tmm_cli.words import say
 

@@ -41,21 +41,28 @@ def heading(column: Column, units: UnitSystem) -> str:
     return f"{column.header}, {units.symbol(column.dimension)}"
 
 
-def show(table: Table, units: UnitSystem, console: Console, rows: set[int] | None = None) -> None:
-    """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts."""
+def show(
+    table: Table, units: UnitSystem, console: Console, rows: set[int] | None = None, *,
+    most: int | None = MOST_ROWS, more: str = "table.more",
+) -> None:  # fmt: skip
+    """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts.
+
+    more: the word that says how many rows beyond `most` (None: no bound) are left out, and where they all are.
+    """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
-    told = [_told(column, cells(column, units), chosen[:MOST_ROWS], units) for column in table.columns]
+    printed = chosen[:most]
+    told = [_told(column, cells(column, units), printed, units) for column in table.columns]
     for number, part in enumerate(_parts(table, told, console.width)):
         title = table.title if number == 0 else say("table.continued", title=table.title)
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
         for k in part:
             words = table.columns[k].dimension is None
             rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", min_width=_least(told[k]))
-        for row in range(len(chosen[:MOST_ROWS])):
+        for row in range(len(printed)):
             rich_table.add_row(*(Text(told[k][1][row]) for k in part))
         console.print(rich_table)
-    if len(chosen) > MOST_ROWS:
-        console.print(Text(say("table.more", rows=len(chosen) - MOST_ROWS), style="dim"))
+    if len(chosen) > len(printed):
+        console.print(Text(say(more, rows=len(chosen) - len(printed)), style="dim"))
     for note in table.notes:
         console.print(Text(note, style="dim"))
 

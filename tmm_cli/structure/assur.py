@@ -2,12 +2,13 @@
 
 Class and order after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class
 II; otherwise the class is the number of sides of its largest closed contour of inner pairs, or of the inner pairs of
-its richest link when it has no contour; the order is the number of leads (outer pairs).
+its richest link when it has no contour; the order is the number of leads (outer pairs). A pair that is passive as a
+whole (an idle wheel in a ring) holds nothing, and gives a group no higher class.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
@@ -51,7 +52,8 @@ class Pair:
 class Group:
     """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type.
 
-    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are.
+    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are. idle:
+    names of its pairs that are passive as a whole; they are no leads.
     """
 
     links: tuple[str, ...]
@@ -60,10 +62,11 @@ class Group:
     grade: int
     type: str
     drivers: tuple[Driver, ...] = ()
+    idle: tuple[str, ...] = ()
 
     @property
     def order(self) -> int:
-        return len(self.outer)
+        return sum(pair.name not in self.idle for pair in self.outer)
 
     @property
     def title(self) -> str:
@@ -186,6 +189,8 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     """
     less = dropped or {}
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
+    loosened = {tie.name for k, tie in enumerate(ties) if k in less and not tie.constraints}
+    idle = loosened - {hinge.point for hinge in linkage.hinges if len(hinge.links) > 2}
     pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2)
     bodies = tuple(linkage.links)
     undriven = count(bodies, FRAME, ties, pins)
@@ -197,7 +202,8 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
     sound = undriven.free == len(linkage.drivers) and not undriven.idle and not driven.idle and driven.free == 0
     cranks = {(driver.link,) for driver in linkage.cranks}
-    groups = tuple(_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
+    parts_left = [part for part in solved if part not in cranks] if sound else []
+    groups = tuple(_group(part, pairs, rank, linkage, idle) for part in parts_left)
     return Structure(
         linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free, *_faults(linkage, undriven, driven)
     )
@@ -235,7 +241,10 @@ def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
         yield Pair(mesh.name, HIGHER[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
 
 
-def _group(links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, int], linkage: Linkage) -> Group:
+def _group(
+    links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, int], linkage: Linkage, idle: Collection[str]
+) -> Group:
+    """The group of these links; idle: names of its pairs that are passive."""
     here = rank[links[0]]
     inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
     outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
@@ -248,10 +257,12 @@ def _group(links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, i
         kind = outer[0].kind + inner[0].kind + outer[1].kind
         return Group(tuple(own[p.name] for p in outer), inner, tuple(outer), 2, kind)
     kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
-    return Group(links, inner, tuple(outer), _grade(links, inner, outer, drivers), kind, drivers)
+    within, leads = ([p for p in some if p.name not in idle] for some in (inner, outer))
+    passive = tuple(p.name for p in (*inner, *outer) if p.name in idle)
+    return Group(links, inner, tuple(outer), _grade(links, within, leads, drivers), kind, drivers, passive)
 
 
-def _grade(links: tuple[str, ...], inner: tuple[Pair, ...], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
+def _grade(links: tuple[str, ...], inner: list[Pair], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
     """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link."""
     one = {name: name for name in links}
     for driver in drivers:

@@ -33,6 +33,8 @@ def tables(results: Results) -> Iterable[Table]:
             rows.append((say("quality.start", stroke=name), stroke.start, place))
             rows.append((say("quality.low", link=strokes.link), stroke.low, run))
             rows.append((say("quality.length", stroke=name), stroke.length, place))
+            if stroke.rest:
+                rows.append((say("quality.rest", stroke=name), stroke.rest, place))
     for travel in results.travels:
         run = LENGTH if travel.kind == "slide" else ANGLE
         rows.append((say(f"quality.travel_{travel.kind}", link=travel.link), travel.high - travel.low, run))
