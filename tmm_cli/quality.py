@@ -54,11 +54,15 @@ class Range:
 
 @dataclass(frozen=True)
 class DeadPosition:
-    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there."""
+    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there.
+
+    passed: the group was followed through it on a smooth way, on which its determinant may change sign.
+    """
 
     place: float
     group: str
     margin: float
+    passed: bool = False
 
 
 def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
@@ -245,12 +249,32 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tupl
         steps = q[1] - q[0]
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
+        passed = _passed(linkage, kernels, number, way)
+        found += passed
         for place in places:
+            if any(abs(_apart(place, p.place, way)) <= 2 * steps for p in passed):
+                continue
             best, left = least(partial(_margin, linkage, kernels, number), place - steps, place + steps)
             if left < DEAD and (way.full or way.start + steps < best < way.end - steps):
                 best = _pinned(linkage, kernels[: number + 1], best, steps)
                 found.append(DeadPosition(best, dyad.group.title, left))
     return tuple(sorted(found, key=lambda d: d.place))
+
+
+def _passed(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, way: Range) -> list[DeadPosition]:
+    """Dead positions inside the way that a followed group passes smoothly: they are nodes of its track."""
+    track, title = kernels[number].followed, kernels[number].group.title
+    if track is None or not track.dead.size:
+        return []
+    places = track.dead_within(way.start, way.end)
+    left = _margin(linkage, kernels, number, places) if places.size else places
+    return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
+
+
+def _apart(one: float, other: float, way: Range) -> float:
+    """From one place to another, round the cycle where the way is a whole one."""
+    cycle = way.end - way.start
+    return one - other - cycle * round((one - other) / cycle) if way.full else one - other
 
 
 def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, q: Real) -> Real:

@@ -13,7 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.groups.linear import signed_determinant, solve
+from tmm_cli.groups.crossing import EDGE, Crossings, Node, alive, predicted
+from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import CONVERGED, NEAR, Newton
 from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate
 from tmm_cli.groups.track import State, Track
@@ -30,7 +31,9 @@ FEW = 6  # rounds of Newton's method: more than that begin too far away
 SAME = 1e-7  # states this near are the same
 HALVINGS = 80
 FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
+LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it has to be followed
 AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
+SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
 PATIENCE = 4  # halvings of a step before a limit is looked for
 
 
@@ -48,15 +51,6 @@ class Upstream:
 Source = Callable[[Real], Upstream]
 
 
-@dataclass(frozen=True)
-class _Node:
-    q: float
-    state: State
-    first: State
-    second: State
-    side: float
-
-
 class Walker:
     """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
 
@@ -64,8 +58,9 @@ class Walker:
         self.kernel, self.source, self.scale = kernel, source, scale
         self.home: State | None = None
         self.at = 0.0
+        self.crossings = Crossings(kernel, source, self.node, scale)
 
-    def node(self, q: float, start: State) -> tuple[_Node, float] | None:
+    def node(self, q: float, start: State) -> tuple[Node, float] | None:
         """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
         place = np.array([q])
         before = self.source(place)
@@ -81,7 +76,8 @@ class Walker:
             if kernel.passive and np.max(np.abs(kernel.gaps(everything, before.drives))) > CONVERGED:
                 return None
             matrix = kernel.matrix(everything)
-            side = signed_determinant(matrix)
+            det = np.ones(1) if kernel.passive else np.linalg.det(matrix)
+            side = np.sign(det)
             one = np.ones(1)
             at = Placement(tuple(own[n] for n in kernel.group.links), side, one, -one, 0 * one)
             rates = kernel.rates(at, before.poses, before.rates, before.drives)
@@ -89,7 +85,7 @@ class Walker:
             accels = kernel.accelerations(at, before.poses, both, before.accels, before.drives)
         first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
         second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
-        return _Node(q, state, first, second, float(side[0])), self.apart(state, start)
+        return Node(q, state, first, second, float(det[0]), float(side[0])), self.apart(state, start)
 
     def apart(self, one: State, other: State) -> float:
         """How far two states are apart: lengths against the group's size, angles in rad."""
@@ -112,17 +108,26 @@ class Walker:
             float(np.max(np.abs(state.turn - home.turn))),
         )
 
-    def leg(self, start: _Node, end: float) -> tuple[list[_Node], Literal["reached", "limit", "lost"]]:
-        """Nodes from one on to the place `end`, and how it ended; a limit is the last node."""
-        nodes, here, failures = [], start, 0
+    def leg(self, start: Node, end: float) -> tuple[list[Node], Literal["reached", "limit", "lost", "edge"]]:
+        """Nodes from one on to the place `end`, and how it ended; a limit is the last node. edge: `end` is dead."""
+        nodes: list[Node] = []
+        here, failures = start, 0
         way = end - start.q
         least = LEAST_STEP * abs(way)
         step = FIRST_STEP * way / np.pi
         while here.q != end:
             step = float(np.sign(way)) * min(abs(step), LARGEST_STEP * abs(way) / np.pi)
             q = end if abs(end - here.q) <= abs(step) * (1 + 1e-9) else here.q + step
-            found = self.node(q, _predicted(here, q - here.q))
-            if found is not None and found[1] < CORRECTION and found[0].side == start.side:
+            found = self.node(q, predicted(here, q))
+            close = found is not None and found[1] < CORRECTION
+            dead = self.crossings.between([start, *nodes], found[0]) if found is not None and close else None
+            if dead is not None and abs(dead.q - end) < EDGE * self.scale:
+                return nodes, "edge"
+            if dead is not None and (dead.q - end) * way < 0:
+                nodes.append(dead)
+                here, step, failures = dead, FIRST_STEP * way / np.pi, 0
+                continue
+            if found is not None and close and found[0].side == here.side:
                 step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
                 here, failures = found[0], 0
                 nodes.append(here)
@@ -133,17 +138,19 @@ class Walker:
             failures += 1
             if failures % PATIENCE == 0 or abs(step) < least:
                 limit = self.limit(here, float(np.sign(way)))
-                if limit is not None and (limit.q - end) * way <= 0:
+                beside = abs(step) < least
+                if limit is not None and (limit.q - end) * way <= 0 and (beside or self.leads(here, limit)):
                     return [*nodes, limit], "limit"
             if abs(step) < least:
-                return [*nodes, *self.beyond(here)], "lost"
+                lost = [*nodes, *self.beyond(here)]
+                return lost, "edge" if abs(end - here.q) < EDGE * self.scale else "lost"
         return nodes, "reached"
 
-    def spins(self, here: _Node) -> bool:
+    def spins(self, here: Node) -> bool:
         """Whether it goes round so much faster than the driver that there is no following it."""
         return self.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
 
-    def beyond(self, last: _Node) -> list[_Node]:
+    def beyond(self, last: Node) -> list[Node]:
         """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
 
         Nothing where it does not go away.
@@ -160,7 +167,21 @@ class Walker:
             return [replace(last, q=last.q + float(wound[k] / last.first.turn.ravel()[k]))]
         return []
 
-    def limit(self, last: _Node, sense: float) -> _Node | None:
+    def leads(self, here: Node, limit: Node) -> bool:
+        """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
+        near = self.apart(here.state, limit.state) / 2
+        for left in LEFT:
+            share = np.sqrt(left)  # near a limit states go as the root of what is left of the way
+            x, turn = (
+                there + share * (one - there)
+                for one, there in ((here.state.x, limit.state.x), (here.state.turn, limit.state.turn))
+            )
+            found = self.node(limit.q + left * (here.q - limit.q), State(x, turn))
+            if found is None or found[0].side != here.side or found[1] > near:
+                return False
+        return True
+
+    def limit(self, last: Node, sense: float) -> Node | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
 
         With l the direction in which the group moves, F(X, q) = 0 and l (X - X0) = s give q(s), and q' = 0 is looked
@@ -231,7 +252,7 @@ class Walker:
         state, q, _ = best
         if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
             return None
-        return _Node(q, state, last.first, last.second, last.side)
+        return Node(q, state, last.first, last.second, 0.0, last.side)
 
     def _bordered(self, everything: dict[str, Pose], before: Upstream, line: Real) -> Real:
         kernel = self.kernel
@@ -254,27 +275,33 @@ class Walker:
         if found is None:
             return None
         middle = found[0]
-        up, above = self.leg(middle, at + half)
-        down, below = self.leg(middle, at - half)
-        nodes = [*reversed(down), middle, *up]
+        for shift in SHIFTS if turns else (0.0,):  # a cycle may begin anywhere but in a dead position
+            first, last = at - half + shift * self.scale, at + half + shift * self.scale
+            up, above = self.leg(middle, last)
+            down, below = self.leg(middle, first)
+            whole = [*reversed(down), middle, *up]
+            ends = [node for node, how in ((whole[0], below), (whole[-1], above)) if how == "reached"]
+            if "edge" not in (above, below) and all(alive(end, whole) for end in ends):
+                break
+        nodes = whole
         if turns and above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
             return _track(nodes, True)
         for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
             if turns and above == "reached":
-                more, above = self.leg(nodes[-1], at + half + 2 * half * turn)
+                more, above = self.leg(nodes[-1], last + 2 * half * turn)
                 nodes += more
                 if above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
                     return _track(nodes, True)
         for turn in range(1, TURNS):
             if turns and below == "reached" and above != "reached":
-                more, below = self.leg(nodes[0], at - half - 2 * half * turn)
+                more, below = self.leg(nodes[0], first - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
         return _track(
             nodes,
             False,
             (below == "reached", above == "reached"),
             (below == "limit", above == "limit"),
-            (below == "lost", above == "lost"),
+            (below in ("lost", "edge"), above in ("lost", "edge")),
         )
 
     def returned(self, one: State, other: State) -> bool:
@@ -282,15 +309,6 @@ class Walker:
         around = (other.turn - one.turn) / (2 * np.pi)
         same = State(other.x, one.turn + (around - np.round(around)) * 2 * np.pi)
         return self.apart(one, same) < SAME
-
-
-def _predicted(node: _Node, step: float) -> State:
-    def taylor(value: Real, first: Real, second: Real) -> Real:
-        return value + step * (first + step / 2 * second)
-
-    return State(
-        taylor(node.state.x, node.first.x, node.second.x), taylor(node.state.turn, node.first.turn, node.second.turn)
-    )
 
 
 def _flat(state: State, size: float) -> Real:
@@ -304,7 +322,7 @@ def _moved(state: State, step: Real, size: float) -> State:
 
 
 def _track(
-    nodes: list[_Node],
+    nodes: list[Node],
     closed: bool,
     open_ends: tuple[bool, bool] = (False, False),
     limits: tuple[bool, bool] = (False, False),
@@ -315,4 +333,9 @@ def _track(
         return State(np.concatenate([s.x for s in states]), np.concatenate([s.turn for s in states]))
 
     first, second = stacked("first"), stacked("second")
-    return Track(np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits, lost)
+    dead = np.array([n.q for n in nodes if n.dead])
+    flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
+    return Track(
+        np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits, lost,
+        dead=dead, flips=flips,
+    )  # fmt: skip

@@ -166,6 +166,11 @@ class Newton(Kernel):
             gap = np.full(np.shape(q), -1.0)
         with np.errstate(all="ignore"):
             state, step = self.close(start, poses, drives)
+        dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))
+        if self.track is not None:  # in a dead position that it passes the group is where its way leads through
+            dead, side = self.track.in_dead(q, ROUNDINGS**2 * epsilon(start.turn)), self.track.side(q)
+            through = dead[..., None]
+            state = State(np.where(through, start.x, state.x), np.where(through, start.turn, state.turn))
         own = self.poses_of(state)
         everything = {**poses, **own}
         matrix = self.matrix(everything)
@@ -174,8 +179,9 @@ class Newton(Kernel):
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
         slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.turn))
         gap = np.where(lost & (gap < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), gap)
+        gap = np.where(dead, 0.0, gap)
         gap = np.where(margin < (TRUNCATED if self.passive else DEAD), np.where(gap > slack, gap, 0.0), gap)
-        det = signed_determinant(matrix) * margin
+        det = signed_determinant(matrix) * margin * side
         return Placement(
             tuple(own[link] for link in self.group.links), det, margin, gap * self.size, slack * self.size
         )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -26,7 +26,8 @@ class Track:
     ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
     first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the track
     ends there for another reason: the links it hangs on go no further, or links of its own go to infinity. unit: what
-    gaps are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides.
+    gaps are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides. dead: places of
+    nodes in dead positions that are passed smoothly; flips: whether the determinant changes its sign there.
     """
 
     q: Real
@@ -38,12 +39,45 @@ class Track:
     limits: tuple[bool, bool] = (False, False)
     lost: tuple[bool, bool] = (False, False)
     unit: float = 1.0
+    dead: Real = field(default_factory=lambda: np.zeros(0))
+    flips: Real = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @cached_property
     def _bend(self) -> Real:
         """Size of the second derivative at each node."""
         bend: Real = np.max(np.abs(self.second.x), axis=-1) + np.max(np.abs(self.second.turn), axis=-1)
         return bend
+
+    def within(self, q: Real) -> Real:
+        """Places q of a closed track in its own cycle."""
+        cycle = self.q[-1] - self.q[0]
+        found: Real = q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
+        return found
+
+    def in_dead(self, q: Real, rounding: float) -> Real:
+        """Whether places cannot be told from a dead position that is passed, for relative errors of the data.
+
+        At a distance h they move the group by their h-th part, the h^2-th where the determinant only touches zero, and
+        that has to be less than h.
+        """
+        if not self.dead.size:
+            return np.zeros(np.shape(q), dtype=bool)
+        width = np.where(self.flips, rounding ** (1 / 2), rounding ** (1 / 3)) * self.unit
+        found: Real = np.any(np.abs(self.within(q)[..., None] - self.dead) < width, axis=-1)
+        return found
+
+    def side(self, q: Real) -> Real:
+        """1, or -1 where the determinant has another sign than at the track's beginning."""
+        passed = np.searchsorted(self.dead[self.flips], self.within(q))
+        found: Real = 1.0 - 2.0 * (passed % 2)
+        return found
+
+    def dead_within(self, low: float, high: float) -> Real:
+        """Dead positions that are passed between two places, in growing order."""
+        cycle = self.q[-1] - self.q[0]
+        turns = np.arange(np.floor((low - self.q[-1]) / cycle), np.ceil((high - self.q[0]) / cycle) + 1)
+        found = (self.dead[:, None] + cycle * (turns if self.closed else np.zeros(1))).ravel()
+        return np.sort(found[(found >= low) & (found < high)])
 
     def start(self, q: Real) -> tuple[State, Real]:
         """A state near that at each place q, from the nearest node, and the gap: how far q is beyond the track's ends,

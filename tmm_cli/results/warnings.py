@@ -52,7 +52,8 @@ def warnings(results: Results) -> Iterable[str]:
         if off > SKETCH:
             yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
     for dead in results.dead:
-        yield say("warning.dead", place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
+        name = "warning.passed" if dead.passed else "warning.dead"
+        yield say(name, place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
     unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
     for k in unreached[:MOST_POSITIONS]:
         number = results.numbers[k]

@@ -19,6 +19,8 @@ WORDS: dict[str, str] = {
     "warning.given": "; results are given for that range",
     "warning.dead": "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and forces "
     "grow without bound there, and the group may leave it either way; the results keep to the side of the sketch",
+    "warning.passed": "dead position of {group} inside the cycle at {place} (margin {margin}): there the group may "
+    "leave its way for that of another assembly; the results go on along the smooth one",
     "warning.missing": "position {number} ({place}): {group} cannot be assembled, {gap} short",
     "warning.dead_here": "position {number} ({place}): {group} is in its dead position; no velocities and forces",
     "warning.sketch": "in the sketch {point} is {share} % of the mechanism's size from its place with the driver at "
