@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.accuracy import closed, differences, loops, multibody, precision
+from tmm_cli.accuracy import board, closed, differences, loops, multibody, precision
 from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
 
 __all__ = ["METHODS", "OURS", "QUANTITIES", "Answers", "Case", "Method", "Quantity", "errors"]
@@ -15,4 +15,5 @@ METHODS: tuple[Method, ...] = (
     *(Method(f"differences-{k}", "differencing", differences.prepare(10.0**-k), 10.0**-k) for k in range(1, 9)),
     Method("single", "groups, single precision", precision.single),
     Method("extended", "groups, extended precision", precision.extended),
+    *(Method(f"board-{mm:.2f}", "drawing board", board.prepare(mm), mm, timed=False) for mm in (0.25, 0.5)),
 )

@@ -107,6 +107,7 @@ def extended(case: Case) -> Callable[[Real], Answers]:
 def _at(case: Case, real: type) -> Callable[[Real], Answers]:
     def at(q: Real) -> Answers:
         motion = move(case.linkage, case.kernels, q.astype(real), case.law)
+        motion = replace(motion, rate=motion.rate.astype(real))  # else its square is rounded to float64
         return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
 
     return at
