@@ -5,15 +5,17 @@ from __future__ import annotations
 from tmm_cli.accuracy import board, closed, differences, loops, multibody, precision
 from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
 
-__all__ = ["METHODS", "OURS", "QUANTITIES", "Answers", "Case", "Method", "Quantity", "errors"]
+__all__ = ["FEWER", "METHODS", "OURS", "QUANTITIES", "Answers", "Case", "Method", "Quantity", "errors"]
 
-OURS = Method("groups", "groups, closed form", closed.prepare)
+OURS = Method("closed", "closed", closed.prepare)
 METHODS: tuple[Method, ...] = (
     OURS,
-    *(Method(f"newton-{k}", "Newton on loop closure", loops.prepare(10.0**-k), 10.0**-k) for k in range(2, 16)),
-    Method("multibody", "whole Jacobian, multipliers", multibody.prepare),
-    *(Method(f"differences-{k}", "differencing", differences.prepare(10.0**-k), 10.0**-k) for k in range(1, 9)),
-    Method("single", "groups, single precision", precision.single),
-    Method("extended", "groups, extended precision", precision.extended),
-    *(Method(f"board-{mm:.2f}", "drawing board", board.prepare(mm), mm, timed=False) for mm in (0.25, 0.5)),
+    *(Method(f"newton-{k}", "newton", loops.prepare(10.0**-k), 10.0**-k) for k in range(2, 16)),
+    Method("multibody", "multibody", multibody.prepare),
+    *(Method(f"differences-{k}", "differences", differences.prepare(10.0**-k), 10.0**-k) for k in range(1, 9)),
+    Method("single", "single", precision.single),
+    Method("extended", "extended", precision.extended),
+    *(Method(f"board-{mm:.2f}", "board", board.prepare(mm), mm, timed=False) for mm in (0.25, 0.5)),
 )
+LEFT_OUT = ("newton-3", "newton-5", "newton-7", "newton-9", "newton-11", "newton-13", "differences-5", "differences-7")
+FEWER = tuple(method for method in METHODS if method.name not in LEFT_OUT)

@@ -24,7 +24,7 @@ Quantity = Literal["positions", "velocities", "accelerations", "reactions", "bal
 QUANTITIES: tuple[Quantity, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Case:
     """A linkage that is assembled, and how it is driven; lower pairs only.
 
@@ -110,7 +110,7 @@ class Answers:
 class Method:
     """A way to compute a case. `prepare` does what is done once a linkage and gives what is done at places q.
 
-    family: methods that differ in one setting only are joined by a line; timed: whether its time means anything.
+    family: methods that differ in one setting only; timed: whether its time means anything.
     """
 
     name: str

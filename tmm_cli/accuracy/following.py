@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -89,9 +88,3 @@ def _walk(closure: Closure, X: Real, at: float, step: float) -> list[tuple[float
                 break
             found.append((float(q[0]), X))
     return found
-
-
-def closer(case: Case, closure: Closure, tolerance: float) -> Callable[[Real], Real]:
-    """What finds the coordinates at places q."""
-    nodes = follow(case, closure)
-    return lambda q: close(closure, nodes.near(q), q, tolerance)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from tmm_cli.accuracy.case import Answers, Case, answers
-from tmm_cli.accuracy.following import closer
+from tmm_cli.accuracy.following import Nodes, close, follow
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.state import Accel, Pose, Rate, Wrench
 from tmm_cli.linkage import FRAME
@@ -265,12 +265,21 @@ def _guide(pair: Pair, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:
     return carrier.z * unit(slide.direction), poses[slide.runner].at(slide.at) - carrier.at(slide.through)
 
 
+@lru_cache(maxsize=8)
+def _followed(case: Case) -> tuple[Loops, Nodes]:
+    """The walk along the driver's way, once for all tolerances."""
+    loops = Loops(case)
+    return loops, follow(case, loops)
+
+
 def prepare(tolerance: float) -> Callable[[Case], Callable[[Real], Answers]]:
     """The method that stops when every loop closes within the tolerance, a share of the linkage's size (or rad)."""
 
     def of(case: Case) -> Callable[[Real], Answers]:
-        loops = Loops(case)
-        place = closer(case, loops, tolerance)
+        loops, nodes = _followed(case)
+
+        def place(q: Real) -> Real:
+            return close(loops, nodes.near(q), q, tolerance)
 
         def at(q: Real) -> Answers:
             poses = loops.poses(place(q), q)

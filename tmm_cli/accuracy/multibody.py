@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.accuracy.case import Answers, Case, answers
-from tmm_cli.accuracy.following import closer
+from tmm_cli.accuracy.following import close, follow
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.state import Accel, Pose, Rate
 from tmm_cli.linkage import FRAME
@@ -177,10 +177,10 @@ def _within_half_a_turn(angle: Real) -> Real:
 def prepare(case: Case) -> Callable[[Real], Answers]:
     """One linear system a position and order: J^T for the forces, J for all else."""
     body = Body(case)
-    place = closer(case, body, TOLERANCE)
+    nodes = follow(case, body)
 
     def at(q: Real) -> Answers:
-        X = place(q)
+        X = close(body, nodes.near(q), q, TOLERANCE)
         J, poses = body.matrix(X, q), body.poses(X)
         asked = np.zeros_like(X)
         asked[:, -1] = 1.0
