@@ -356,7 +356,7 @@ def test_loader_angle_by_cosines():
 
 
 def test_a_tabulated_load_acts_on_near_dead_positions_too(tmp_path):
-    """One degree of the crank from where l = r + 0.01 mm is all but dead, numbers are extended; the table is read so."""
+    """One degree from where l = r + 0.01 mm is all but dead, numbers are extended, and the table is read with them."""
     text = (BANK / "crank-slider.yaml").read_text(encoding="utf-8")
     text = text.replace("l: 220", "l: 60.01").replace("B: [245, 0]", "B: [60, 0]")
     text = text.replace("{count: 12, from: working stroke, detail: [10]}", "{at: [89, 29]}")

@@ -28,8 +28,10 @@ OFF = 0.3717  # of a step: no position is a special one
 
 def text(value):
     """One number, or two of a vector."""
-    return [mp.nstr(part, DIGITS) for part in (value.real, value.imag)] if isinstance(value, mp.mpc) else mp.nstr(
-        value, DIGITS
+    return (
+        [mp.nstr(part, DIGITS) for part in (value.real, value.imag)]
+        if isinstance(value, mp.mpc)
+        else mp.nstr(value, DIGITS)
     )
 
 

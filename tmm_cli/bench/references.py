@@ -38,9 +38,9 @@ def reference(name: str) -> Reference:
     """A reference by its name."""
     content = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
     results = solve(build(read_text(content["problem"], f"{name}.yaml")), "kinematics")
-    parts = [_series(content[key]) for key in ("positions", "velocities", "accelerations", "reactions")]
+    x, v, a, forces = (_series(content[key]) for key in ("positions", "velocities", "accelerations", "reactions"))
     balancing = np.array([np.longdouble(value) for value in content["balancing"]])
-    return Reference(case_of(name, results), np.array(content["q"]), Answers(*parts, balancing=balancing))
+    return Reference(case_of(name, results), np.array(content["q"]), Answers(x, v, a, forces, balancing))
 
 
 def _series(content: dict[str, Any]) -> dict[str, Vector]:

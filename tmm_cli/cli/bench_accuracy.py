@@ -20,7 +20,7 @@ Linkages = Annotated[
 Reduced = Annotated[bool, typer.Option("--reduced", help="Fewer methods and repeats; targets twice as wide.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Write CSV, JSON and charts there.", show_default=False),
+    typer.Option("--out", "-o", metavar="DIR", help="Write CSV, JSON, charts there.", show_default=False),
 ]
 
 

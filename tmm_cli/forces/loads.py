@@ -46,7 +46,8 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     driver = motion.linkage.driver
     if against == "crank angle":
         turn = 2 * np.arccos(np.asarray(motion.q).dtype.type(-1))  # in the precision of the motion
-        return np.mod(motion.q, turn)
+        angle: Real = np.mod(motion.q, turn)
+        return angle
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 from tmm_cli.accuracy import Method
 
-RIVALS: tuple[str, ...] = ()
+RIVALS = ("pylinkage", "kinepy")
 
 
 def installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
