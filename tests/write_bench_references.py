@@ -14,7 +14,7 @@ import mpmath as mp
 import numpy as np
 from multibody import Multibody
 
-from tmm_cli.accuracy import Case
+from tmm_cli.accuracy.case import Case
 from tmm_cli.pipeline import at_positions, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

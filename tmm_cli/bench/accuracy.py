@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from tmm_cli import __version__
-from tmm_cli.accuracy import FEWER, METHODS, OURS, QUANTITIES, Answers, Case, Method, Quantity, errors
+from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
+from tmm_cli.accuracy.methods import FEWER, METHODS, OURS
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.vectors import Real
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from tmm_cli.accuracy import QUANTITIES
+from tmm_cli.accuracy.case import QUANTITIES
 from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.words import say
@@ -88,6 +88,10 @@ def _family(axes: Any, rows: list[Row], quantity: Any, style: dict[str, Any]) ->
         x = [row.microseconds for row in there]
         y = [float(np.clip(row.errors[quantity], LOW, HIGH)) for row in there]
         axes.plot(x, y, lw=0.9, clip_on=False, **style)
+        if there[0].family == "differences" and quantity != "positions":
+            for k in (0, -1):  # the line comes down with the step and goes up again with rounding
+                axes.annotate(f"{there[k].setting:g}", (x[k], y[k]), (5, -1), textcoords="offset points", fontsize=7,
+                              va="center", color=style["color"])  # fmt: skip
 
 
 def _legend(figure: Figure, rows: list[Row]) -> None:

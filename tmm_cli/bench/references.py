@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy import Answers, Case
+from tmm_cli.accuracy.case import Answers, Case
 from tmm_cli.pipeline import Results, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

@@ -59,7 +59,7 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
 
 def _show(measured: Accuracy) -> None:
-    from tmm_cli.accuracy import QUANTITIES
+    from tmm_cli.accuracy.case import QUANTITIES
     from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.table import Column, Table
     from tmm_cli.results.terminal import show

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from importlib.util import find_spec
 
-from tmm_cli.accuracy import Method
+from tmm_cli.accuracy.case import Method
 
 RIVALS = ("pylinkage", "kinepy")
 

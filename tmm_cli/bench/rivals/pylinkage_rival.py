@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy import Answers, Case, Method
+from tmm_cli.accuracy.case import Answers, Case, Method
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import move
 from tmm_cli.structure.assur import Group, Pair
