@@ -197,7 +197,7 @@ def test_the_chart_has_a_panel_for_every_quantity_and_every_family_in_its_legend
     assert len(panels) == 5
     assert all(axes.get_xscale() == axes.get_yscale() == "log" for axes in panels)
     labels = [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
-    assert {"closed-form groups (tmm)", "drawing board, read to 0.5 mm", "the 5 % rule"} <= set(labels)
+    assert {"groups (tmm), class II in closed form", "drawing board, read to 0.5 mm", "the 5 % rule"} <= set(labels)
 
 
 def test_rivals_are_measured_only_where_they_are_installed(monkeypatch):

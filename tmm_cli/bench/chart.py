@@ -16,7 +16,7 @@ from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.words import say
 
 MM = 1 / 25.4  # inches
-LOW, HIGH = 1e-20, 1e2  # of the error axis; what lies beyond is drawn on its edge
+LOW, HIGH = 1e-20, 1e4  # of the error axis; what lies beyond is drawn on its edge
 DARK, GREY = "#1a1a1a", "#8a8a8a"
 STYLES: dict[str, dict[str, Any]] = {
     "closed": {"marker": "*", "ms": 13, "color": "#b3261e", "zorder": 9},
@@ -68,17 +68,16 @@ def chart(accuracy: Accuracy, linkage: str) -> Figure:
 def _scales(axes: Any) -> None:
     """Decades that can be read: plain numbers of microseconds, every fourth power of ten of error."""
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=30))
-    axes.xaxis.set_major_formatter(FuncFormatter(_round_number))
+    axes.xaxis.set_major_formatter(FuncFormatter(_plain_number))
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_yticks([10.0**k for k in range(-20, 3, 4)], [f"1e{k}" if k else "1" for k in range(-20, 3, 4)])
-    axes.set_yticks([10.0**k for k in range(-20, 3)], minor=True)
+    axes.set_yticks([10.0**k for k in range(-20, 5, 4)], [f"1e{k}" if k else "1" for k in range(-20, 5, 4)])
+    axes.set_yticks([10.0**k for k in range(-20, 5)], minor=True)
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelsize=8)
     axes.grid(True, color="#e2e2e2", lw=0.5)
 
 
-def _round_number(value: float, _: int) -> str:
-    """Only 1, 10, 100 where the axis is long."""
+def _plain_number(value: float, _: int) -> str:
     return f"{value:g}"
 
 
@@ -90,8 +89,11 @@ def _family(axes: Any, rows: list[Row], quantity: Any, style: dict[str, Any]) ->
         axes.plot(x, y, lw=0.9, clip_on=False, **style)
         if there[0].family == "differences" and quantity != "positions":
             for k in (0, -1):  # the line comes down with the step and goes up again with rounding
-                axes.annotate(f"{there[k].setting:g}", (x[k], y[k]), (5, -1), textcoords="offset points", fontsize=7,
-                              va="center", color=style["color"])  # fmt: skip
+                axes.annotate(
+                    f"{there[k].setting:g}".replace("e-0", "e-"), (x[k], y[k]), (6, 0), textcoords="offset points",
+                    fontsize=7, va="center", color=style["color"], zorder=7,
+                    bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
+                )  # fmt: skip
 
 
 def _legend(figure: Figure, rows: list[Row]) -> None:

@@ -1,7 +1,7 @@
 """Words of `tmm bench accuracy`."""
 
 WORDS: dict[str, str] = {
-    "accuracy.closed": "closed-form groups (tmm)",
+    "accuracy.closed": "groups (tmm), class II in closed form",
     "accuracy.newton": "Newton on loop closure, tolerances 1e-2 to 1e-15",
     "accuracy.multibody": "whole Jacobian, Lagrange multipliers",
     "accuracy.differences": "central differences, steps 0.1 to 1e-8 rad",
