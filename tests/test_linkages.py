@@ -353,3 +353,17 @@ def test_loader_angle_by_cosines():
     expected = [by_cosines(240, 180, 1000 * s) for s in results.motion.q]
     assert between == pytest.approx(expected, abs=1e-11)
     assert between[2] == pytest.approx(90, abs=1e-11)
+
+
+def test_a_tabulated_load_acts_on_near_dead_positions_too(tmp_path):
+    """One degree from where l = r + 0.01 mm is all but dead, numbers are extended, and the table is read with them."""
+    text = (BANK / "crank-slider.yaml").read_text(encoding="utf-8")
+    text = text.replace("l: 220", "l: 60.01").replace("B: [245, 0]", "B: [60, 0]")
+    text = text.replace("{count: 12, from: working stroke, detail: [10]}", "{at: [89, 29]}")
+    (tmp_path / "near-dead.yaml").write_text(text, encoding="utf-8")
+    results = solve(load(str(tmp_path / "near-dead.yaml")))
+    assert results.motion.finer is not None
+    gas = next(a for a in results.loads if a.name == "gas")
+    assert gas.force[1] == pytest.approx(-(900 + (29 - 20) / (40 - 20) * (200 - 900)), rel=1e-14)
+    assert gas.force[0] == 0
+    assert results.lever_holds

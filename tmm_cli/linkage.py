@@ -144,7 +144,14 @@ class Table:
     values: tuple[float, ...]
 
     def __call__(self, argument: Real) -> Real:
-        return np.interp(argument, self.arguments, self.values)
+        x, y = np.array(self.arguments), np.array(self.values)
+        if np.result_type(argument, x) == np.float64 or len(x) < 2:
+            found: Real = np.interp(argument, x, y)
+            return found
+        k = np.clip(np.searchsorted(x, argument, side="right") - 1, 0, len(x) - 2)  # np.interp knows float64 only
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.clip((argument - x[k]) / (x[k + 1] - x[k]), 0, 1)
+        return np.where(np.isnan(share), y[k + 1], y[k] + (y[k + 1] - y[k]) * share)
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,10 @@ import typer
 from tmm_cli import __version__
 
 COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes")
+GROUPS = ("bench",)  # commands that have commands of their own, in `app`
 
 
-def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
+def application(names: Iterable[str] = (*COMMANDS, *GROUPS)) -> typer.Typer:
     """The application with these commands: one that is asked for by its name needs no others made for it."""
     app = typer.Typer(
         name="tmm",
@@ -28,7 +29,11 @@ def application(names: Iterable[str] = COMMANDS) -> typer.Typer:
     )
     app.callback()(_options)
     for name in names:
-        app.command(name)(getattr(import_module(f"tmm_cli.cli.{name}"), name))
+        module = import_module(f"tmm_cli.cli.{name}")
+        if name in GROUPS:
+            app.add_typer(module.app)
+        else:
+            app.command(name)(getattr(module, name))
     return app
 
 
@@ -52,9 +57,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
-    asked = [name for name in sys.argv[1:2] if name in COMMANDS]
+    asked = [name for name in sys.argv[1:2] if name in (*COMMANDS, *GROUPS)]
     try:
-        application(asked or COMMANDS)()
+        application(asked or (*COMMANDS, *GROUPS))()
     except BrokenPipeError:  # `tmm ... | head` is not an error
         sys.stderr.close()
         sys.exit(0)

@@ -45,7 +45,9 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":
-        return np.mod(motion.q, 2 * np.pi)
+        turn = 2 * np.arccos(np.asarray(motion.q).dtype.type(-1))  # in the precision of the motion
+        angle: Real = np.mod(motion.q, turn)
+        return angle
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at

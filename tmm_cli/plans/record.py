@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
+LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
+MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
+PAD = 22.0  # mm about the figure, for labels
 NOTHING = 1e-9  # of the plan's size: shorter vectors are points
 
 Kind = Literal[
@@ -64,6 +67,17 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
     power = 10.0 ** math.floor(math.log10(least))
     # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
     return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
+
+
+def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
+    """The paper (mm) on which points (SI) are drawn largest, and the scale there, SI a millimetre."""
+    _, width, height, _ = extent(points)
+    scales = {
+        paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
+        for paper in (LANDSCAPE, PORTRAIT)
+    }
+    best = min(scales, key=lambda paper: (scales[paper], paper[1]))
+    return best, scales[best]
 
 
 def subscript(text: str) -> str:

@@ -1,0 +1,1 @@
+"""Measurements of the product against other ways to compute the same; nothing else needs them."""

@@ -1,0 +1,17 @@
+"""Other programs, measured if they are installed (pip install tmm-cli[bench]): a new one is a file and a line here."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+
+from tmm_cli.accuracy.case import Method
+
+RIVALS = ("pylinkage", "kinepy")
+
+
+def installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
+    """Methods of the rivals that are there, and names of those that are not."""
+    there = [name for name in RIVALS if find_spec(name) is not None]
+    methods = [import_module(f"tmm_cli.bench.rivals.{name}_rival").METHOD for name in there]
+    return tuple(methods), tuple(name for name in RIVALS if name not in there)

@@ -1,0 +1,154 @@
+"""kinepy: positions by closed form, accelerations by second differences over time, forces from those."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.accuracy.case import Answers, Case, Method
+from tmm_cli.linkage import FRAME
+from tmm_cli.motion import move
+from tmm_cli.vectors import Real, Vector, cross, unit
+
+STEP = 2 * np.pi / 360  # rad: places are at most so far apart, since differences over time are taken between them
+SAME = 1e-6  # of the linkage's size
+
+
+def prepare(case: Case) -> Callable[[Real], Answers]:
+    """Its `solve_dynamics` for places q at equal steps, two more at the ends, whose values it loses.
+
+    Raises NotImplementedError.
+    """
+    model = _Model(case)
+    acting: dict[tuple[float, float, int], list[tuple[str, complex, Vector, Real]]] = {}
+
+    def at(q: Real) -> Answers:
+        step = float(q[1] - q[0])
+        times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # places between two that are asked for
+        step /= times
+        grid = q[0] + step * np.arange(-1, (len(q) - 1) * times + 2)
+        key = (float(q[0]), step, len(q))
+        if key not in acting:  # loads of the task are data
+            motion = move(case.linkage, case.kernels, grid, case.law)
+            acting[key] = [(a.link, a.at, a.force, a.moment) for a in case.loads(motion) if a.kind == "load"]
+        model.load(acting[key])
+        dt = step / (case.law.sense * case.law.rate)
+        model.system.solve_dynamics(grid[None, :].copy(), dt * len(grid))
+        return model.answers(slice(1, -1, times), dt)
+
+    return at
+
+
+class _Model:
+    """The linkage in kinepy's terms, SI."""
+
+    def __init__(self, case: Case) -> None:
+        import kinepy
+
+        driver = case.linkage.driver
+        if driver.kind != "turn" or case.linkage.others:
+            raise NotImplementedError("the driver must be one crank here")
+        kinepy.units.set_unit_system(kinepy.units.SI)
+        self.case, self.system = case, kinepy.System()
+        self.solids: dict[str, Any] = {FRAME: self.system.ground}
+        for name in case.linkage.moving:
+            link = case.linkage.links[name]
+            self.solids[name] = self.system.add_solid(name, link.mass, link.inertia, _xy(link.centre))
+        self.joints: dict[str, Any] = {}
+        for pair in case.structure.pairs:
+            i, j = self.solids[pair.i], self.solids[pair.j]
+            if pair.slide is None:
+                ends = (_xy(case.linkage.local(link, pair.point)) for link in (pair.i, pair.j))
+                self.joints[pair.name] = self.system.add_revolute(i, j, *ends)
+            else:
+                slide, turned = pair.slide, pair.slide.direction - pair.slide.turned
+                a, b = (slide.direction, cross(unit(slide.direction), slide.through)), (
+                    turned, cross(unit(turned), slide.at),
+                )  # fmt: skip
+                if pair.i != slide.carrier:
+                    a, b = b, a
+                self.joints[pair.name] = self.system.add_prismatic(i, j, *map(float, (*a, *b)))
+        self.crank = self.joints[case.structure.driving_pair(driver).name]
+        gravity = self.case.linkage.gravity
+        self.system.add_gravity(_xy(gravity))
+        self._loads: list[Any] = []
+        with redirect_stdout(io.StringIO()):  # it tells what it does
+            self.system.pilot(self.crank)
+            self.system.block(self.crank)
+            try:
+                self.system.compile()
+            except Exception as error:
+                raise NotImplementedError(f"it does not compile this: {type(error).__name__}") from None
+        self._choose()
+
+    def _choose(self) -> None:
+        """The assemblies that the sketch shows."""
+        case = self.case
+        q = case.start + STEP * np.arange(5)
+        true = move(case.linkage, case.kernels, q, case.law)
+        for signs in product((1, -1), repeat=len(self.system._object.signs)):
+            if signs:
+                self.system.change_signs(signs)
+            self.system.solve_kinematics(q[None, :].copy())
+            found = self.positions()
+            if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.points):
+                return
+        raise NotImplementedError("it does not solve this linkage")
+
+    def load(self, acting: list[tuple[str, complex, Vector, Real]]) -> None:
+        """Loads of the task, instead of those before."""
+        for name in self.solids:
+            self.solids[name].external_actions.externals.clear()
+        for link, at, force, moment in acting:
+            if np.any(force != 0):
+                self.solids[link].add_force(np.array([force.real, force.imag]), _xy(at))
+            if np.any(moment != 0):
+                self.solids[link].add_torque(moment)
+
+    def positions(self) -> dict[str, Vector]:
+        """Places of the named points."""
+        found = {}
+        for point in self.case.points:
+            link = self.case.linkage.owner(point)
+            x, y = self.solids[link].get_point(_xy(self.case.linkage.local(link, point)))
+            found[point] = x + 1j * y
+        return found
+
+    def answers(self, chosen: slice, dt: float) -> Answers:
+        """What it has found, with its own differences for velocities and accelerations."""
+        x = self.positions()
+        v = {name: _between((at[2:] - at[:-2]) / (2 * dt)) for name, at in x.items()}
+        a = {name: _between((at[2:] + at[:-2] - 2 * at[1:-1]) / (dt * dt)) for name, at in x.items()}
+        reactions = {name: self._force(name)[chosen] for name in self.joints}
+        one, two, three = ({name: part[chosen] for name, part in parts.items()} for parts in (x, v, a))
+        return Answers(one, two, three, reactions, -np.asarray(self.crank.torque)[chosen])
+
+    def _force(self, name: str) -> Vector:
+        """On the pair's second link; kinepy gives what acts on the first."""
+        joint = self.joints[name]
+        pair = self.case.structure.pair(name)
+        if pair.slide is None:
+            x, y = joint.force
+            found: Vector = -(x + 1j * y)
+            return found
+        s1 = self.solids[pair.i]
+        direction = pair.slide.direction - (0 if pair.i == pair.slide.carrier else pair.slide.turned)
+        force: Vector = -1j * unit(np.asarray(s1.angle) + direction) * np.asarray(joint.normal)
+        return force
+
+
+def _between(values: Vector) -> Vector:
+    nothing = np.array([np.nan])
+    return np.concatenate((nothing, values, nothing))
+
+
+def _xy(vector: Any) -> tuple[float, float]:
+    return float(np.real(vector)), float(np.imag(vector))
+
+
+METHOD = Method("kinepy", "kinepy", prepare)

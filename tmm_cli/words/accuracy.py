@@ -1,0 +1,32 @@
+"""Words of `tmm bench accuracy`."""
+
+WORDS: dict[str, str] = {
+    "accuracy.closed": "groups (tmm), class II in closed form",
+    "accuracy.newton": "Newton on loop closure, tolerances 1e-2 to 1e-15",
+    "accuracy.multibody": "whole Jacobian, Lagrange multipliers",
+    "accuracy.differences": "central differences, steps 0.1 to 1e-8 rad",
+    "accuracy.single": "groups in single precision",
+    "accuracy.extended": "groups in extended precision",
+    "accuracy.board": "drawing board",
+    "accuracy.pylinkage": "pylinkage",
+    "accuracy.kinepy": "kinepy",
+    "accuracy.paper": "drawing board, read to {mm} mm",
+    "accuracy.chart": "Time against error: {linkage}",
+    "accuracy.caption": "largest relative error over the cycle against 50 digits; time with all reactions, {count} "
+    "positions at once, median of {repeats}; tmm {tmm}, Python {python}, NumPy {numpy}, {system}",
+    "accuracy.time": "µs a position",
+    "accuracy.error": "largest relative error",
+    "accuracy.five": "the 5 % rule",
+    "accuracy.target": "target of tmm",
+    "accuracy.positions": "Positions",
+    "accuracy.velocities": "Velocities",
+    "accuracy.accelerations": "Accelerations",
+    "accuracy.reactions": "Reactions",
+    "accuracy.balancing": "Balancing moment",
+    "accuracy.title": "Errors over the largest value in the cycle: {linkage}",
+    "accuracy.method": "method",
+    "accuracy.missed": "target missed: {what}",
+    "accuracy.met": "all targets met: positions within 1e-14, the rest within 1e-13",
+    "accuracy.written": "written: {files}",
+    "accuracy.no_linkage": "there is no reference linkage {name}; there are {names}",
+}
