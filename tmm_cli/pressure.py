@@ -24,7 +24,7 @@ from tmm_cli.groups.state import Placement, Wrench
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.quality import SCAN, Range
-from tmm_cli.roots import least
+from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.vectors import Real, cross, dot, unit
 
@@ -102,7 +102,7 @@ def angle(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> Real:
         resistance = Wrench(u, cross(poses[outer.slide.runner].at(outer.slide.at) - pose.x, u))
     on = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
     reactions = kernel.reactions(at, poses, on).inner
-    along, across, loose = still, still, still
+    along, across, lost, loose = still, still, still, still
     for pair in pairs:
         held = reactions[group.inner.index(pair)]
         force = held.force if kernel.inner_on(pair) == link else -held.force
@@ -114,13 +114,14 @@ def angle(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> Real:
             assert held.couple is not None
             point = point + guide * held.couple / dot(held.force, 1j * guide)
         velocity = u if outer.slide is not None else 1j * (point - pivot)
-        along = along + dot(force, velocity)
-        across = across + np.abs(cross(force, velocity))
-        loose = loose + np.abs(force) * np.abs(velocity)
-    # of one pair by both components, which tells small angles; of several by the cosine
-    sine = across if len(pairs) == 1 else np.sqrt(np.maximum((loose - along) * (loose + along), 0))
+        # against the resistance all together do work of one sign; by both components, which tells small angles
+        power, aside = -dot(force, velocity), np.abs(cross(force, velocity))
+        most = np.hypot(power, aside)
+        along, across, loose = along + power, across + aside, loose + most
+        lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
+    sine = across if len(pairs) == 1 else np.sqrt(lost * (loose + along))
     found: Real = np.arctan2(sine, np.abs(along))
-    return found
+    return np.where(found < NOTHING, 0.0, found)
 
 
 def find_pressure(
@@ -141,10 +142,11 @@ def find_pressure(
                     continue
                 k = int(np.nanargmax(angles))
                 place, value = float(q[k]), float(angles[k])
-                if value > NOTHING:
+                if value > 0:
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
-                    place, value = least(partial(_negative, of, linkage, kernels), low, high)
-                    value = -value
+                    back = partial(_negative, of, linkage, kernels)
+                    place, value = least(back, low, high)
+                    place, value = top(back, place, min(high - place, place - low)), -value
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
                 found.append(

@@ -9,6 +9,7 @@ import numpy as np
 from tmm_cli.vectors import Real
 
 HALVINGS = 60  # from a step of a scan to the last bit
+DEGREE = 8  # of the polynomial that tells where an extreme lies
 THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
 
 
@@ -61,3 +62,26 @@ def least(function: Callable[[Real], Real], low: float, high: float) -> tuple[fl
         low, high = places[max(best - 1, 0)], places[min(best + 1, 8)]
     middle = np.array([(low + high) / 2])
     return float(middle[0]), float(function(middle)[0])
+
+
+def top(function: Callable[[Real], Real], place: float, half: float) -> float:
+    """The place of a smooth extreme near `place`, to nearly all digits: where the slope of a polynomial vanishes.
+
+    The extreme itself is known to half the digits only, as long as one compares values. `place` is given back where
+    the function is not smooth within `half` of it.
+    """
+    nodes = np.cos(np.pi * np.arange(DEGREE + 5) / (DEGREE + 4))
+    values = function(place + half * nodes)
+    if not bool(np.all(np.isfinite(values))):
+        return place
+    fit = np.polynomial.Chebyshev.fit(nodes, values, DEGREE, domain=[-1, 1])
+    rough = float(np.max(np.abs(fit(nodes) - values)))
+    slope, bend = fit.deriv(), fit.deriv(2)
+    here = 0.0
+    for _ in range(8):
+        curved = float(bend(here))
+        if curved == 0 or abs(here) > 1:
+            return place
+        here -= float(slope(here)) / curved
+    smooth = rough < 1e-13 * float(np.max(np.abs(values))) and float(np.ptp(values)) > 1e3 * rough
+    return place + half * here if smooth and abs(here) < 1 else place
