@@ -145,7 +145,7 @@ class Table:
 
     def __call__(self, argument: Real) -> Real:
         x, y = np.array(self.arguments), np.array(self.values)
-        if np.result_type(argument, x) == np.float64 or len(x) < 2:
+        if argument.dtype == np.float64 or len(x) < 2:
             found: Real = np.interp(argument, x, y)
             return found
         k = np.clip(np.searchsorted(x, argument, side="right") - 1, 0, len(x) - 2)  # np.interp knows float64 only

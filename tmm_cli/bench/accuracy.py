@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_cli import __version__
 from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
-from tmm_cli.accuracy.methods import FEWER, METHODS, OURS
+from tmm_cli.accuracy.methods import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.vectors import Real
 
@@ -59,8 +59,8 @@ class Accuracy:
         """Where the product misses its targets."""
         slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
         return tuple(
-            f"{row.linkage}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
-            for row in self.rows if row.method == OURS.name
+            f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
+            for row in self.rows if row.method in (OURS.name, TAPED.name)
             for quantity in QUANTITIES if not row.errors[quantity] <= slack * TARGETS[quantity]
         )  # fmt: skip
 

@@ -45,7 +45,7 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":
-        turn = 2 * np.arccos(np.asarray(motion.q).dtype.type(-1))  # in the precision of the motion
+        turn = 2 * np.arccos(motion.q.dtype.type(-1))  # in the precision of the motion
         angle: Real = np.mod(motion.q, turn)
         return angle
     first = strokes.strokes[0] if strokes and strokes.strokes else None
