@@ -121,7 +121,7 @@ def measure(
         worst = {method: errors(solver(true.q), true.exact) for method, solver in solvers.items()}
         times = by_turns({m: s for m, s in solvers.items() if m.timed}, places(true.case, COUNT), repeats)
         rows += [Row(name, m.name, m.family, m.setting, times.get(m), worst[m]) for m in solvers]
-    return Accuracy(tuple(rows), COUNT, repeats, reduced, tuple(absent), _machine())
+    return Accuracy(tuple(rows), COUNT, repeats, reduced, tuple(absent), machine())
 
 
 def by_turns(solvers: dict[Method, Solver], q: Real, repeats: int) -> dict[Method, float]:
@@ -136,7 +136,8 @@ def by_turns(solvers: dict[Method, Solver], q: Real, repeats: int) -> dict[Metho
     return {method: 1e6 * median(times) / len(q) for method, times in found.items()}
 
 
-def _machine() -> dict[str, str]:
+def machine() -> dict[str, str]:
+    """What it was measured on."""
     return {
         "tmm": __version__, "python": platform.python_version(), "numpy": np.__version__,
         "system": f"{platform.system()} {platform.machine()}",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from tmm_cli.cli import bench_accuracy
+from tmm_cli.cli import bench_accuracy, bench_speed
 
 app = typer.Typer(
     name="bench",
@@ -14,6 +14,7 @@ app = typer.Typer(
 )
 
 app.command("accuracy")(bench_accuracy.accuracy)
+app.command("speed")(bench_speed.speed)
 
 
 @app.callback()
