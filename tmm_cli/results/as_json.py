@@ -5,7 +5,7 @@ Arrays have one entry a position, null where a position cannot be reached or is 
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -19,8 +19,9 @@ from tmm_cli.pipeline import Results
 from tmm_cli.problem.chain import ChainProblem
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.as_space import chain_json, space_json
-from tmm_cli.results.reports.cycle import state
+from tmm_cli.results.reports.cycle import states
 from tmm_cli.results.reports.kinematics import mass_centres, named_points
+from tmm_cli.results.text import plain
 from tmm_cli.results.warnings import warnings
 from tmm_cli.strokes import Strokes, output_link
 from tmm_cli.structure.assur import ROMAN, Structure
@@ -31,43 +32,31 @@ from tmm_cli.vectors import Vector
 FORMAT = 1
 
 
-def plain(value: Any) -> Any:
-    """Numbers and arrays as JSON has them: no nan, no infinity."""
-    if isinstance(value, np.ndarray):
-        sound = value.dtype.kind != "f" or bool(np.all(np.isfinite(value)))
-        return value.tolist() if sound else [plain(v) for v in value.tolist()]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, dict):
-        return {key: plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    return value
-
-
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
     """The whole content of result.json as plain data."""
+    return {key: plain(part) for key, part in sections(results)}
+
+
+def sections(results: Results | ChainResults) -> Iterator[tuple[str, Any]]:
+    """The parts of result.json one after the other, with arrays as they are."""
+    yield "tmm", FORMAT
+    yield "problem", _problem(results.problem)
     if isinstance(results, ChainResults):
-        return {"tmm": FORMAT, "problem": _problem(results.problem), "chain": chain_json(results.chain), "warnings": []}
-    problem = results.problem
-    found: dict[str, Any] = {
-        "tmm": FORMAT,
-        "problem": _problem(problem),
-        "structure": _structure(results.structure, results),
-        "space": _space(results),
-    }
+        yield "chain", chain_json(results.chain)
+        yield "warnings", []
+        return
+    yield "structure", _structure(results.structure, results)
+    yield "space", _space(results)
     if results.motion is not None:
-        found |= _range(results)
-        found["positions"] = _positions(results.motion, results)
-        found["kinematics"] = _kinematics(results.motion, results)
+        yield from _range(results).items()
+        yield "positions", _positions(results.motion, results)
+        yield "kinematics", _kinematics(results.motion, results)
     if results.reactions is not None and results.lever is not None:
-        found["forces"] = _forces(results.reactions, results)
-        found["lever"] = {
+        yield "forces", _forces(results.reactions, results)
+        yield "lever", {
             "balancing": results.lever.balancing,
             "difference": results.lever.difference,
-            "limit": problem.lever_limit,
+            "limit": results.problem.lever_limit,
             "holds": results.lever_holds,
             "items": [
                 {"name": i.name, "link": i.link, "kind": "force" if i.end is not None else "couple",
@@ -76,13 +65,12 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
             ],
         }  # fmt: skip
     if results.energy is not None:
-        found["energy"] = _energy(results)
+        yield "energy", _energy(results)
     if results.assemblies is not None:
         from tmm_cli.results.as_assemblies import assemblies_json
 
-        found["assemblies"] = assemblies_json(results.assemblies)
-    found["warnings"] = list(warnings(results))
-    return {key: plain(value) for key, value in found.items()}
+        yield "assemblies", assemblies_json(results.assemblies)
+    yield "warnings", list(warnings(results))
 
 
 def _problem(problem: Problem | ChainProblem) -> dict[str, Any]:
@@ -176,7 +164,7 @@ def _positions(motion: Motion, results: Results) -> dict[str, Any]:
         "rate": motion.rate,
         "placed": motion.placed,
         "moving": motion.moving,
-        "state": [state(results, k) for k in range(len(results.numbers))],
+        "state": states(results),
     }
 
 
