@@ -73,11 +73,11 @@ def _progress(files: Sequence[Any]) -> Iterable[Any]:
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
-def solved(file: str, stage: Stage, positions: Sequence[int] | None) -> Results:
+def solved(file: str, stage: Stage, positions: Sequence[int] | None, of: Sequence[str] = ()) -> Results:
     """Read and compute one file. Raises ProblemError."""
     from tmm_cli import load, solve
 
-    return solve(load(file), stage, positions)
+    return solve(load(file), stage, positions, of)
 
 
 def emit_json(content: dict[str, Any]) -> None:

@@ -37,17 +37,17 @@ def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    whole = at_positions(results, results.closely(DENSE))
+    whole = at_positions(results, results.closely(DENSE), 0)
     points = moving_points(linkage)
     used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
     chosen = detailed(results)
     k = chosen[0] if chosen else int(np.argmax(motion.placed))
-    used += [p for name in points for p in whole.named(name).x]
+    used += [p for name in points for p in whole.spot(name)]
     sheet = Sheet(
         results.problem.title, say("draw.mechanism", count=len(results.numbers)), [*used, *beyond(motion, k, used)]
     )
     for name in points:
-        trajectory(sheet, whole.named(name).x)
+        trajectory(sheet, whole.spot(name))
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
             skeleton(sheet, motion, other)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli import asked
 from tmm_cli.chain import ChainResults
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.linkage import Driver
@@ -20,7 +21,6 @@ from tmm_cli.problem.chain import ChainProblem
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.as_space import chain_json, space_json
 from tmm_cli.results.reports.cycle import states
-from tmm_cli.results.reports.kinematics import mass_centres, named_points
 from tmm_cli.results.text import plain
 from tmm_cli.results.warnings import warnings
 from tmm_cli.strokes import Strokes, output_link
@@ -113,7 +113,7 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
 
 def _range(results: Results) -> dict[str, Any]:
     driver: Driver = results.linkage.driver
-    way, strokes = results.way, results.strokes
+    way = results.way
     assert way is not None
     return {
         "driver": {
@@ -127,6 +127,13 @@ def _range(results: Results) -> dict[str, Any]:
             "limits": [{"at": limit.place, "group": limit.group} for limit in way.limits],
         },
         "turns": way.turns,
+        **({} if results.of else _quality(results)),
+    }
+
+
+def _quality(results: Results) -> dict[str, Any]:
+    strokes = results.strokes
+    return {
         "pressure": [
             {"group": p.group, "link": p.link, "pair": p.pair, "slides": p.slides, "largest": p.largest, "at": p.place,
              "allowed": p.allowed, "holds": p.holds, "transmission": p.transmission, "gain": p.gain, "angles": p.angles}
@@ -169,15 +176,20 @@ def _positions(motion: Motion, results: Results) -> dict[str, Any]:
 
 
 def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
-    linkage = results.linkage
+    linkage, of = results.linkage, results.of
+    points, centres = asked.named_points(linkage), asked.mass_centres(linkage)
+    if of:
+        places = asked.places(linkage, results.kernels, of)
+        points = {name: key for name, key in places.items() if name in points}
+        centres = {name: key for name, key in places.items() if name not in points}
     links = {}
-    for name in linkage.moving:
+    for name in asked.links(linkage, of) if of else linkage.moving:
         t = motion.link(name)
         links[name] = {
             "angle": t.angle, "omega": t.omega, "epsilon": t.epsilon, "first": t.first, "second": t.second
         }  # fmt: skip
     slides = {}
-    for slide in linkage.slides:
+    for slide in () if of else linkage.slides:
         s = motion.slide(slide)
         slides[slide.name] = {
             "runner": slide.runner, "carrier": slide.carrier, "run": s.run, "v": s.v, "a": s.a,
@@ -186,8 +198,8 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
     margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
-        "points": {name: _point(motion.point(*key)) for name, key in named_points(results).items()},
-        "centres": {name: _point(motion.point(*key)) for name, key in mass_centres(results).items()},
+        "points": {name: _point(motion.point(*key)) for name, key in points.items()},
+        "centres": {name: _point(motion.point(*key)) for name, key in centres.items()},
         "links": links,
         "slides": slides,
         "margins": margins,
