@@ -15,9 +15,7 @@ Assemblies = Annotated[
 
 Of = Annotated[
     str,
-    typer.Option(
-        "--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False
-    ),
+    typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
 ]
 
 

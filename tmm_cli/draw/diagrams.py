@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from tmm_cli.cycle import DENSE
 from tmm_cli.draw.sheet import DARK, LANDSCAPE, MM, PORTRAIT, THIN
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import FRAME
@@ -21,7 +22,7 @@ from tmm_cli.problem.dimensions import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOME
 from tmm_cli.results.reports.cycle import output_links, output_motion
 from tmm_cli.words import say
 
-POINTS, MOST_POINTS = 361, 1440  # of a curve over one turn, over a cycle
+MOST_POINTS = 1440  # of a curve over a cycle
 MARKS = 360  # computed positions that are marked on a curve; more of them would hide it
 LINES = (DARK, "#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#c77700", "#00757d", "#8a8a8a")
 STYLES = ("-", "--", "-.", ":")
@@ -68,7 +69,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
 def _points(results: Results) -> int:
     """More points where the cycle has several turns."""
     turns = results.way.turns if results.way is not None and results.way.full else 1
-    return min((POINTS - 1) * turns, MOST_POINTS) + 1
+    return min((DENSE - 1) * turns, MOST_POINTS) + 1
 
 
 def _stem(name: str) -> str:

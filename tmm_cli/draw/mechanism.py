@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.cycle import DENSE
 from tmm_cli.draw.actuators import driver_arrows, driver_name
 from tmm_cli.draw.scheme import beyond, mechanism, moving_points, placer, reach, skeleton, trajectory
 from tmm_cli.draw.sheet import COLOURS, DARK, LOAD, REACTION, Sheet, scale_text
@@ -17,7 +18,6 @@ from tmm_cli.plans.record import balance_name
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.words import say
 
-DENSE = 361  # places of a trajectory
 LOAD_MM = 18.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 SHOWN = 48  # positions drawn thin, at most
 
