@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli import check, explain, forces, kinematics, new, run, schema, schemes, structure
+from tmm_cli.cli import bench, check, explain, forces, kinematics, new, run, schema, schemes, structure
 
 app = typer.Typer(
     name="tmm",
@@ -30,6 +30,7 @@ app.command("explain")(explain.explain)
 app.command("new")(new.new)
 app.command("schema")(schema.schema)
 app.command("schemes")(schemes.schemes)
+app.add_typer(bench.app, name="bench")
 
 
 def _version(asked: bool) -> None:

@@ -59,7 +59,7 @@ def stages(results: Results) -> Iterable[Row]:
     yield row("stages.dead", kernels, scan, 0)
     yield row("stages.pressure", kernels, scan, 0, say("stages.statics"))
     yield row("stages.kinematics", kernels, asked, 2, say("stages.of"))
-    masses, loads = heavy(linkage), [x.name for x in (*linkage.loads, *linkage.springs)]
+    masses, loads = heavy(linkage), [x.name for x in linkage.loads] + [x.name for x in linkage.springs]
     borne = say("stages.inertia", links=", ".join(masses)) if masses else say("stages.no_inertia")
     acting = say("stages.acting", loads=", ".join(loads)) if loads else say("stages.no_loads")
     yield say("stages.forces"), _titles(kernels, kernels), str(asked), say("stages.reactions"), f"{borne}; {acting}"

@@ -1,0 +1,1 @@
+"""Measurements: what the program costs, and what it would cost otherwise."""
