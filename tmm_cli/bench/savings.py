@@ -49,13 +49,13 @@ class Saving:
 def savings(problem: Problem, *, reduced: bool = False) -> Iterator[Saving]:
     """Every saving, measured on a problem. Raises Refused."""
     repeats = FEW if reduced else REPEATS
-    results = solve(problem, "kinematics")
+    results = with_forces(solve(problem, "kinematics"), cycle=False)
     linkage, groups = problem.linkage, results.structure.groups
 
     def compare(name: str, one: Work, other: Work | None = None, undone: Undone = nullcontext, **how: Any) -> Saving:
         return _measured(name, (one, nullcontext), (other or one, undone), repeats, **how)
 
-    yield compare("structure", lambda: solve(problem, "structure"), lambda: solve(problem, "structure").roles)
+    yield compare("structure", lambda: solve(problem, "structure"), lambda: _named(problem))
     places = results.closely(FEW_PLACES if reduced else PLACES)
     first = towards(results.kernels, groups[0].links if groups else ())
     if len(first) < len(results.kernels):
@@ -104,6 +104,12 @@ def _measured(
                 work()
                 best[k] = min(best[k], time.perf_counter() - start)
     return Saving(name, counts, numbers[0], numbers[1], (best[0], best[1]))
+
+
+def _named(problem: Problem) -> object:
+    """Structure with the range of the driver, from which a crank is told from a rocker."""
+    results = solve(problem, "structure")
+    return results.way, results.roles
 
 
 def _at(results: Results, q: Real) -> object:
