@@ -91,6 +91,11 @@ class Mechanism:
         linkage is moved, and where it cannot be assembled yet names come from the pairs alone."""
         return roles(self.linkage, self._turns)
 
+    @property
+    def turned(self) -> bool:
+        """Whether the names took a turn of the linkage."""
+        return "roles" in vars(self) and "_turning" in vars(self)
+
     def _turns(self, link: str) -> bool:
         if not self.assembles:
             return link == self.linkage.driver.link and self.linkage.driver.kind == "turn"
