@@ -55,23 +55,24 @@ def savings(problem: Problem, *, reduced: bool = False) -> Iterator[Saving]:
     def compare(name: str, one: Work, other: Work | None = None, undone: Undone = nullcontext, **how: Any) -> Saving:
         return _measured(name, (one, nullcontext), (other or one, undone), repeats, **how)
 
-    yield compare("structure", lambda: solve(problem, "structure"), lambda: _named(problem))
     places = results.closely(FEW_PLACES if reduced else PLACES)
     first = towards(results.kernels, groups[0].links if groups else ())
+    law = Law(float(places[0]), 1.0, 0.0, 1)
+    if groups:
+        yield compare("structure", lambda: solve(problem, "structure"), lambda: _named(problem))
     if len(first) < len(results.kernels):
-        law = Law(float(places[0]), 1.0, 0.0, 1)
         yield compare(
             "groups", lambda: move(linkage, first, places, law), lambda: move(linkage, results.kernels, places, law)
         )
     else:
         yield Saving("groups", why="one_group")
-    yield compare("positions", lambda: _at(results, places[:1]), lambda: _at(results, places))
     if groups:
+        yield compare("positions", lambda: _at(results, places[:1]), lambda: _at(results, places))
         yield compare("orders", lambda: _quality(problem), undone=all_orders)
-    else:
-        yield Saving("orders", why="no_groups")
+    else:  # only a driver: there is nothing to be solved
+        yield from (Saving(name, why="no_groups") for name in ("structure", "positions", "orders"))
     light, weighed = _light(linkage, 0.0), _light(linkage, NOTHING)
-    yield compare(
+    yield Saving("massless", why="no_groups") if len(linkage.moving) < 2 else compare(
         "massless", lambda: _loaded(results, light), lambda: _loaded(results, weighed), counts="loads",
         size=lambda _, found: int(str(found)),
     )  # fmt: skip
