@@ -33,13 +33,17 @@ def solve(
     problem: Problem,
     stage: Literal["structure", "kinematics", "forces"] = "forces",
     positions: Sequence[int] | None = None,
+    of: Sequence[str] = (),
 ) -> Results:
-    """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError."""
+    """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError.
+
+    of: points, links, centres of mass (E, 5, S3) that alone are asked for; only groups on the way to them are solved.
+    """
     from tmm_cli.pipeline import solve as compute
     from tmm_cli.refused import Refused
 
     try:
-        return compute(problem, stage, positions)
+        return compute(problem, stage, positions, of)
     except Refused as error:
         from tmm_cli.problem.refusals import refusal
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.vectors import Real
 
-KEPT = ("linkage", "kernels", "group", "pair", "driver", "finer", "where")  # what is no array over positions
+KEPT = ("linkage", "kernels", "group", "pair", "driver", "finer", "where", "order")  # what is no array over positions
 
 Part = TypeVar("Part")
 

@@ -87,7 +87,8 @@ def _write(measured: Speed, folder: Path) -> str:
     """speed.json and the chart; their names."""
     from tmm_cli.bench.chart_speed import chart
     from tmm_cli.draw.sheet import picture
-    from tmm_cli.results.files import json_bytes, write_whole
+    from tmm_cli.results.files import write_whole
+    from tmm_cli.results.text import json_bytes
 
     contents = {"speed.json": json_bytes(measured.to_dict()), "speed.png": picture(chart(measured), "png")}
     for name, content in contents.items():

@@ -13,6 +13,7 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from tmm_cli.chain import ChainResults
     from tmm_cli.pipeline import Results, Stage
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
@@ -72,11 +73,11 @@ def _progress(files: Sequence[Any]) -> Iterable[Any]:
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
-def solved(file: str, stage: Stage, positions: Sequence[int] | None) -> Results:
+def solved(file: str, stage: Stage, positions: Sequence[int] | None, of: Sequence[str] = ()) -> Results:
     """Read and compute one file. Raises ProblemError."""
     from tmm_cli import load, solve
 
-    return solve(load(file), stage, positions)
+    return solve(load(file), stage, positions, of)
 
 
 def emit_json(content: dict[str, Any]) -> None:
@@ -84,12 +85,18 @@ def emit_json(content: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
 
 
+def emit_results(results: Results | ChainResults) -> None:
+    """The content of result.json on standard output, as it comes."""
+    from tmm_cli.results.as_json import sections
+    from tmm_cli.results.text import json_text
+
+    sys.stdout.writelines(json_text(sections(results)))
+
+
 def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None) -> int:
     """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code."""
     if as_json:
-        from tmm_cli.results.as_json import to_json
-
-        emit_json(to_json(results))
+        emit_results(results)
     else:
         show(results, names)
     if out is not None:
@@ -106,13 +113,12 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
 
 def show(results: Results, names: Iterable[str]) -> None:
     """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
-    from tmm_cli.results.reports import tables
+    from tmm_cli.results.reports import walk
     from tmm_cli.results.terminal import show as print_table
 
-    screen, names = console(), set(names)
-    for table in tables(results):
-        if table.name in names:
-            print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
+    screen = console()
+    for table in walk(results, set(names)):
+        print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
 
 
 def detailed_rows(results: Results, table: Any) -> set[int]:

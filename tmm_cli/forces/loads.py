@@ -8,7 +8,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.springs import spring_loads
 from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
-from tmm_cli.strokes import Strokes, output_run
+from tmm_cli.strokes import Strokes, output_place
 from tmm_cli.vectors import Real
 
 
@@ -54,7 +54,7 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
         cycle = strokes.cycle if strokes else 2 * np.pi
         return np.mod(driver.sense * (motion.q - start) + 1e-12, cycle) - 1e-12
     assert strokes is not None and first is not None
-    run: Real = output_run(motion, strokes.link)[0] - first.low
+    run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
     way: Real = run * np.sign(first.run)

@@ -50,7 +50,7 @@ def tables(results: Results) -> Iterable[Table]:
             columns.append(Column(say(f"cycle.{key}", link=link), values, dimension))
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))
+        columns.append(Column(say("word.state"), states(results)))
     yield Table("cycle", say("cycle.title"), tuple(columns))
 
 
@@ -116,7 +116,15 @@ def _balance(results: Results) -> Iterable[Column]:
     yield difference
 
 
-def state(results: Results, k: int) -> str:
+def states(results: Results) -> list[str]:
+    """What is wrong with each position, or nothing."""
+    motion = results.motion
+    assert motion is not None
+    lost = ~motion.moving | results.locked
+    return [_state(results, k) if wrong else "" for k, wrong in enumerate(lost.tolist())]
+
+
+def _state(results: Results, k: int) -> str:
     """What is wrong with a position, or nothing."""
     motion = results.motion
     assert motion is not None
