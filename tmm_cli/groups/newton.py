@@ -55,7 +55,7 @@ class Newton(Kernel):
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
 
     def again(self, linkage: Linkage) -> Newton:
-        return replace(Newton.of(self.group, linkage), start=self.start, track=self.track)
+        return replace(Newton.of(self.group.again(linkage), linkage), start=self.start, track=self.track)
 
     @property
     def followed(self) -> Track | None:
