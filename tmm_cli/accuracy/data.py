@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from tmm_cli.linkage import Linkage
+from tmm_cli.vectors import Real
 
 Record = TypeVar("Record")
 Place = tuple[str, str, str]  # what it is of (links, slides, loads, springs), its name, and the field or point
@@ -17,10 +18,13 @@ NOTHING = 1e-12  # of the linkage's size: a coordinate below that is zero but fo
 
 @dataclass(frozen=True)
 class Length:
-    """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed."""
+    """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed.
+
+    along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0.
+    """
 
     link: str
-    along: complex
+    along: complex | float
     value: float
     places: tuple[Place, ...]
 
@@ -35,6 +39,14 @@ def lengths(linkage: Linkage) -> tuple[Length, ...]:
             if abs(part) > least:
                 found.setdefault((link, along, part), []).append(place)
     return tuple(Length(link, along, value, tuple(places)) for (link, along, value), places in found.items())
+
+
+def angles(linkage: Linkage) -> tuple[Length, ...]:
+    """The angles of guides and between links that slide on each other, as lengths are given."""
+    return tuple(
+        Length(slide.carrier, 1.0, float(getattr(slide, part)), (("slides", slide.name, part),))
+        for slide in linkage.slides for part in ("direction", "turned")
+    )  # fmt: skip
 
 
 def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
@@ -71,6 +83,14 @@ def _vectors(linkage: Linkage) -> Any:
         if not spring.turns:
             yield spring.i, ("springs", spring.name, "at_i"), spring.at_i
             yield spring.j, ("springs", spring.name, "at_j"), spring.at_j
+
+
+def shaken(linkage: Linkage, q: Real, trial: int) -> tuple[Linkage, Real]:
+    """The linkage and places of its driver with every number up or down by a unit of its last place, at random."""
+    random = np.random.default_rng(trial)
+    for length in (*lengths(linkage), *angles(linkage)):
+        linkage = changed(linkage, length, float(random.choice((-1, 1)) * np.spacing(abs(length.value))))
+    return linkage, q + random.choice((-1, 1), np.shape(q)) * np.spacing(np.abs(q))
 
 
 def widened(record: Record) -> Record:

@@ -4,11 +4,14 @@ Every value is computed once more by the same stages in longdouble, from the dec
 difference between float64 and longdouble is the true error to about 1 %. What it leaves out is the error of the
 longdouble value, which is a few units of its last place of all that the value responds to:
 
-    bound = 2 |y - y_wide| + u |y| + 8 u_wide kappa,    u = 2^-53
+    bound = 2 |y - y_wide| + u |y| + 2 u_wide kappa,    u = 2^-53
 
 with kappa, the response of y per unit relative change of the data, from changing every length alone. Values near dead
 positions that were taken from longdouble already have the last two terms only, which is their true error again. Where
-longdouble is no wider than double the bound is 4 u (kappa + |y|), which good formulas keep within.
+longdouble is no wider than double the data are shaken by a unit of their last place, all at once and at random, which
+makes most roundings fall out anew; the bound is then 3 times the largest change of y in some such trials, + 4 u of the
+largest value of its kind at the position (after J. Vignes, A stochastic arithmetic for reliable scientific computation,
+Math. Comput. Simul. 35 (1993)). It holds as the other does, and is wider.
 """
 
 from __future__ import annotations
@@ -19,10 +22,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.accuracy.data import Length, changed, lengths, widened
-from tmm_cli.extended import WIDER, near_dead
+from tmm_cli.accuracy.data import Length, angles, changed, lengths, shaken, widened
+from tmm_cli.extended import WIDER, near_dead, refined
 from tmm_cli.groups.base import Kernel
-from tmm_cli.linkage import Linkage, Request
+from tmm_cli.linkage import FRAME, Linkage, Request
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.pipeline import Results, with_forces
 from tmm_cli.problem.record import Problem
@@ -37,10 +40,11 @@ if TYPE_CHECKING:
 U = 2.0**-53
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
-ROUNDINGS = 8  # of longdouble, in units of u_wide kappa
-GOAL = 4  # of float64, in units of u (kappa + |y|)
+ROUNDINGS = 2  # of longdouble, in units of u_wide kappa
+TRIALS, SPREAD = 5, 3  # with shaken data; a bound in units of the largest change that they make
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
 CLOSE = 2.0**-7  # of the square of the margin, where it is near one
+LEAST = 2.0**-56  # of a length: steps below that are rounding in longdouble too
 CHUNK = 1500  # positions at once
 
 Cells = Mapping[Hashable, Real]  # one value a position
@@ -67,13 +71,14 @@ def judged(
     mu: float = float("nan"),
     blur: Real | float = 0.0,
     turning: Callable[[Hashable], bool] = lambda key: False,
+    kind: Callable[[Hashable], Hashable] = lambda key: key,
     wider: bool = WIDER,
 ) -> Digits:
     """Digits of what `of` reads out of results with a motion, at all their positions.
 
     mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m). turning: whether a value is an angle, a full turn from itself. wider: False is for machines whose
-    longdouble is a double.
+    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are sums of parts of one size.
+    wider: False is for machines whose longdouble is a double.
     """
     motion = results.motion
     assert motion is not None
@@ -82,7 +87,7 @@ def judged(
         part.update({key: np.full(np.shape(value), np.nan) for key, value in values.items()})
     blur = np.broadcast_to(blur, np.shape(motion.q))
     for chosen, near in _chunks(results, wider):
-        _judge(results, of, values, found, (chosen, near, wider), blur[chosen], turning)
+        _judge(results, of, values, found, (chosen, near, wider), blur[chosen], (turning, kind))
     return found
 
 
@@ -91,17 +96,25 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel,
     problem = Problem("", "", linkage, Request(places=tuple(q.tolist())), UnitSystem())
     lead = linkage.driver
     law = Law(linkage.sketch.at if linkage.others else float(q[0]), lead.rate, lead.acceleration, lead.sense)
-    results = Results(problem, structure, {}, kernels, numbers=tuple(range(len(q))), motion=move(linkage, kernels, q, law))
+    motion = move(linkage, kernels, q, law)
+    where = near_dead(motion)
+    if WIDER and bool(np.any(where)):
+        motion = refined(motion, widened(linkage), q[where].astype(np.longdouble), law, where)
+    results = Results(problem, structure, {}, kernels, numbers=tuple(range(len(q))), motion=motion)
     return with_forces(results, cycle=False)
 
 
 def bounds(results: Results, *, wider: bool = WIDER) -> tuple[Cells, Digits]:
     """Values and their digits, of a linkage whose numbers are exact as they stand when it has no file (see `bare`).
 
-    Keys are (quantity, name, component): x, v, a of points ("A of 1") and centres of mass ("S1"), angle, omega, epsilon
-    of links, force and couple of pairs, balancing of drivers.
+    Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
+    links, force and couple of pairs, balancing of drivers.
     """
-    return quantities(results), judged(results, quantities, turning=_turns, wider=wider)
+    return quantities(results), judged(results, quantities, turning=_turns, kind=_quantity, wider=wider)
+
+
+def _quantity(key: Hashable) -> Hashable:
+    return key[0] if isinstance(key, tuple) else key
 
 
 def _turns(key: Hashable) -> bool:
@@ -117,19 +130,17 @@ def quantities(results: Results) -> Cells:
         for component, part in (("x", value.real), ("y", value.imag)) if np.iscomplexobj(value) else (("", value),):
             found[quantity, name, component] = part
 
+    fixed = results.linkage.links[FRAME].points
     for name, link in results.linkage.links.items():
-        if name == "0":
+        if name == FRAME:
             continue
         turning = motion.link(name)
         for quantity in ("angle", "omega", "epsilon"):
             put(quantity, name, getattr(turning, quantity))
-        for point in link.points:
-            moved = motion.named_on(name, point)
+        moved = {point: motion.named(point) for point in link.points if point not in fixed}
+        for point, motion_of in {**moved, f"S{name}": motion.centre(name)}.items():
             for quantity in "xva":
-                put(quantity, f"{point} of {name}", getattr(moved, quantity))
-        centre = motion.centre(name)
-        for quantity in "xva":
-            put(quantity, f"S{name}", getattr(centre, quantity))
+                put(quantity, point, getattr(motion_of, quantity))
     if results.reactions is not None:
         for reaction in results.reactions.all:
             put("force", reaction.pair.name, reaction.force)
@@ -158,10 +169,10 @@ def _judge(
     found: Digits,
     where: tuple[Real, bool, bool],
     blur: Real,
-    turning: Callable[[Hashable], bool],
+    sorts: tuple[Callable[[Hashable], bool], Callable[[Hashable], Hashable]],
 ) -> None:
     """Fill in the digits of the chosen positions."""
-    motion = results.motion
+    motion, (turning, kind) = results.motion, sorts
     assert motion is not None
     chosen, near, wider = where
     first = results.start if results.way is not None else float(motion.q[0])
@@ -182,37 +193,46 @@ def _judge(
 
     def slope(linkage: Linkage, q: Real, by: float) -> Cells:
         moved = of(at(base, linkage, q, first))
-        nothing = np.zeros(len(chosen))
         with np.errstate(invalid="ignore"):
             return {key: _gap(moved.get(key, nothing), value, turning(key)) / by for key, value in start.items()}
 
     step = _step(base, near)
+    nothing = np.zeros(len(chosen))
     response = {key: np.zeros(len(chosen)) for key in values}
     share, paper = ({key: np.zeros(len(chosen)) for key in values} for _ in range(2))
     data = lengths(results.linkage)
     size = max((abs(length.value) for length in data), default=1.0)
-    for length in data:
-        by = base.motion.q.dtype.type(step * max(abs(length.value), _size(data, length.link)))
+    for length in (*data, *(angles(results.linkage) if near else ())):
+        turns = not isinstance(length.along, complex)
+        by = base.motion.q.dtype.type(step * (1.0 if turns else max(abs(length.value), _size(data, length.link))))
         slopes = slope(changed(base.linkage, length, by), base.motion.q, float(by))
         for key in values:
             if key in slopes:
                 here = slopes[key].astype(float)
                 response[key] += here * abs(length.value)
+                if turns:
+                    continue
                 share[key] += here * (SHARE * abs(length.value))
                 paper[key] += here * (PAPER * found.mu)
+    spread, largest = ({key: nothing for key in keys} for keys in (values, map(kind, values)))
+    for key, value in start.items():
+        largest[kind(key)] = np.fmax(largest[kind(key)], np.abs(value).astype(float))
+    for trial in range(0 if wider else TRIALS):
+        moved = of(at(base, *shaken(base.linkage, motion.q[chosen], trial), first))
+        for key, value in start.items():
+            spread[key] = np.maximum(spread[key], _gap(moved.get(key, nothing), value, turning(key)))
     reach = 1.0 if results.linkage.driver.kind == "turn" else size
     by_place = slope(base.linkage, base.motion.q + base.motion.q.dtype.type(step * reach), step * reach)
     for key, value in values.items():
         y = np.abs(np.asarray(value[..., chosen], float))
-        by_q = by_place.get(key, np.zeros(len(chosen))).astype(float)
-        nothing = np.zeros(len(chosen))
+        by_q = by_place.get(key, nothing).astype(float)
         kappa = response[key] + by_q * (np.abs(motion.q[chosen].astype(float)) + reach * near)
         if wider:
             fine = float(np.finfo(np.longdouble).eps) / 2
             away = _gap(np.asarray(value[chosen]), exactly.get(key, nothing), turning(key)).astype(float)
             bound = 2 * away + U * y + ROUNDINGS * fine * kappa
         else:
-            bound = GOAL * U * (kappa + y)
+            bound = SPREAD * spread[key] + 4 * U * largest[kind(key)]
         with np.errstate(invalid="ignore"):
             bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         found.bound[key][chosen] = np.where(np.isfinite(y), bound, np.nan)
@@ -236,7 +256,7 @@ def _step(results: Results, near: bool) -> float:
     if not near:
         return STEP
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
-    return min(STEP, CLOSE * least**2)
+    return min(STEP, max(CLOSE * least**2, LEAST))
 
 
 def exact(results: Results) -> Linkage:
