@@ -144,7 +144,9 @@ class Table:
     values: tuple[float, ...]
 
     def __call__(self, argument: Real) -> Real:
-        found: Real = np.interp(argument, self.arguments, self.values) if argument.dtype == float else self._wide(argument)
+        found: Real = (
+            np.interp(argument, self.arguments, self.values) if argument.dtype == float else self._wide(argument)
+        )
         return found
 
     def _wide(self, argument: Real) -> Real:

@@ -13,7 +13,8 @@ from tmm_cli.assemblies import DEAD, Assemblies, Assembly, GroupAssemblies, list
 from tmm_cli.draw.labels import Ground, Label
 from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.scene import Form, Scene, form
-from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, THIN, Sheet, picture, scale_text
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, picture, scale_text
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP
 from tmm_cli.draw.structure import circles, colours, grounds, higher_pairs, names, sliding, spot
 from tmm_cli.draw.symbols import body, settle, symbol_size
 from tmm_cli.linkage import FRAME

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from tmm_cli.draw.sheet import DARK, LANDSCAPE, MM, PORTRAIT, THIN
+from tmm_cli.draw.sheet import DARK, MM, THIN
+from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion

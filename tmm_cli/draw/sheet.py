@@ -13,12 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
 from tmm_cli.draw.labels import Ground, Label
-from tmm_cli.plans.record import extent, round_scale
+from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, on_paper
 from tmm_cli.words import say
 
 MM = 1 / 25.4  # inches
-LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)
-MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
@@ -34,15 +32,10 @@ mpl.rcParams["font.family"] = "DejaVu Sans"
 class Sheet:
     """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
 
-    def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = 22.0) -> None:
+    def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = PAD) -> None:
         found = [p for p in points if np.isfinite(p)] or [0j]
-        _, width, height, middle = extent(found)
-        scales = {
-            paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
-            for paper in (LANDSCAPE, PORTRAIT)
-        }
-        self.paper = min(scales, key=lambda paper: (scales[paper], paper[1]))
-        self.mu = scales[self.paper]
+        middle = extent(found)[3]
+        self.paper, self.mu = on_paper(found, pad)
         across, up = self.paper[0] - 2 * MARGIN, self.paper[1] - 2 * MARGIN - STRIP
         self.origin = complex(MARGIN + across / 2, MARGIN + up / 2) - middle / self.mu
         self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from tmm_cli.draw.actuators import driver_name
 from tmm_cli.draw.labels import Label, extent
 from tmm_cli.draw.scene import BEYOND, BOX, Form, Scene, fitted, form
-from tmm_cli.draw.sheet import DARK, LANDSCAPE, MARGIN, PORTRAIT, STRIP, Sheet
+from tmm_cli.draw.sheet import DARK, Sheet
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP
 from tmm_cli.draw.symbols import (
     PALETTE,
     body,

@@ -66,6 +66,21 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
     return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
 
 
+LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # mm
+MARGIN, STRIP, PAD = 12.0, 16.0, 22.0  # mm: edge of the drawing, height of the title strip, room for labels
+
+
+def on_paper(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
+    """The sheet of A4 (mm) on which points are largest, and their scale there (SI a mm)."""
+    _, width, height, _ = extent(list(points) or [0j])
+    scales = {
+        paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
+        for paper in (LANDSCAPE, PORTRAIT)
+    }
+    best = min(scales, key=lambda paper: (scales[paper], paper[1]))
+    return best, scales[best]
+
+
 def subscript(text: str) -> str:
     """Figures below the line where the name is a number, else in brackets."""
     return text.translate(_BELOW) if text.isdecimal() and text.isascii() else f"({text})"
