@@ -156,7 +156,8 @@ class Table:
             return np.full(np.shape(argument), size[0])
         low = np.clip(np.searchsorted(at, argument, side="right") - 1, 0, len(at) - 2)
         share = np.clip((argument - at[low]) / (at[low + 1] - at[low]), 0, 1)
-        return size[low] + share * (size[low + 1] - size[low])
+        found: Real = size[low] + share * (size[low + 1] - size[low])
+        return found
 
 
 @dataclass(frozen=True)

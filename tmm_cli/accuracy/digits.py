@@ -77,8 +77,8 @@ def judged(
     """Digits of what `of` reads out of results with a motion, at all their positions.
 
     mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are sums of parts of one size.
-    wider: False is for machines whose longdouble is a double.
+    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are
+    sums of parts of one size. wider: False is for machines whose longdouble is a double.
     """
     motion = results.motion
     assert motion is not None
@@ -123,7 +123,8 @@ def _turns(key: Hashable) -> bool:
 
 def quantities(results: Results) -> Cells:
     """The motion and reactions of results, by quantity, name and component."""
-    motion, found = results.motion, {}
+    motion = results.motion
+    found: dict[Hashable, Real] = {}
     assert motion is not None
 
     def put(quantity: str, name: str, value: Real) -> None:
@@ -214,7 +215,7 @@ def _judge(
                     continue
                 share[key] += here * (SHARE * abs(length.value))
                 paper[key] += here * (PAPER * found.mu)
-    spread, largest = ({key: nothing for key in keys} for keys in (values, map(kind, values)))
+    spread, largest = (dict.fromkeys(keys, nothing) for keys in (values, map(kind, values)))
     for key, value in start.items():
         largest[kind(key)] = np.fmax(largest[kind(key)], np.abs(value).astype(float))
     for trial in range(0 if wider else TRIALS):
@@ -241,7 +242,7 @@ def _judge(
 
 
 def _gap(one: Real, other: Real, turns: bool) -> Real:
-    away = np.abs(one - other)
+    away: Real = np.abs(one - other)
     return np.minimum(away, np.abs(2 * np.pi - away)) if turns else away
 
 
@@ -279,8 +280,8 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         strokes = _begun(strokes, linkage, kernels, q)
     found = replace(
-        results, problem=replace(results.problem, linkage=linkage), structure=results.structure.again(linkage), kernels=kernels, motion=moved, numbers=numbers,
-        strokes=strokes, pressure=_pressed(results, moved),
+        results, problem=replace(results.problem, linkage=linkage), structure=results.structure.again(linkage),
+        kernels=kernels, motion=moved, numbers=numbers, strokes=strokes, pressure=_pressed(results, moved),
     )  # fmt: skip
     return found if results.reactions is None else with_forces(found, cycle=False)
 

@@ -14,13 +14,12 @@ from tmm_cli.draw.labels import Ground, Label
 from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.scene import Form, Scene, form
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, picture, scale_text
-from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP
 from tmm_cli.draw.structure import circles, colours, grounds, higher_pairs, names, sliding, spot
 from tmm_cli.draw.symbols import body, settle, symbol_size
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results
 from tmm_cli.places import place
-from tmm_cli.plans.record import extent, round_scale
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP, extent, round_scale
 from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.words import say
 

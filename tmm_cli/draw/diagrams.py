@@ -11,12 +11,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tmm_cli.draw.sheet import DARK, MM, THIN
-from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_places
-from tmm_cli.plans.record import balance_name, reaction_name
+from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, balance_name, reaction_name
 from tmm_cli.pressure import angle, followers, named
 from tmm_cli.problem.dimensions import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension
 from tmm_cli.results.reports.cycle import output_links, output_motion

@@ -14,7 +14,6 @@ from tmm_cli.draw.actuators import driver_name
 from tmm_cli.draw.labels import Label, extent
 from tmm_cli.draw.scene import BEYOND, BOX, Form, Scene, fitted, form
 from tmm_cli.draw.sheet import DARK, Sheet
-from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP
 from tmm_cli.draw.symbols import (
     PALETTE,
     body,
@@ -32,6 +31,7 @@ from tmm_cli.draw.wheels import draw
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import Motion
 from tmm_cli.pipeline import Results, at_positions
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, STRIP
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.structure.assur import ROMAN, Group, Pair, Structure
 from tmm_cli.vectors import Real, dot

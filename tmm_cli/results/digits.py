@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.digits import PAPER, U, Digits, judged
+from tmm_cli.accuracy.digits import PAPER, Digits, U, judged
 from tmm_cli.accuracy.searches import Searched, searched
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results, at_positions
@@ -45,11 +45,12 @@ class Trusted:
         columns = []
         for k, column in enumerate(table.columns):
             if column.dimension is not None and keys is not None:
-                parts = {part: self._of(part, keys[k]) for part in PARTS}
+                parts: dict[str, Any] = {part: self._of(part, keys[k]) for part in PARTS}
                 columns.append(replace(column, **parts))
             elif column.dimension is not None and (False, table.name, column.header) in self.found.bound:
                 key = (False, table.name, column.header)
-                columns.append(replace(column, **{part: getattr(self.found, part)[key] for part in PARTS}))
+                parts = {part: getattr(self.found, part)[key] for part in PARTS}
+                columns.append(replace(column, **parts))
             else:
                 columns.append(column)
         judged_table = replace(table, columns=tuple(columns))
@@ -92,10 +93,9 @@ def judged_tables(tables: Iterable[Table], found: Trusted | None) -> tuple[Table
 def trusted(results: Results) -> Trusted:
     """Judge all numbers of results that have a motion."""
     assert results.motion is not None
-    found = searched(results, _single)
-    digits = judged(
-        results, cells, mu=_mu(results), blur=found.blur + 3 * U * np.abs(results.motion.q), turning=_turning
-    )
+    mu = _mu(results)
+    found = searched(results, _single, mu)
+    digits = judged(results, cells, mu=mu, blur=found.blur + 3 * U * np.abs(results.motion.q), turning=_turning)
     for key, bound in digits.bound.items():
         if _turning(key):  # no direction is farther from another one than half a turn
             digits.bound[key] = np.minimum(bound, np.pi)
