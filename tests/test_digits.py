@@ -1,8 +1,8 @@
-"""Every number carries a bound of its error: against 60 to 120 digits, on all classes, near dead positions, of any size.
+"""Every number has a bound of its error: against 60 and 120 digits, in all classes, near dead positions, of any size.
 
 Width of a bound: how many times larger it is than the true error, or than a quarter of the last place of the number
-where the error is less (an answer that is right by accident cannot be told from one that is right by that much). Numbers
-that are exact are not counted.
+where the error is less (an answer that is right by accident cannot be told from one that is right by that much).
+Numbers that are exact are not counted.
 """
 
 from __future__ import annotations
@@ -204,8 +204,7 @@ def test_sensitivity_is_that_of_a_larger_change_of_the_data():
     for length in lengths(problem.linkage):
         by = 1e-3 * abs(length.value)
         moved = [
-            cells(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by))))
-            for sign in (1, -1)
+            cells(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by)))) for sign in (1, -1)
         ]
         for key in base:
             if key[1] == "link-motion" and not key[0]:

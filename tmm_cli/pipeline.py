@@ -178,20 +178,28 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import losses, rub
+        from tmm_cli.forces.friction import rub
 
         rubbed = rub(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
-            whole = at_positions(results, results.closely(CYCLE + 1))
-            acting = applied(whole, results.strokes)
-            everywhere = rub(whole, results.structure, acting, react(whole, results.structure, acting))
-            lost = losses(everywhere, whole)
+            lost = cycle_losses(results)
     drivers = power(motion, reactions)
     return replace(
         results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
         energy=energy(motion, loads, drivers),
     )  # fmt: skip
+
+
+def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
+    """What friction takes over the cycle, summed up over so many places."""
+    from tmm_cli.forces.friction import losses, rub
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import react
+
+    whole = at_positions(results, results.closely(places + 1))
+    acting = applied(whole, results.strokes)
+    return losses(rub(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
 
 
 def at_positions(results: Results, q: Real) -> Motion:

@@ -19,7 +19,7 @@ from tmm_cli.extended import WIDER
 from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pipeline import Results
+from tmm_cli.pipeline import CYCLE, Results, cycle_losses
 from tmm_cli.pressure import NOTHING, angle, followers
 from tmm_cli.strokes import RESTS, Strokes, Travel, output_run
 from tmm_cli.vectors import Real
@@ -98,6 +98,8 @@ def _shifts(results: Results, found: Searched) -> Iterator[Shift]:
             own = {"start": bound, "length": bound + after[k], "low": lows[k], "run": lows[k] + high[k]}
             for part, by in own.items():
                 yield _shifted(float(by), partial(_with_stroke, results, number, k, part))
+    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
+        yield replace(results, losses=cycle_losses(results, CYCLE // 2)), 1.0
     for k, travel in enumerate(results.travels):
         for part, by in wide.travel(travel).items():
             yield _shifted(by, partial(_with, results, "travels", k, part))
