@@ -67,7 +67,9 @@ class Trusted:
         rows = [(table.name, *row) for table in tables for row in _worst(table)]
         keys = ("digits.table", "digits.column", "digits.bound", "digits.true", "digits.lengths", "digits.paper")
         columns = tuple(
-            Column(say(key), [row[k] for row in rows], None if k < 2 else NUMBER, digits=2)
+            Column(say(key), [row[k] for row in rows])
+            if k < 2
+            else Column(say(key), [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2)
             for k, key in enumerate(keys)
         )  # fmt: skip
         return Table("digits", say("digits.title"), columns, notes=(_scale(self.digits.mu),))
@@ -214,28 +216,35 @@ def _short(values: Real) -> list[float]:
 
 
 def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
-    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %."""
+    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %.
+
+    Of a table in which every row has a unit of its own, the same of each row.
+    """
+    rows = table.columns[-1].header == say("word.unit")
     for column in table.columns:
         if column.bound is None:
             continue
-        size = _most(_array(column))
-        bound, share, paper = (_most(getattr(column, part)) / (size or 1.0) for part in PARTS)
-        if size > 0 and bound < 1:  # else it is nothing but rounding
-            true = np.floor(-np.log10(2 * max(bound, U)))
-            yield column.header, bound, true, 100 * share, 100 * paper
+        digits = [_array(column), *(getattr(column, part) for part in PARTS)]
+        for k, name in enumerate(table.columns[0].values) if rows else [(slice(None), column.header)]:
+            size, bound, share, paper = (_most(values[k]) for values in digits)
+            if size > 0 and bound < size:  # else it is nothing but rounding
+                true = np.floor(-np.log10(2 * max(bound / size, U)))
+                yield name, bound / size, true, 100 * share / size, 100 * paper / size
 
 
-def _most(values: Real) -> float:
-    values = np.abs(np.asarray(values, dtype=float))
-    return float(np.max(values, where=np.isfinite(values), initial=0.0))
+def _most(values: Any) -> float:
+    """The largest number; nan where there is none."""
+    values = np.abs(np.atleast_1d(np.asarray(values, dtype=float)))
+    values = values[np.isfinite(values)]
+    return float(np.max(values)) if values.size else float("nan")
 
 
 def _note(table: Table, mu: float) -> str:
     rows = list(_worst(table))
     if not rows:
         return ""
-    bound, share, paper = (max(rows, key=lambda row: row[k]) for k in (1, 3, 4))
-    if share[3] == 0:
+    bound, share, paper = (max(rows, key=lambda row: np.nan_to_num(row[k])) for k in (1, 3, 4))
+    if not share[3] > 0:
         return say("digits.note_rounding", bound=f"{bound[1]:.1e}")
     return say(
         "digits.note", bound=f"{bound[1]:.1e}", lengths=f"{share[3]:.2g}", by_lengths=share[0], paper=f"{paper[4]:.2g}",

@@ -66,9 +66,9 @@ WORDS: dict[str, str] = {
     "digits.true": "true digits",
     "digits.lengths": "change by 0.1 % of lengths, %",
     "digits.paper": "change by 0.5 mm on paper, %",
-    "digits.note": "Of its largest value a column has an error by rounding of at most {bound}; lengths 0.1 % off "
-    "change it by up to {lengths} % ({by_lengths}), 0.5 mm on paper by up to {paper} % ({by_paper}).",
-    "digits.note_rounding": "Of its largest value a column has an error by rounding of at most {bound}.",
+    "digits.note": "Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to {lengths} % "
+    "({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper}).",
+    "digits.note_rounding": "Rounding: at most {bound} of the largest value of a column.",
     "digits.scale": "\u00b1 lengths: when every length is 0.1 % off; \u00b1 paper: when every coordinate is {mm} mm "
     "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first order.",
     "digits.beside_bound": "\u00b1 rounding",
