@@ -22,13 +22,13 @@ from test_commands import ROOT, SHAPER, described, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.accuracy.data import changed, lengths
-from tmm_cli.accuracy.digits import bare, bounds
+from tmm_cli.accuracy.digits import at, bare, bounds, exact
 from tmm_cli.accuracy.searches import searched
 from tmm_cli.assembly import assemble
 from tmm_cli.extended import WIDER
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
 from tmm_cli.quality import find_range
-from tmm_cli.results.digits import cells, trusted
+from tmm_cli.results.digits import cells, computed_tables, trusted
 from tmm_cli.results.table import true_digits
 from tmm_cli.structure.assur import analyse
 
@@ -255,3 +255,18 @@ def test_result_json_has_a_bound_in_the_place_of_every_number():
         x = digits[part]["kinematics"]["points"]["E"]["x"]["x"]
         assert len(x) == len(result["positions"]["number"]) and all(v is None or v >= 0 for v in x)
     assert digits["bound"]["output"]["travel"] < 1e-15 < digits["lengths"]["output"]["travel"] < 0.01
+
+
+def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_hold():
+    problem = load(str(SHAPER))
+    results = solve(replace(problem, request=replace(problem.request, count=2900)), "kinematics")
+    found = trusted(results)
+    assert len(found.chosen) < 800
+    (table,) = (t for t in computed_tables(results) if t.name == "slides")
+    told = found.table(table)
+    wide = cells(at(results, exact(results), results.motion.q.astype(np.longdouble), results.start))
+    for header in ("s", "v relative", "a relative"):
+        column = next(c for c in told.columns if c.header == header)
+        expected = [wide[False, "slides", header, 0, name, 0] for name in ("A'", "x")]
+        error = np.abs(column.values - np.stack(expected, axis=1).ravel())
+        assert np.all(error <= column.bound), header

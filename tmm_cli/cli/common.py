@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from tmm_cli.pipeline import Results, Stage
     from tmm_cli.results.digits import Trusted
+    from tmm_cli.results.table import Table
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 
@@ -128,12 +129,12 @@ def show(results: Results, names: Iterable[str], found: Trusted | None = None, d
     from tmm_cli.results.terminal import show as print_table
 
     screen, names = console(), {*names, "digits"} if digits else set(names)
-    shown = tables(results)
+    shown: Iterable[Table] = tables(results)
     if found is not None:
         from tmm_cli.results.digits import beside, judged_tables
 
         shown = judged_tables(shown, found)
-        shown = tuple(beside(table) for table in shown) if digits else shown
+        shown = map(beside, shown) if digits else shown
     for table in shown:
         if table.name in names:
             print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)

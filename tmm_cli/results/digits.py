@@ -7,7 +7,7 @@ lengths too, and compared number by number; so no quantity can be forgotten, and
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 
 from tmm_cli.accuracy.digits import PAPER, Digits, U, judged
 from tmm_cli.accuracy.searches import Searched, searched
+from tmm_cli.extended import near_dead
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results, at_positions
 from tmm_cli.plans.record import on_paper
@@ -23,25 +24,34 @@ from tmm_cli.problem.dimensions import ANGLE, NUMBER
 from tmm_cli.results.as_json import numbers
 from tmm_cli.results.reports import REPORTS
 from tmm_cli.results.table import Column, Table
+from tmm_cli.splice import taken
 from tmm_cli.vectors import Real
 from tmm_cli.words import say
 
 COMPUTED = ("motion", "reactions", "lever", "energy")  # parts whose tables hold computed numbers
 DENSE = 361  # places of a trajectory
+LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
+BETWEEN = 4.0  # times the largest bound of the judged positions about: what holds for those between them
 PARTS = ("bound", "lengths", "paper")
 
 
 @dataclass(frozen=True)
 class Trusted:
-    """Digits of results: of numbers at positions by key, and of those that were searched for."""
+    """Digits of results: of numbers at positions by key, and of those that were searched for.
+
+    results: at the positions that were judged; chosen: which of all positions these are. In a long cycle they are some
+    hundreds, with all that are near dead ones; between them a bound is four times the largest near it.
+    """
 
     results: Results
+    chosen: Real
+    count: int
     digits: Digits
     found: Searched
 
     def table(self, table: Table) -> Table:
         """The same table, its numbers with their bounds and sensitivities, and a note of the worst of them."""
-        keys = _keys(table, len(self.results.numbers))
+        keys = _keys(table, self.count)
         columns = []
         for k, column in enumerate(table.columns):
             if column.dimension is not None and keys is not None:
@@ -59,12 +69,23 @@ class Trusted:
 
     def _of(self, part: str, keys: list[Hashable]) -> Real | None:
         values = getattr(self.digits, part)
-        nothing = np.full(len(self.results.numbers), np.nan)
-        return np.stack([values.get(key, nothing) for key in keys], axis=1).ravel()
+        nothing = np.full(len(self.chosen), np.nan)
+        return np.stack([self._everywhere(part, values.get(key, nothing)) for key in keys], axis=1).ravel()
 
-    def summary(self, tables: tuple[Table, ...]) -> Table:
+    def _everywhere(self, part: str, values: Real) -> Real:
+        """Values at all positions from those at the chosen ones."""
+        if len(self.chosen) == self.count:
+            return values
+        about = values
+        for by in (1, 2) if part == "bound" else (1,):
+            about = np.fmax(about, np.fmax(np.roll(values, by), np.roll(values, -by)))
+        near = np.searchsorted(self.chosen, np.arange(self.count)).clip(max=len(self.chosen) - 1)
+        everywhere: Real = (BETWEEN if part == "bound" else 1.0) * about[near]
+        everywhere[self.chosen] = values
+        return everywhere
+
+    def summary(self, rows: Sequence[tuple[str | float, ...]]) -> Table:
         """Table by table and column by column: the largest bound, digits to be trusted, sensitivities."""
-        rows = [(table.name, *row) for table in tables for row in _worst(table)]
         keys = ("digits.table", "digits.column", "digits.bound", "digits.true", "digits.lengths", "digits.paper")
         columns = tuple(
             Column(say(key), [row[k] for row in rows])
@@ -77,31 +98,45 @@ class Trusted:
     def json(self) -> dict[str, Any]:
         """The section `digits` of result.json: bounds and sensitivities in the places of their values."""
         content = numbers(self.results)
-        named: dict[str, Any] = {"scale": self.digits.mu}
+        named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.results.numbers)}
         for part in PARTS:
             values = {**getattr(self.digits, part), **getattr(self.found, part)}
             named[part] = _parallel(content, (), {key[1:]: v for key, v in values.items()}) or {}
         return named
 
 
-def judged_tables(tables: Iterable[Table], found: Trusted | None) -> tuple[Table, ...]:
-    """Tables with the digits that were found for them, and the table of the worst; as they are without."""
-    if found is None:
-        return tuple(tables)
-    told = tuple(found.table(table) for table in tables)
-    return (*told, found.summary(told))
+def judged_tables(tables: Iterable[Table], found: Trusted) -> Iterator[Table]:
+    """Tables with the digits that were found for them, one after the other, and last the table of the worst."""
+    worst: list[tuple[str | float, ...]] = []
+    for table in tables:
+        told = found.table(table)
+        worst += [(table.name, *row) for row in _worst(told)]
+        yield told
+    yield found.summary(worst)
 
 
 def trusted(results: Results) -> Trusted:
     """Judge all numbers of results that have a motion."""
+    motion = results.motion
+    assert motion is not None
+    count = len(results.numbers)
+    asked = near_dead(motion) if motion.where is None else motion.where | near_dead(motion)
+    asked[:: -(-count // LONG)] = True
+    asked[-1:] = True
+    chosen = np.flatnonzero(asked)
+    if len(chosen) < count:
+        numbers = tuple(results.numbers[k] for k in chosen)
+        results = replace(taken(results, chosen, count), numbers=numbers)
     assert results.motion is not None
-    mu = _mu(results)
-    found = searched(results, _single, mu)
-    digits = judged(results, cells, mu=mu, blur=found.blur + 3 * U * np.abs(results.motion.q), turning=_turning)
+    with np.errstate(all="ignore"):
+        mu = _mu(results)
+        found = searched(results, _single, mu)
+        blur = found.blur + 3 * U * np.abs(results.motion.q)
+        digits = judged(results, cells, mu=mu, blur=blur, turning=_turning)
     for key, bound in digits.bound.items():
         if _turning(key):  # no direction is farther from another one than half a turn
             digits.bound[key] = np.minimum(bound, np.pi)
-    return Trusted(results, digits, found)
+    return Trusted(results, chosen, count, digits, found)
 
 
 def _turning(key: Hashable) -> bool:

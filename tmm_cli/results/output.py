@@ -14,6 +14,7 @@ from tmm_cli.results.reports import tables
 
 if TYPE_CHECKING:
     from tmm_cli.results.digits import Trusted
+    from tmm_cli.results.table import Table
 
 
 def write_results(
@@ -24,7 +25,7 @@ def write_results(
     All is computed and drawn first: a refusal or an interruption before the end leaves the folder as it was.
     """
     folder = out / folder_name(results.problem.name)
-    shown = tables(results)
+    shown: Iterable[Table] = tables(results)
     if digits is not None:
         from tmm_cli.results.digits import judged_tables
 
