@@ -20,6 +20,7 @@ from tmm_cli.problem.dimensions import (
 )
 from tmm_cli.results.reports.long import Values, long_table
 from tmm_cli.results.table import Table
+from tmm_cli.vectors import pi
 
 
 def named_points(results: Results) -> dict[str, tuple[str, complex]]:
@@ -74,7 +75,8 @@ def _point(p: Point) -> Values:
 
 def _link(motion: Motion, name: str) -> Values:
     t = motion.link(name)
-    angle = t.angle - 2 * np.pi * np.ceil((t.angle - np.pi) / (2 * np.pi))  # -180 to 180 deg, the driver's too
+    half = pi(t.angle)
+    angle = t.angle - 2 * half * np.ceil((t.angle - half) / (2 * half))  # -180 to 180 deg, the driver's too
     return [
         ("kinematics.angle", angle, ANGLE),
         ("kinematics.omega", t.omega, ANGULAR_SPEED),
