@@ -6,9 +6,9 @@ Only what is asked for is computed: the structure alone moves nothing, kinematic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -147,6 +147,26 @@ class Results:
         return bool(np.all(difference <= self.problem.lever_limit))
 
 
+ON_DEMAND = ("kernels", "way", "output", "outputs", "strokes", "further", "dead", "roles")  # of the mechanism
+OF_POSITIONS = ("travels", "pressure")
+
+
+def given(results: Results, **found: Any) -> Results:
+    """The same results with some of their parts given, those too that are found on demand (way, strokes, pressure...).
+
+    The others of these are the parts of `results` itself; they are not found anew.
+    """
+    own = {f.name: found[f.name] for f in fields(Results) if f.name in found}
+    new = replace(results, **own)
+    mechanism = Mechanism(new.linkage, new.structure)
+    for name in ON_DEMAND:
+        vars(mechanism)[name] = found[name] if name in found else getattr(results.mechanism, name)
+    new = replace(new, mechanism=mechanism)
+    for name in OF_POSITIONS:
+        vars(new)[name] = found[name] if name in found else getattr(results, name)
+    return new
+
+
 def solve(
     problem: Problem, stage: Stage = "forces", positions: Sequence[int] | None = None, of: Sequence[str] = ()
 ) -> Results:
@@ -204,24 +224,35 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         from tmm_cli.splice import spliced
 
         exact = applied(motion.finer, strokes)
+        structure = results.structure.again(motion.finer.linkage)
         loads = spliced(loads, exact, motion.where)
-        reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
+        reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import losses, rub
+        from tmm_cli.forces.friction import rub
 
         rubbed = rub(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
-            whole = at_positions(results, results.closely(CYCLE + 1))
-            acting = applied(whole, strokes)
-            everywhere = rub(whole, results.structure, acting, react(whole, results.structure, acting))
-            lost = losses(everywhere, whole)
+            lost = cycle_losses(results)
     drivers = power(motion, reactions)
-    return replace(
+    found = replace(
         results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
         energy=energy(motion, loads, drivers),
     )  # fmt: skip
+    vars(found).update({name: vars(results)[name] for name in OF_POSITIONS if name in vars(results)})
+    return found
+
+
+def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
+    """What friction takes over the cycle, summed up over so many places."""
+    from tmm_cli.forces.friction import losses, rub
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import react
+
+    whole = at_positions(results, results.closely(places + 1))
+    acting = applied(whole, results.strokes)
+    return losses(rub(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
 
 
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:

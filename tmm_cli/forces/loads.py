@@ -9,7 +9,7 @@ from tmm_cli.forces.springs import spring_loads
 from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
 from tmm_cli.strokes import Strokes, output_place
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, pi
 
 
 def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
@@ -45,9 +45,8 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":
-        turn = 2 * np.arccos(motion.q.dtype.type(-1))  # in the precision of the motion
-        angle: Real = np.mod(motion.q, turn)
-        return angle
+        turned: Real = np.mod(motion.q, 2 * pi(motion.q))
+        return turned
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,15 +29,18 @@ from tmm_cli.structure.contours import classification, contours
 from tmm_cli.structure.redundancy import space
 from tmm_cli.vectors import Vector
 
+if TYPE_CHECKING:
+    from tmm_cli.results.digits import Trusted
+
 FORMAT = 1
 
 
-def to_json(results: Results | ChainResults) -> dict[str, Any]:
-    """The whole content of result.json as plain data."""
-    return {key: plain(part) for key, part in sections(results)}
+def to_json(results: Results | ChainResults, digits: Trusted | None = None) -> dict[str, Any]:
+    """The whole content of result.json as plain data; with the section `digits` when all has been judged."""
+    return {key: plain(part) for key, part in sections(results, digits)}
 
 
-def sections(results: Results | ChainResults) -> Iterator[tuple[str, Any]]:
+def sections(results: Results | ChainResults, digits: Trusted | None = None) -> Iterator[tuple[str, Any]]:
     """The parts of result.json one after the other, with arrays as they are."""
     yield "tmm", FORMAT
     yield "problem", _problem(results.problem)
@@ -47,6 +50,18 @@ def sections(results: Results | ChainResults) -> Iterator[tuple[str, Any]]:
         return
     yield "structure", _structure(results.structure, results)
     yield "space", _space(results)
+    yield from numbers(results)
+    if digits is not None:
+        yield "digits", digits.json()
+    if results.assemblies is not None:
+        from tmm_cli.results.as_assemblies import assemblies_json
+
+        yield "assemblies", assemblies_json(results.assemblies)
+    yield "warnings", list(warnings(results))
+
+
+def numbers(results: Results) -> Iterator[tuple[str, Any]]:
+    """What was computed, part by part, as arrays."""
     if results.motion is not None:
         yield from _range(results).items()
         yield "positions", _positions(results.motion, results)
@@ -66,11 +81,6 @@ def sections(results: Results | ChainResults) -> Iterator[tuple[str, Any]]:
         }  # fmt: skip
     if results.energy is not None:
         yield "energy", _energy(results)
-    if results.assemblies is not None:
-        from tmm_cli.results.as_assemblies import assemblies_json
-
-        yield "assemblies", assemblies_json(results.assemblies)
-    yield "warnings", list(warnings(results))
 
 
 def _problem(problem: Problem | ChainProblem) -> dict[str, Any]:
@@ -199,7 +209,7 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
     margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
-        "points": {name: _point(motion.point(*key)) for name, key in points.items()},
+        "points": {name: _point(motion.point(*key) if of else motion.named(name)) for name, key in points.items()},
         "centres": {name: _point(motion.point(*key)) for name, key in centres.items()},
         "links": links,
         "slides": slides,

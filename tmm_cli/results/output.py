@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tmm_cli.chain import ChainResults
 from tmm_cli.pipeline import Results
@@ -13,22 +14,32 @@ from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.reports import walk
 from tmm_cli.results.text import csv_text, json_text
 
+if TYPE_CHECKING:
+    from tmm_cli.results.digits import Trusted
 
-def write_results(results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = ()) -> Path:
+
+def write_results(
+    results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = (), digits: Trusted | None = None
+) -> Path:
     """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
 
     Each table is dropped when it is written. Nothing is renamed to its name before all is there: a refusal or an
     interruption before the end leaves the folder as it was.
     """
     folder = out / folder_name(results.problem.name)
+    shown = walk(results)
+    if digits is not None:
+        from tmm_cli.results.digits import judged_tables
+
+        shown = judged_tables(shown, digits)
     earlier = listed(folder)
     with Staged(folder) as staged:
-        for table in walk(results):
+        for table in shown:
             staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
         for name, picture in more:
             staged.write(name, (picture,))
         names = sorted(staged.waiting)
-        staged.write("result.json", json_text(chain(sections(results), [("files", names)])))
+        staged.write("result.json", json_text(chain(sections(results, digits), [("files", names)])))
     for name in earlier - set(names):
         (folder / name).unlink(missing_ok=True)
     return folder

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.table import Column, Table, true_digits
 from tmm_cli.words import say
 
 MOST_ROWS = 120  # on a terminal; files have them all
@@ -27,15 +27,22 @@ def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
     given = column.values
     values = np.array([math.nan if v is None else v for v in given] if isinstance(given, list) else given, dtype=float)
     nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
-    chosen = values[list(rows)].tolist()
-    return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in chosen]
+    chosen = values[list(rows)]
+    if column.bound is not None:
+        bound = np.asarray(column.bound)[list(rows)]
+        known = np.isfinite(chosen) & np.isfinite(bound)
+        factor = 1.0 if column.dimension == NUMBER else units.from_si(1.0, column.dimension)
+        true = true_digits(np.where(known, chosen, 0.0) * factor, np.where(known, bound, 0.0) * factor)
+        told = zip(chosen.tolist(), true.tolist(), known.tolist(), strict=True)
+        return ["-" if not sound else _number(v, column, units, n) if n else "0" for v, n, sound in told]
+    return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in chosen.tolist()]
 
 
-def _number(value: float, column: Column, units: UnitSystem) -> str:
+def _number(value: float, column: Column, units: UnitSystem, true: int = 17) -> str:
     if not math.isfinite(value):
         return "-"
     number = value if column.dimension in (None, NUMBER) else units.from_si(value, column.dimension)
-    return f"{number:.{column.digits}g}"
+    return f"{number:.{min(column.digits, true)}g}"
 
 
 def heading(column: Column, units: UnitSystem) -> str:

@@ -15,12 +15,13 @@ import numpy as np
 
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.table import Column, Table, true_digits
 from tmm_cli.results.terminal import heading
 from tmm_cli.vectors import Real
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 ROWS, NUMBERS = 2048, 8192  # of a table, of an array in a chunk: they stay in the cache
+FIGURES = ["%.0s0", *(f"%.{n}g" for n in range(1, 18)), ""]  # by how many are true; the last one: not known
 REPEATED = 0.5  # of an array: with more repetitions than that it is worth to format each number once
 
 
@@ -29,8 +30,13 @@ def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
     yield ",".join(_cell(heading(c, units)) for c in table.columns) + "\n"
     told: dict[str, str] = {}
     columns = [_values(column, units) for column in table.columns]
+    figures = [_figures(column, units, values) for column, values in zip(table.columns, columns, strict=True)]
     for start in range(0, table.rows, ROWS):
-        part = [_texts(values[start : start + ROWS], told) for values in columns]
+        here = slice(start, start + ROWS)
+        part = [
+            _texts(values[here], told, None if true is None else true[here])
+            for values, true in zip(columns, figures, strict=True)
+        ]
         line = ",".join(form for form, _ in part) + "\n"
         cells = [cell for row in zip(*(texts for _, texts in part), strict=True) for cell in row]
         yield line * (len(cells) // len(part)) % tuple(cells)
@@ -45,13 +51,29 @@ def _values(column: Column, units: UnitSystem) -> Any:
     return values if column.dimension == NUMBER else units.unit(column.dimension).from_si(values)
 
 
-def _texts(values: Any, told: dict[str, str]) -> tuple[str, list[Any]]:
-    """How the cells of a column are put into a line, and what is put there. told: words met before as cells."""
+def _figures(column: Column, units: UnitSystem, values: Any) -> Any:
+    """How many figures of each number are true; None where it was not judged, -1 where it is not known."""
+    if column.bound is None:
+        return None
+    factor = 1.0 if column.dimension in (None, NUMBER) else units.unit(column.dimension).from_si(1.0)
+    known = np.isfinite(values) & np.isfinite(column.bound)
+    true = true_digits(np.where(known, values, 0.0), np.where(known, column.bound, 0.0) * factor)
+    return np.where(known, true, -1)
+
+
+def _texts(values: Any, told: dict[str, str], true: Any = None) -> tuple[str, list[Any]]:
+    """How the cells of a column are put into a line, and what is put there. told: words met before as cells.
+
+    true: how many figures of each number are.
+    """
     if not isinstance(values, np.ndarray):
         for word in set(values):
             if word not in told:
                 told[word] = _cell(word)
         return "%s", [told[word] for word in values]
+    if true is not None:
+        formats = [FIGURES[n] for n in true.tolist()]
+        return "%s", [form % v if form else "" for form, v in zip(formats, values.tolist(), strict=True)]
     if not np.all(np.isfinite(values)):
         return "%s", [f"{v:.15g}" if math.isfinite(v) else "" for v in values.tolist()]
     once, again = _runs(values)

@@ -23,6 +23,7 @@ from tmm_cli.problem.dimensions import (
 )
 from tmm_cli.results.reports.long import Values, long_table
 from tmm_cli.results.table import Table
+from tmm_cli.vectors import pi
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -35,7 +36,8 @@ def tables(results: Results) -> Iterable[Table]:
     if of:
         points = dict(asked_places(linkage, results.kernels, of))
     if points:
-        values = [_point(motion.point(*key)) for key in points.values()]
+        hinges = () if of else named_points(linkage)
+        values = [_point(motion.named(n) if n in hinges else motion.point(*key)) for n, key in points.items()]
         yield long_table(results, "points", {"word.point": list(points)}, values)
     links = asked_links(linkage, of) if of else linkage.moving
     if links:
@@ -65,7 +67,8 @@ def _point(p: Point) -> Values:
 
 def _link(motion: Motion, name: str) -> Values:
     t = motion.link(name)
-    angle = t.angle - 2 * np.pi * np.ceil((t.angle - np.pi) / (2 * np.pi))  # -180 to 180 deg, the driver's too
+    half = pi(t.angle)
+    angle = t.angle - 2 * half * np.ceil((t.angle - half) / (2 * half))  # -180 to 180 deg, the driver's too
     return [
         ("kinematics.angle", angle, ANGLE),
         ("kinematics.omega", t.omega, ANGULAR_SPEED),
