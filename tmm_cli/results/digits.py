@@ -70,7 +70,10 @@ class Trusted:
     def _of(self, part: str, keys: list[Hashable]) -> Real | None:
         values = getattr(self.digits, part)
         nothing = np.full(len(self.chosen), np.nan)
-        return np.stack([self._everywhere(part, values.get(key, nothing)) for key in keys], axis=1).ravel()
+        found = np.empty((self.count, len(keys)), dtype=float if self.count < LONG else np.float32)  # two figures tell all
+        for k, key in enumerate(keys):
+            found[:, k] = self._everywhere(part, values.get(key, nothing))
+        return found.ravel()
 
     def _everywhere(self, part: str, values: Real) -> Real:
         """Values at all positions from those at the chosen ones."""
