@@ -66,7 +66,10 @@ class Multibody:
     """One linkage; `at(k)` solves position k of a motion.
 
     strokes: those of the run, for loads of the working stroke; they say only which way the output works.
+    rounds: of Newton's method in 60 digits; near dead positions more are wanted.
     """
+
+    rounds = 3
 
     def __init__(self, it, structure, motion, strokes=None):
         mp.mp.dps = DIGITS
@@ -223,7 +226,7 @@ class Multibody:
         drives = self.drives(self.time(place, n), n)
         q = [drive[0] for drive in drives]
         X = mp.matrix([mp.mpf(float(x)) for x in self.walked(place)])
-        for _ in range(3):
+        for _ in range(self.rounds):
             J = self.jacobian(X, q)
             X = X - mp.lu_solve(J, self.gaps(X, q))
         assert mp.norm(self.gaps(X, q), mp.inf) < mp.mpf(10) ** -40

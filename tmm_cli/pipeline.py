@@ -167,8 +167,9 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         from tmm_cli.splice import spliced
 
         exact = applied(motion.finer, results.strokes)
+        structure = results.structure.again(motion.finer.linkage)
         loads = spliced(loads, exact, motion.where)
-        reactions = spliced(reactions, react(motion.finer, results.structure, exact), motion.where)
+        reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
         from tmm_cli.forces.friction import losses, rub

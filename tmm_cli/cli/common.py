@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from tmm_cli.pipeline import Results, Stage
+    from tmm_cli.results.digits import Trusted
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 
@@ -22,6 +23,10 @@ Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of
 Position = Annotated[
     list[int] | None,
     typer.Option("--position", "-p", min=0, help="Compute this position only (may be repeated).", show_default=False),
+]
+Digits = Annotated[
+    bool,
+    typer.Option("--digits", help="Show beside each value its bound by rounding and its sensitivity to the data."),
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
@@ -84,18 +89,31 @@ def emit_json(content: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
 
 
-def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None) -> int:
-    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code."""
+def judged(results: Results) -> Trusted | None:
+    """How far each number is to be trusted; None where nothing moves."""
+    if results.motion is None:
+        return None
+    from tmm_cli.results.digits import trusted
+
+    return trusted(results)
+
+
+def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False) -> int:
+    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
+
+    digits: show bounds and sensitivities beside the values.
+    """
+    found = judged(results)
     if as_json:
         from tmm_cli.results.as_json import to_json
 
-        emit_json(to_json(results))
+        emit_json(to_json(results, found))
     else:
-        show(results, names)
+        show(results, names, found, digits)
     if out is not None:
         from tmm_cli.results.output import write_results
 
-        say(f"written: {write_results(results, out)}")
+        say(f"written: {write_results(results, out, digits=found)}")
     if results.motion is not None:
         from tmm_cli.results.warnings import warnings
 
@@ -104,13 +122,19 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
     return OK if results.lever_holds else CHECK_FAILED
 
 
-def show(results: Results, names: Iterable[str]) -> None:
+def show(results: Results, names: Iterable[str], found: Trusted | None = None, digits: bool = False) -> None:
     """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
     from tmm_cli.results.reports import tables
     from tmm_cli.results.terminal import show as print_table
 
-    screen, names = console(), set(names)
-    for table in tables(results):
+    screen, names = console(), {*names, "digits"} if digits else set(names)
+    shown = tables(results)
+    if found is not None:
+        from tmm_cli.results.digits import beside, judged_tables
+
+        shown = judged_tables(shown, found)
+        shown = tuple(beside(table) for table in shown) if digits else shown
+    for table in shown:
         if table.name in names:
             print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
 

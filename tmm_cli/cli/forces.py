@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Files, Json, Out, Position, each, report, solved
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, report, solved
 
 
-def forces(files: Files, as_json: Json = False, out: Out = None, position: Position = None) -> None:
+def forces(
+    files: Files, as_json: Json = False, out: Out = None, position: Position = None, digits: Digits = False
+) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
     names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
-    each(files, lambda file: report(solved(file, "forces", position), names, as_json, out), as_json=as_json)
+    each(files, lambda file: report(solved(file, "forces", position), names, as_json, out, digits), as_json=as_json)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, Position, each, report, solved
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, report, solved
 
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
@@ -14,7 +14,12 @@ Assemblies = Annotated[
 
 
 def kinematics(
-    files: Files, as_json: Json = False, out: Out = None, position: Position = None, assemblies: Assemblies = False
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    position: Position = None,
+    assemblies: Assemblies = False,
+    digits: Digits = False,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     names = ("quality", "pressure", "cycle", "points", "link-motion", "slides")
@@ -24,6 +29,6 @@ def kinematics(
             from tmm_cli.cli.assemblies import list_assemblies
 
             return list_assemblies(file, as_json, out, position)
-        return report(solved(file, "kinematics", position), names, as_json, out)
+        return report(solved(file, "kinematics", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tmm_cli.cli.chains import report_chain, solved_any
-from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, say, show
+from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, judged, say, show
 
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
@@ -33,11 +33,12 @@ def run(
         results = solved_any(file, "forces", position)
         if isinstance(results, ChainResults):  # without dimensions there is its structure only
             return report_chain(results, as_json, out, quiet=len(files) > 1)
-        folder = write_results(results, out, drawn(results) if drawings else ())
+        found = judged(results)
+        folder = write_results(results, out, drawn(results) if drawings else (), found)
         if as_json:
-            emit_json(to_json(results))
+            emit_json(to_json(results, found))
         elif len(files) == 1:
-            show(results, ("structure", "links", "groups", "quality", "cycle"))
+            show(results, ("structure", "links", "groups", "quality", "cycle"), found)
         for warning in warnings(results):
             say(f"warning: {results.problem.name}: {warning}")
         say(f"written: {folder}")

@@ -162,7 +162,7 @@ class Dyad(Kernel):
         return cls(group, size, ends, seen(group.inner[0], b), sign)
 
     def again(self, linkage: Linkage) -> Kernel:
-        return replace(type(self).of(self.group, linkage, self.sign), winding=self.winding)
+        return replace(type(self).of(self.group.again(linkage), linkage, self.sign), winding=self.winding)
 
     def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
         at = self.closed(poses)

@@ -27,6 +27,7 @@ from tmm_cli.vectors import Real, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
 NEAR = 1e-9  # a step below this squares to less than rounding
+FINER = 1e-11  # likewise in longdouble
 DEAD = 1e-16  # a margin below this is rounding
 CONVERGED = 1e-6  # a last step above this has not converged
 
@@ -55,7 +56,7 @@ class Newton(Kernel):
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
 
     def again(self, linkage: Linkage) -> Newton:
-        return replace(Newton.of(self.group, linkage), start=self.start, track=self.track)
+        return replace(Newton.of(self.group.again(linkage), linkage), start=self.start, track=self.track)
 
     @property
     def followed(self) -> Track | None:
@@ -97,7 +98,7 @@ class Newton(Kernel):
                         matrix[..., row + k, at + 1] = c.imag
                         matrix[..., row + k, at + 2] = m
             row += len(constraint.lengths)
-        matrix *= self._scale[:, None] * self._columns()
+        matrix *= self._scale.astype(kind)[:, None] * self._columns()  # to be rounded as the matrix is
         return matrix
 
     def matrix(self, poses: Mapping[str, Pose]) -> Real:
@@ -142,7 +143,7 @@ class Newton(Kernel):
         state = start
         size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
-            near = size < NEAR
+            near = size < (NEAR if state.turn.dtype == np.float64 else FINER)
             everything = {**poses, **self.poses_of(state)}
             step = solve(self.matrix(everything), -self.gaps(everything, drives))
             size = np.max(np.abs(step), axis=-1)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from tmm_cli.structure.contours import classification, contours
 from tmm_cli.structure.redundancy import space
 from tmm_cli.vectors import Vector
 
+if TYPE_CHECKING:
+    from tmm_cli.results.digits import Trusted
+
 FORMAT = 1
 
 
@@ -47,8 +50,8 @@ def plain(value: Any) -> Any:
     return value
 
 
-def to_json(results: Results | ChainResults) -> dict[str, Any]:
-    """The whole content of result.json as plain data."""
+def to_json(results: Results | ChainResults, digits: Trusted | None = None) -> dict[str, Any]:
+    """The whole content of result.json as plain data; with the section `digits` when all has been judged."""
     if isinstance(results, ChainResults):
         return {"tmm": FORMAT, "problem": _problem(results.problem), "chain": chain_json(results.chain), "warnings": []}
     problem = results.problem
@@ -58,6 +61,20 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         "structure": _structure(results.structure, results),
         "space": _space(results),
     }
+    found |= numbers(results)
+    if digits is not None:
+        found["digits"] = digits.json()
+    if results.assemblies is not None:
+        from tmm_cli.results.as_assemblies import assemblies_json
+
+        found["assemblies"] = assemblies_json(results.assemblies)
+    found["warnings"] = list(warnings(results))
+    return {key: plain(value) for key, value in found.items()}
+
+
+def numbers(results: Results) -> dict[str, Any]:
+    """What was computed, as arrays."""
+    found: dict[str, Any] = {}
     if results.motion is not None:
         found |= _range(results)
         found["positions"] = _positions(results.motion, results)
@@ -67,7 +84,7 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         found["lever"] = {
             "balancing": results.lever.balancing,
             "difference": results.lever.difference,
-            "limit": problem.lever_limit,
+            "limit": results.problem.lever_limit,
             "holds": results.lever_holds,
             "items": [
                 {"name": i.name, "link": i.link, "kind": "force" if i.end is not None else "couple",
@@ -77,12 +94,7 @@ def to_json(results: Results | ChainResults) -> dict[str, Any]:
         }  # fmt: skip
     if results.energy is not None:
         found["energy"] = _energy(results)
-    if results.assemblies is not None:
-        from tmm_cli.results.as_assemblies import assemblies_json
-
-        found["assemblies"] = assemblies_json(results.assemblies)
-    found["warnings"] = list(warnings(results))
-    return {key: plain(value) for key, value in found.items()}
+    return found
 
 
 def _problem(problem: Problem | ChainProblem) -> dict[str, Any]:
@@ -199,7 +211,7 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
     margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
-        "points": {name: _point(motion.point(*key)) for name, key in named_points(results).items()},
+        "points": {name: _point(motion.named(name)) for name in named_points(results)},
         "centres": {name: _point(motion.point(*key)) for name, key in mass_centres(results).items()},
         "links": links,
         "slides": slides,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-IGNORED = {"files", "tmm", "problem", "warnings"}
+IGNORED = {"files", "tmm", "problem", "warnings", "digits"}
 DERIVED = {"arm"}  # follows from others, and has no size of its own where those pass through zero
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 FLOOR = 1e-9  # of the largest value of the same name anywhere: below that a quantity is zero but for rounding

@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.table import Column, Table, true_digits
 from tmm_cli.results.terminal import heading
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -57,9 +57,18 @@ def _cells(column: Column, units: UnitSystem) -> list[str]:
         return [_safe(str(v)) for v in column.values]
     values = np.array([np.nan if v is None else v for v in column.values] if isinstance(column.values, list)
                       else column.values, dtype=float)  # fmt: skip
+    factor = 1.0
     if column.dimension != NUMBER:
         values = units.unit(column.dimension).from_si(values)
-    return [f"{v:.15g}" if math.isfinite(v) else "" for v in values.tolist()]
+        factor = units.unit(column.dimension).from_si(1.0)
+    if column.bound is None:
+        return [f"{v:.15g}" if math.isfinite(v) else "" for v in values.tolist()]
+    known = np.isfinite(values) & np.isfinite(column.bound)
+    true = true_digits(np.where(known, values, 0.0), np.where(known, column.bound, 0.0) * factor)
+    return [
+        (f"{v:.{n}g}" if n else "0") if sound else ""
+        for v, n, sound in zip(values.tolist(), true.tolist(), known.tolist(), strict=True)
+    ]
 
 
 def _safe(text: str) -> str:

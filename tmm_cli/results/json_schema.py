@@ -56,27 +56,48 @@ def result_schema() -> dict[str, Any]:
             "structure": _structure(),
             "space": _space(),
             "chain": _chain(),
-            "driver": _driver(),
-            "dead_positions": _list("inside the driver's way", _object(
-                "a dead position", at=_number("place of the driver"), group=_text("the group"),
-                margin=_number("what is left of its margin there"))),
-            "turns": _number("turns of the driver after which everything repeats"),
-            "pressure": _pressure(),
-            "output": _output(),
-            "further_outputs": _list("of the others, as the first one", _output()),
-            "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
-                "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
-                high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
-            "positions": _positions(),
-            "kinematics": _kinematics(),
-            "forces": _forces(),
-            "lever": _lever(),
-            "energy": _energy(),
+            **_computed(),
+            "digits": _digits(),
             "assemblies": _assemblies(),
             "warnings": _list("sentences", {"type": "string"}),
             "files": _list("written beside this file", {"type": "string"}),
         },
     }  # fmt: skip
+
+
+def _computed() -> dict[str, Any]:
+    """What is computed, part by part."""
+    return {
+        "driver": _driver(),
+        "dead_positions": _list("inside the driver's way", _object(
+            "a dead position", at=_number("place of the driver"), group=_text("the group"),
+            margin=_number("what is left of its margin there"))),
+        "turns": _number("turns of the driver after which everything repeats"),
+        "pressure": _pressure(),
+        "output": _output(),
+        "further_outputs": _list("of the others, as the first one", _output()),
+        "travels": _list("outputs where the driver does not turn fully, over the positions asked", _object(
+            "extremes", link=_text("output link"), kind=_text("slide or swing"), low=_number("least run, m or rad"),
+            high=_number("greatest"), low_at=_number("place of the driver there"), high_at=_number("and there"))),
+        "positions": _positions(),
+        "kinematics": _kinematics(),
+        "forces": _forces(),
+        "lever": _lever(),
+        "energy": _energy(),
+    }  # fmt: skip
+
+
+def _digits() -> dict[str, Any]:
+    """Numbers in result.json are float64 in full; here is how many of their digits count."""
+    return _object(
+        "how far the numbers of this file are to be trusted, in the places of the numbers themselves and in their units",
+        scale=_number("of a drawing on A4, m a mm: that of `paper`"),
+        bound=_object(
+            "how far each number may be from the truth by rounding; null: it is not known at all", **_computed()
+        ),
+        lengths=_object("its change when every length changes by 0.1 %, worst case to first order", **_computed()),
+        paper=_object("its change when every coordinate is 0.5 mm off on paper, likewise", **_computed()),
+    )
 
 
 def _structure() -> dict[str, Any]:

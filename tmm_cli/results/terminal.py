@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table as RichTable
@@ -11,7 +12,7 @@ from rich.text import Text
 
 from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.table import Column, Table, true_digits
 from tmm_cli.words import say
 
 MOST_ROWS = 120  # on a terminal; files have them all
@@ -24,14 +25,20 @@ def cells(column: Column, units: UnitSystem) -> list[str]:
         return [str(value) for value in column.values]
     values = [math.nan if value is None else float(value) for value in column.values]
     nothing = ROUNDING * max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    if column.bound is not None:
+        known = np.isfinite(values) & np.isfinite(column.bound)
+        factor = 1.0 if column.dimension == NUMBER else units.from_si(1.0, column.dimension)
+        true = true_digits(np.where(known, values, 0.0) * factor, np.where(known, column.bound, 0.0) * factor)
+        told = zip(values, true.tolist(), known.tolist(), strict=True)
+        return ["-" if not sound else _number(v, column, units, n) if n else "0" for v, n, sound in told]
     return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in values]
 
 
-def _number(value: float, column: Column, units: UnitSystem) -> str:
+def _number(value: float, column: Column, units: UnitSystem, true: int = 17) -> str:
     if not math.isfinite(value):
         return "-"
     number = value if column.dimension in (None, NUMBER) else units.from_si(value, column.dimension)
-    return f"{number:.{column.digits}g}"
+    return f"{number:.{min(column.digits, true)}g}"
 
 
 def heading(column: Column, units: UnitSystem) -> str:

@@ -47,6 +47,12 @@ class Pair:
         """The link at the other side."""
         return self.j if link == self.i else self.i
 
+    def again(self, linkage: Linkage) -> Pair:
+        """The same pair with the numbers of another linkage."""
+        slide = None if self.slide is None else linkage.slide(self.slide.name)
+        mesh = None if self.mesh is None else next(m for m in linkage.meshes if m.name == self.mesh.name)
+        return self if slide is None and mesh is None else replace(self, slide=slide, mesh=mesh)
+
 
 @dataclass(frozen=True)
 class Group:
@@ -67,6 +73,12 @@ class Group:
     @property
     def order(self) -> int:
         return sum(pair.name not in self.idle for pair in self.outer)
+
+    def again(self, linkage: Linkage) -> Group:
+        """The same group with the numbers of another linkage."""
+        inner, outer = (tuple(pair.again(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
+        drivers = tuple(d for own in self.drivers for d in linkage.drivers if d.link == own.link)
+        return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property
     def title(self) -> str:
@@ -127,6 +139,11 @@ class Structure:
         """Whether each freedom is driven and nothing held twice, but for what is known to be passive."""
         wanted = len(self.drivers)
         return self.freedom == wanted == self.mobility + self.redundant and not self.idle and not self.loose
+
+    def again(self, linkage: Linkage) -> Structure:
+        """The same structure with the numbers of another linkage."""
+        groups = tuple(group.again(linkage) for group in self.groups)
+        return replace(self, pairs=tuple(pair.again(linkage) for pair in self.pairs), groups=groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
         """The pair in which a driver works."""

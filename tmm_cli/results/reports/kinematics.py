@@ -44,10 +44,9 @@ def tables(results: Results) -> Iterable[Table]:
     motion = results.motion
     if motion is None:
         return
-    points = dict(sorted(named_points(results).items())) | mass_centres(results)
-    yield long_table(
-        results, "points", {"word.point": list(points)}, [_point(motion.point(*key)) for key in points.values()]
-    )
+    points = {name: motion.named(name) for name in sorted(named_points(results))}
+    points |= {name: motion.point(*key) for name, key in mass_centres(results).items()}
+    yield long_table(results, "points", {"word.point": list(points)}, [_point(p) for p in points.values()])
     links = results.linkage.moving
     yield long_table(results, "link-motion", {"word.link": links}, [_link(motion, name) for name in links])
     slides = results.linkage.slides
