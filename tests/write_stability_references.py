@@ -18,7 +18,7 @@ import numpy as np
 from multibody import Multibody
 
 from tmm_cli.assembly import assemble
-from tmm_cli.bench.families import BY_NAME, FAMILIES, triad
+from tmm_cli.bench.families import BY_NAME, FAMILIES, shape, triad
 from tmm_cli.linkage import FRAME
 from tmm_cli.refused import Refused
 from tmm_cli.quality import find_range
@@ -184,12 +184,10 @@ def dead(r, seed):
 
 def sound(n, distances):
     """Whether the circles meet well at some distances."""
-    from tmm_cli.bench.families import _shape
-
     for distance in distances:
         q = float(n["critical"] + n["sense"] * distance)
         A = complex(float(n["Ox"]), float(n["Oy"])) + float(n["a"]) * np.exp(1j * q)
-        if _shape(A, float(n["b"]), complex(float(n["Dx"]), float(n["Dy"])), float(n["c"])) < 0.15:
+        if shape(A, float(n["b"]), complex(float(n["Dx"]), float(n["Dy"])), float(n["c"])) < 0.15:
             return False
     return True
 
@@ -212,25 +210,51 @@ def parallelogram(r, seed):
     return n | {"critical": text(critical), "sense": Decimal(turn), "side": Decimal(int(side)), "back": Decimal("0.5")}
 
 
-def tangent(r, seed):
+def tangent(outer):
+    """Lengths with which the crank comes well away from the tangent, and meets no dead position on the way."""
+
+    def numbers(r, seed):
+        while True:
+            n = {key: decimals(r, 0.2, 0.9) for key in "abc"} | {"side": Decimal(r.choice((1, -1)))} | inclined(r)
+            n |= pin(n)
+            if abs(n["b"] - n["c"]) < Decimal("0.15"):
+                continue
+            it = BY_NAME["outer-tangent" if outer else "inner-tangent"].scene(n, Decimal("1e-15")).linkage
+            way = it.sketch.at - float(n["q"])
+            if all(shaped(it, float(n["q"]) + way * k / 40) > 0.02 for k in range(1, 41)) and shaped(it, it.sketch.at) > 0.2:
+                return n
+
+    return numbers
+
+
+def shaped(it, q):
+    """Sine of a four-bar's transmission angle."""
+    A = it.local(FRAME, "O") + it.local("1", "A") * np.exp(1j * q)
+    return shape(A, it.local("2", "B").real, it.local(FRAME, "D"), it.local("3", "B").real)
+
+
+def inclined(r):
+    """A direction, a pivot, a place of the crank."""
     p, s, h = r.choice(UPRIGHT)
-    while True:
-        n = {key: decimals(r, 0.2, 0.9) for key in "abc"}
-        if abs(n["b"] - n["c"]) > Decimal("0.15"):
-            break
-    sides = {"side": Decimal(r.choice((1, -1))), "Ox": decimals(r, -0.3, 0.3), "Oy": decimals(r, -0.3, 0.3)}
-    return n | sides | {"ux": Decimal(p) / h, "uy": Decimal(s) / h}
+    return {"Ox": decimals(r, -0.3, 0.3), "Oy": decimals(r, -0.3, 0.3), "ux": r.choice((1, -1)) * Decimal(p) / h,
+            "uy": r.choice((1, -1)) * Decimal(s) / h, "q": decimals(r, 0.2, 2.9)}  # fmt: skip
+
+
+def pin(n):
+    """The crank's pin A, in as many digits as the distances need."""
+    a, ox, oy, q = exact(n, "a", "Ox", "Oy", "q")
+    A = mp.mpc(ox, oy) + a * mp.expj(q)
+    return {"Ax": text(A.real), "Ay": text(A.imag)}
 
 
 def stone(r, seed):
-    n = {"a": decimals(r, 0.1, 0.5), "far": decimals(r, 0.5, 0.9), "Ox": decimals(r, -0.3, 0.3)}
-    p, s, h = r.choice(UPRIGHT)
-    return n | {"Oy": decimals(r, -0.3, 0.3), "ux": Decimal(p) / h, "uy": Decimal(s) / h}
+    n = {"a": decimals(r, 0.1, 0.5), "far": decimals(r, 0.5, 0.9)} | inclined(r)
+    return n | pin(n)
 
 
 def rod(r, seed):
     n = {"r": decimals(r, 0.05, 0.4), "Ox": decimals(r, -0.3, 0.3), "Oy": decimals(r, -0.3, 0.3)}
-    return n | {"critical": text(mp.pi / 2), "q": decimals(r, 0.3, 2.8)}
+    return n | {"critical": text(mp.pi / 2), "lean": decimals(r, 0.3, 0.9), "q": decimals(r, 0.3, 2.8)}
 
 
 def crank_rocker(r):
@@ -282,7 +306,8 @@ def folding(r, seed):
 
 
 NUMBERS = {
-    "dead-position": dead, "change-point": parallelogram, "outer-tangent": tangent, "inner-tangent": tangent,
+    "dead-position": dead, "change-point": parallelogram, "outer-tangent": tangent(True),
+    "inner-tangent": tangent(False),
     "stone-over-pivot": stone, "short-rod": rod, "long-rod": rod, "size": sized, "three-in-line": in_line,
     "two-assemblies-lost": folding,
 }  # fmt: skip

@@ -58,7 +58,7 @@ def meeting(A: complex, b: float, D: complex, c: float, side: float) -> complex:
     return A + base / d * complex(x, side * math.sqrt(max(b * b - x * x, 0.0)))
 
 
-def _shape(A: complex, b: float, D: complex, c: float) -> float:
+def shape(A: complex, b: float, D: complex, c: float) -> float:
     """Sine of the transmission angle, 0 where the circles do not meet."""
     cosine = (b * b + c * c - abs(D - A) ** 2) / (2 * b * c)
     return math.sqrt(max(1 - cosine * cosine, 0.0))
@@ -156,26 +156,27 @@ def _line(n: Numbers, distance: Decimal) -> Scene:
 
 
 def _tangent(n: Numbers, share: Decimal, outer: bool) -> Scene:
-    """A and D lie along (ux, uy), nearer than b + c by a share of it, or farther than |b - c|; the crank is at 0."""
+    """D lies from A along (ux, uy), nearer than b + c by a share of it, or farther than |b - c|."""
     base = (n["b"] + n["c"]) * (1 - share) if outer else abs(n["b"] - n["c"]) * (1 + share)
-    O = n["Ox"], n["Oy"]
-    D = O[0] + n["a"] + n["ux"] * base, O[1] + n["uy"] * base
+    O, D = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (complex(float(p[0]), float(p[1])) for p in (O, D))
-    places = (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)
-    a, b, c = float(n["a"]), float(n["b"]), float(n["c"])
-    shapes = {at: _shape(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
-    return Scene(four_bar(n["a"], n["b"], n["c"], O, D, float(n["side"]), max(places, key=shapes.__getitem__)), 0.0)
+    a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
+    places = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
+    shapes = {at: shape(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
+    return Scene(four_bar(n["a"], n["b"], n["c"], O, D, float(n["side"]), max(places, key=shapes.__getitem__)), q)
 
 
 def _stone(n: Numbers, share: Decimal) -> Scene:
     """The stone comes near the pivot of its slotted link, along (ux, uy), to a share of the crank's length."""
-    C = n["Ox"] + n["a"] * (1 + share * n["ux"]), n["Oy"] + n["a"] * share * n["uy"]
-    return Scene(slotted(n["a"], (n["Ox"], n["Oy"]), C, n["far"], 1.0), 0.0, "K", "A")
+    C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
+    q = float(n["q"])
+    return Scene(slotted(n["a"], (n["Ox"], n["Oy"]), C, n["far"], q + 1.0), q, "K", "A")
 
 
 def _short(n: Numbers, share: Decimal) -> Scene:
-    """A rod longer than its crank by a share of it, the crank all but upright."""
-    return Scene(slider(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), float(n["critical"]), "B", "A")
+    """A rod longer than its crank by a share of it, and the crank as near to upright as that makes it matter."""
+    q = float(n["critical"] + n["lean"] * share.sqrt())
+    return Scene(slider(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
 
 
 def _long(n: Numbers, ratio: Decimal) -> Scene:
