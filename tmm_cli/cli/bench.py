@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from tmm_cli.cli import bench_accuracy
+from tmm_cli.cli import bench_accuracy, bench_stability
 
 app = typer.Typer(
     name="bench",
@@ -14,6 +14,7 @@ app = typer.Typer(
 )
 
 app.command("accuracy")(bench_accuracy.accuracy)
+app.command("stability")(bench_stability.stability)
 
 
 @app.callback()
