@@ -354,7 +354,9 @@ class Multibody:
         n, link = Digits(), self.strokes.link
         for slide in self.it.slides:
             if {slide.carrier, slide.runner} == {FRAME, link}:
-                speed = (self.slid(X + self.step * V, slide, n)[0] - self.slid(X - self.step * V, slide, n)[0]) / (2 * self.step)
+                speed = (self.slid(X + self.step * V, slide, n)[0] - self.slid(X - self.step * V, slide, n)[0]) / (
+                    2 * self.step
+                )
                 break
         else:
             speed = V[self.at_row[link] + 2]
@@ -373,7 +375,9 @@ class Multibody:
             return
         ends = []
         for name, at in ((spring.i, spring.at_i), (spring.j, spring.at_j)):
-            (x, z), (more, ahead), (less, behind) = (self.pose(Y, name) for Y in (X, X + self.step * V, X - self.step * V))
+            (x, z), (more, ahead), (less, behind) = (
+                self.pose(Y, name) for Y in (X, X + self.step * V, X - self.step * V)
+            )
             ends.append((x + at * z, (more + at * ahead - less - at * behind) / (2 * self.step), at * z))
         way = ends[1][0] - ends[0][0]
         length = abs(way)

@@ -20,8 +20,8 @@ from multibody import Multibody
 from tmm_cli.assembly import assemble
 from tmm_cli.bench.families import BY_NAME, FAMILIES, shape, triad
 from tmm_cli.linkage import FRAME
-from tmm_cli.refused import Refused
 from tmm_cli.quality import find_range
+from tmm_cli.refused import Refused
 from tmm_cli.structure.assur import analyse
 
 DATA = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "stability"
@@ -76,10 +76,10 @@ def closed(scene):
     """Coordinates of all links in the assembly of the sketch and the watched point of the other one."""
     it, q = scene.linkage, mp.mpf(scene.q)
     fixed = {name: mp.mpc(p) for name, p in it.links[FRAME].points.items()}
-    O = fixed["O"]
-    A = O + mp.mpf(it.local("1", "A").real) * mp.expj(q)
+    pivot = fixed["O"]
+    A = pivot + mp.mpf(it.local("1", "A").real) * mp.expj(q)
     at = {name: mp.mpc(p) for name, p in it.sketch.points.items()}
-    crank = [O.real, O.imag, q]
+    crank = [pivot.real, pivot.imag, q]
     if "C" in fixed:  # a stone at A on the link through C
         C, k = fixed["C"], mp.mpf(it.local("3", "K").real)
         u = (A - C) / abs(A - C)
@@ -91,7 +91,7 @@ def closed(scene):
         side = mp.sign((mp.conj(D - at["A"]) * (at["B"] - at["A"])).imag)
         B, other = circles(A, b, D, c, side), circles(A, b, D, c, -side)
         return mp.matrix([*crank, A.real, A.imag, mp.arg(B - A), D.real, D.imag, mp.arg(B - D)]), other
-    y = O.imag - A.imag
+    y = pivot.imag - A.imag
     x = mp.sqrt((b - y) * (b + y))
     B = A + mp.mpc(x, y)
     return mp.matrix([*crank, A.real, A.imag, mp.arg(B - A), B.real, B.imag, 0]), A + mp.mpc(-x, y)
@@ -155,9 +155,9 @@ def text(value, digits=DIGITS):
 def pivots(r, d):
     """O and D on an inclined line, all decimals."""
     p, s, h = r.choice(UPRIGHT)
-    O = decimals(r, -0.3, 0.3), decimals(r, -0.3, 0.3)
+    x, y = decimals(r, -0.3, 0.3), decimals(r, -0.3, 0.3)
     length = decimals(r, d, d)
-    return {"Ox": O[0], "Oy": O[1], "Dx": O[0] + length * p / h, "Dy": O[1] + length * s / h}
+    return {"Ox": x, "Oy": y, "Dx": x + length * p / h, "Dy": y + length * s / h}
 
 
 def exact(n, *keys):
@@ -196,10 +196,10 @@ def parallelogram(r, seed):
     """Sides and pivots that binary fractions give: the links come into line all at once."""
     p, s, length = (5, 0, 5) if seed % 2 == 0 else (3, 4, 5)
     m, a = r.choice((5, 7, 9)), r.choice((13, 17, 53, 61))
-    O = Decimal(r.randint(-16, 16)) / 64, Decimal(r.randint(-16, 16)) / 64
+    x, y = Decimal(r.randint(-16, 16)) / 64, Decimal(r.randint(-16, 16)) / 64
     unit = Decimal(m) / 64
-    n = {"a": Decimal(a) / 64, "b": unit * length, "c": Decimal(a) / 64, "Ox": O[0], "Oy": O[1],
-         "Dx": O[0] + unit * p, "Dy": O[1] + unit * s}  # fmt: skip
+    n = {"a": Decimal(a) / 64, "b": unit * length, "c": Decimal(a) / 64, "Ox": x, "Oy": y,
+         "Dx": x + unit * p, "Dy": y + unit * s}  # fmt: skip
     turn = r.choice((1, -1))
     critical = mp.atan2(s, p) + (mp.pi if seed == 4 else 0)
     # the parallelogram has B beyond D: on the left of AD where the crank is on the left of OD
@@ -221,7 +221,10 @@ def tangent(outer):
                 continue
             it = BY_NAME["outer-tangent" if outer else "inner-tangent"].scene(n, Decimal("1e-15")).linkage
             way = it.sketch.at - float(n["q"])
-            if all(shaped(it, float(n["q"]) + way * k / 40) > 0.02 for k in range(1, 41)) and shaped(it, it.sketch.at) > 0.2:
+            if (
+                all(shaped(it, float(n["q"]) + way * k / 40) > 0.02 for k in range(1, 41))
+                and shaped(it, it.sketch.at) > 0.2
+            ):
                 return n
 
     return numbers
@@ -259,7 +262,11 @@ def rod(r, seed):
 
 def crank_rocker(r):
     while True:
-        n = {key: decimals(r, 0.3, 0.9) for key in "bc"} | {"a": decimals(r, 0.1, 0.25)} | pivots(r, r.uniform(0.4, 0.9))
+        n = (
+            {key: decimals(r, 0.3, 0.9) for key in "bc"}
+            | {"a": decimals(r, 0.1, 0.25)}
+            | pivots(r, r.uniform(0.4, 0.9))
+        )
         a, b, c, ox, oy, dx, dy = (float(v) for v in exact(n, "a", "b", "c", "Ox", "Oy", "Dx", "Dy"))
         d = abs(complex(dx - ox, dy - oy))
         if d + a < 0.97 * (b + c) and d - a > 1.1 * abs(b - c):
@@ -329,6 +336,7 @@ def starts(family, n):
         scene = family.scene(n, distance)
         way = mp.sqrt(2 * (mp.mpf(scene.q) - q) / bend)
         if distance >= Decimal("0.001"):
+            fold._walked.clear()  # from the sketch, not from near the fold
             found[distance] = mp.matrix([mp.mpf(float(x)) for x in fold.walked(scene.q)]), None
         else:
             found[distance] = X + side * way * along, fold.watched(X - side * way * along)

@@ -17,6 +17,7 @@ from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch, S
 
 Numbers = Mapping[str, Decimal]
 NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or shares of a length
+Place = tuple[Decimal, Decimal]
 CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
 
@@ -50,6 +51,10 @@ def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 
 
+def _point(place: Place) -> complex:
+    return complex(float(place[0]), float(place[1]))
+
+
 def meeting(A: complex, b: float, D: complex, c: float, side: float) -> complex:
     """Where circles about A and D meet, on the left of AD for side 1; for sketches, so nothing is gained by care."""
     base = D - A
@@ -64,12 +69,10 @@ def shape(A: complex, b: float, D: complex, c: float) -> float:
     return math.sqrt(max(1 - cosine * cosine, 0.0))
 
 
-def four_bar(
-    a: Decimal, b: Decimal, c: Decimal, O: tuple[Decimal, Decimal], D: tuple[Decimal, Decimal], side: float, at: float
-) -> Linkage:
-    """Crank OA = a, coupler AB = b, rocker DB = c under a moment; B lies on the left of AD for side 1; at: the sketch."""
+def four_bar(a: Decimal, b: Decimal, c: Decimal, pivots: tuple[Place, Place], side: float, at: float) -> Linkage:
+    """Crank OA = a, coupler AB = b, rocker DB = c under a moment; B is on the left of AD for side 1; at: the sketch."""
     la, lb, lc = float(a), float(b), float(c)
-    o, d = complex(float(O[0]), float(O[1])), complex(float(D[0]), float(D[1]))
+    o, d = (_point(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
     links = {
         FRAME: Link(FRAME, {"O": o, "D": d}), "1": _bar("1", ("O", "A"), la, 1.0), "2": _bar("2", ("A", "B"), lb, 3.0),
@@ -82,10 +85,10 @@ def four_bar(
     return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "3", moment=-40 * lc),))
 
 
-def slider(r: Decimal, length: Decimal, O: tuple[Decimal, Decimal], at: float) -> Linkage:
+def slider(r: Decimal, length: Decimal, pivot: Place, at: float) -> Linkage:
     """Crank OA = r, rod AB, piston on the level of O with a force on it."""
     lr, ll = float(r), float(length)
-    o = complex(float(O[0]), float(O[1]))
+    o = _point(pivot)
     A = o + lr * complex(math.cos(at), math.sin(at))
     B = o + (A - o).real + math.sqrt(ll * ll - (A - o).imag ** 2)
     links = {
@@ -98,10 +101,10 @@ def slider(r: Decimal, length: Decimal, O: tuple[Decimal, Decimal], at: float) -
     return Linkage(links, hinges, (slide,), CRANK, Sketch(at, {"A": A, "B": B}), (load,))
 
 
-def slotted(a: Decimal, O: tuple[Decimal, Decimal], C: tuple[Decimal, Decimal], far: Decimal, at: float) -> Linkage:
+def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) -> Linkage:
     """Crank OA = a, stone at A, slotted link on pivot C with a point K at `far` from it, on A's side, and a moment."""
     la, lk = float(a), float(far)
-    o, c = complex(float(O[0]), float(O[1])), complex(float(C[0]), float(C[1]))
+    o, c = (_point(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
     u = (A - c) / abs(A - c)
     links = {
@@ -123,7 +126,8 @@ def triad(n: Numbers) -> Linkage:
         FRAME: Link(FRAME, {"O": z["O"], "C": z["C"], "D": z["D"]}),
         "1": _bar("1", ("O", "A"), la, 0.8),
         "2": Link("2", {"P": 0j, "Q": z["Q"], "R": z["R"]}, 4.0, 0.02, complex(0.123, 0.05)),
-        "3": _bar("3", ("A", "P"), leg, 1.1), "4": _bar("4", ("C", "Q"), leg, 1.1), "5": _bar("5", ("D", "R"), leg, 1.1),
+        "3": _bar("3", ("A", "P"), leg, 1.1),
+        "4": _bar("4", ("C", "Q"), leg, 1.1), "5": _bar("5", ("D", "R"), leg, 1.1),
     }  # fmt: skip
     hinges = (
         Hinge("O", (FRAME, "1")), Hinge("A", ("1", "3")), Hinge("P", ("2", "3")), Hinge("C", (FRAME, "4")),
@@ -137,7 +141,7 @@ def triad(n: Numbers) -> Linkage:
 # families
 
 
-def _pivots(n: Numbers) -> tuple[tuple[Decimal, Decimal], tuple[Decimal, Decimal]]:
+def _pivots(n: Numbers) -> tuple[Place, Place]:
     return (n["Ox"], n["Oy"]), (n["Dx"], n["Dy"])
 
 
@@ -145,32 +149,32 @@ def _dead(n: Numbers, distance: Decimal) -> Scene:
     """The driven link comes to where coupler and rocker are in line: the distance is the driver's, rad."""
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
-    linkage = four_bar(n["a"], n["b"], n["c"], *_pivots(n), float(n["side"]), at)
+    linkage = four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
     return Scene(linkage, float(n["critical"] + sense * distance))
 
 
 def _line(n: Numbers, distance: Decimal) -> Scene:
     """The crank starts, and is sketched, near where three of its points are in line."""
     q = float(n["critical"] + n["sense"] * distance)
-    return Scene(four_bar(n["a"], n["b"], n["c"], *_pivots(n), float(n["side"]), q), q)
+    return Scene(four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
 
 
 def _tangent(n: Numbers, share: Decimal, outer: bool) -> Scene:
     """D lies from A along (ux, uy), nearer than b + c by a share of it, or farther than |b - c|."""
     base = (n["b"] + n["c"]) * (1 - share) if outer else abs(n["b"] - n["c"]) * (1 + share)
-    O, D = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
-    o, d = (complex(float(p[0]), float(p[1])) for p in (O, D))
+    pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
+    o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
     places = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
     shapes = {at: shape(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
-    return Scene(four_bar(n["a"], n["b"], n["c"], O, D, float(n["side"]), max(places, key=shapes.__getitem__)), q)
+    return Scene(four_bar(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(places, key=shapes.__getitem__)), q)
 
 
 def _stone(n: Numbers, share: Decimal) -> Scene:
     """The stone comes near the pivot of its slotted link, along (ux, uy), to a share of the crank's length."""
     C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
     q = float(n["q"])
-    return Scene(slotted(n["a"], (n["Ox"], n["Oy"]), C, n["far"], q + 1.0), q, "K", "A")
+    return Scene(slotted(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
 
 
 def _short(n: Numbers, share: Decimal) -> Scene:
@@ -185,11 +189,11 @@ def _long(n: Numbers, ratio: Decimal) -> Scene:
 
 def _size(n: Numbers, size: Decimal) -> Scene:
     """A four-bar or a crank-slider of so many metres."""
-    q, O = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
+    q, pivot = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
     if "r" in n:
-        return Scene(slider(n["r"] * size, n["l"] * size, O, 0.7), q, "B", "A")
-    D = n["Dx"] * size, n["Dy"] * size
-    return Scene(four_bar(n["a"] * size, n["b"] * size, n["c"] * size, O, D, float(n["side"]), 0.7), q)
+        return Scene(slider(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
+    pivots = pivot, (n["Dx"] * size, n["Dy"] * size)
+    return Scene(four_bar(n["a"] * size, n["b"] * size, n["c"] * size, pivots, float(n["side"]), 0.7), q)
 
 
 def _fold(n: Numbers, distance: Decimal) -> Scene:

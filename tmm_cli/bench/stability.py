@@ -2,7 +2,7 @@
 
 An answer is wrong when it is off by more than 1e-6 of the largest value, or by 10 times what the method itself states
 (Newton's tolerance, the 5 % of the drawing board); the product's own when it is off by more than its own bound. A
-method says so by raising, by nan, or by not converging.
+method says so by raising, by nan, or by not converging; ours by a bound that is wide enough too.
 """
 
 from __future__ import annotations
@@ -161,9 +161,10 @@ def measure(
     *,
     reduced: bool = False,
     methods: Iterable[Method] | None = None,
+    own: bool = True,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Stability:
-    """All methods in all scenes; reduced: fewer scenes and methods."""
+    """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
     fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in NAIVE]
     chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
     rows: list[Row] = []
@@ -174,7 +175,8 @@ def measure(
         some = (SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED) if reduced else (None, 1)
         shots: dict[tuple[str, float], list[Shot]] = {}
         for at, case, solvers in _prepared(known(family, *some), chosen, absent):
-            for shot in (ours(case, at), *(_shoot(method, solver, at) for method, solver in solvers.items())):
+            mine = (ours(case, at),) if own else ()
+            for shot in (*mine, *(_shoot(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
                 widths += shot.widths
         rows += [_row(family, *key, found) for key, found in shots.items()]
@@ -220,7 +222,8 @@ def _shoot(method: Method, solver: Solver | Exception, at: Known) -> Shot:
     if not all(np.isfinite(value) for value in values.values() if value is not None):
         return Shot(method.name, "said", nothing, "nan")
     errors = {
-        quantity: nothing[quantity] if value is None else _off(value, quantity, at) for quantity, value in values.items()
+        quantity: nothing[quantity] if value is None else _off(value, quantity, at)
+        for quantity, value in values.items()
     }
     if not max(error for error in errors.values() if not np.isnan(error)) > limit(method):
         return Shot(method.name, "right", errors)
@@ -263,13 +266,17 @@ def ours(case: Case, at: Known) -> Shot:
             given = given and bool(np.isfinite(mine))
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
             within = within and off <= bound + TRUE * at.largest[quantity]
-            widths.append(bound / max(off, UNIT * abs(float(exact)), 1e-300))
+            floor = max(off, UNIT * abs(float(exact)), TRUE * at.largest[quantity])
+            widths.append(bound / floor if bound else 1.0)  # a part that is nothing for certain
             total += off * off
             widest = max(widest, bound / at.largest[quantity])
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
     if not given:
         return Shot(OURS, "said", dict.fromkeys(QUANTITIES, float("nan")), "nan")
-    return Shot(OURS, "right" if within else "wrong", errors, "", widest, tuple(widths))
+    if not within:
+        return Shot(OURS, "wrong", errors, "", widest, tuple(widths))
+    far = max(errors.values()) > WRONG  # the bound says it
+    return Shot(OURS, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 
 
 def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
@@ -277,7 +284,9 @@ def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
         errors[quantity] = max(given, default=float("nan"))
-    count = {verdict: sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong", "astray")}
+    count = {
+        verdict: sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong", "astray")
+    }
     wide = [shot.bound for shot in shots if not np.isnan(shot.bound)]
     return Row(
         family, method, distance, len(shots), count["right"], count["said"], count["wrong"] + count["astray"],

@@ -19,7 +19,7 @@ from tmm_cli.words import say
 
 MM = 1 / 25.4  # inches
 PANELS = 5  # on a sheet; the sixth place is the key's
-LOW, HIGH = 1e-19, 1e2  # of the error axis; what lies beyond is drawn on its edge
+LOW, HIGH = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
 WHITE, GREY, RED = "#ffffff", "#9aa0a6", "#d93025"
 STYLES: dict[str, dict[str, Any]] = {
     OURS: {"marker": "*", "ms": 8, "color": "#b3261e", "lw": 1.6, "zorder": 9},
@@ -87,7 +87,7 @@ def _errors(axes: Any, stability: Stability, family: str, shown: list[str], labe
             bound = [float(np.clip(row.bound, LOW, HIGH)) for row in rows]
             axes.plot(range(len(rows)), bound, color=STYLES[OURS]["color"], lw=1.2, ls=":", zorder=8)
         axes.set_xlim(-0.5, len(rows) - 0.5)
-    axes.set_yticks([10.0**k for k in range(-18, 3, 3)], [f"1e{k}" if k else "1" for k in range(-18, 3, 3)])
+    axes.set_yticks([10.0**k for k in range(-18, 4, 3)], [f"1e{k}" if k else "1" for k in range(-18, 4, 3)])
     axes.minorticks_off()
     axes.set_xticks([])
     axes.tick_params(labelsize=6.5)
@@ -102,15 +102,15 @@ def _made(axes: Any, stability: Stability, family: str, shown: list[str]) -> Non
     rows = [_places(stability.of(family, method), family) for method in there]
     picture = np.array([[_mixed(row) for row in line] for line in rows])
     axes.imshow(picture, aspect="auto", interpolation="nearest")
-    axes.set_yticks(range(len(there)), there, fontsize=5.6)
+    axes.set_yticks(range(len(there)), there, fontsize=6)
     axes.set_yticks(np.arange(len(there) - 1) + 0.5, minor=True)
     axes.set_xticks(np.arange(len(rows[0]) - 1) + 0.5, minor=True)
     axes.grid(True, which="minor", color="#d0d0d0", lw=0.4)
     axes.tick_params(which="minor", length=0)
     axes.tick_params(length=2, pad=1.5)
-    every = max(1, len(rows[0]) // 7)
+    every = max(1, (len(rows[0]) + 1) // 6)
     ticks = range(0, len(rows[0]), every)
-    labels = [f"{rows[0][k].distance:.0e}".replace("e-0", "e-").replace("e+0", "e") for k in ticks]
+    labels = [f"{rows[0][k].distance:.0e}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e") for k in ticks]
     axes.set_xticks(list(ticks), labels, fontsize=6.5)
     axes.set_xlabel(say(f"stability.x.{BY_NAME[family].unit}"), fontsize=7, labelpad=1.5)
 

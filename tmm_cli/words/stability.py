@@ -27,7 +27,7 @@ WORDS: dict[str, str] = {
     "stability.freudenstein": "Freudenstein, tan of half the angle",
     "stability.bound": "the bound that tmm prints",
     "stability.chart": "Near what kills a method ({page} of {pages})",
-    "stability.caption": "Above: largest error of the answers given, of positions to balancing moment, over the largest "
+    "stability.caption": "Above: largest error of the answers given, positions to balancing moment, over the largest "
     "value. Below: share of {scenes} linkages at each distance with a right answer, none, a wrong one.",
     "stability.error": "largest error",
     "stability.right": "right",
