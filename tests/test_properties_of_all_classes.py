@@ -168,6 +168,14 @@ def test_a_position_alone_is_that_position_among_others(it):
                     assert abs(one - other) <= 1e-13 * (1 + abs(other)) * (1 if part == "x" else 1e3)
 
 
+def on_one_piece(mesh, motion):
+    """Whether a cam stays on one piece of its law; where two meet higher derivatives jump."""
+    angle = motion.link(mesh.i).angle - mesh.law.start
+    edges = np.cumsum([piece.over for piece in mesh.law.pieces])[:, None]
+    beyond = np.sin((angle - edges) / 2)
+    return bool(np.all((np.abs(beyond) > 0.02) | (np.sign(beyond) == np.sign(beyond[:, :1]))))
+
+
 @given(LINKAGES)
 @settings(max_examples=12, deadline=None)
 def test_velocities_and_accelerations_are_derivatives_of_places(it):
@@ -177,6 +185,7 @@ def test_velocities_and_accelerations_are_derivatives_of_places(it):
     q = it.sketch.at + step * np.arange(-4, 5)
     motion = move(it, motion.kernels, q, Law(it.sketch.at, 1.0, 0.0, 1))
     assume(bool(np.all(motion.moving)))
+    assume(all(on_one_piece(mesh, motion) for mesh in it.meshes if mesh.law is not None))
     weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
     for name in it.moving:
         point = motion.centre(name)

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from models import bank, linkage_of
 from random_linkages import TYPES, linkage
 
+import tmm_cli
+from tmm_cli import load, solve
 from tmm_cli.batch import everything, prepare
 from tmm_cli.stack import NotAlikeError, varying
 from tmm_cli.structure.assur import analyse
@@ -173,6 +175,15 @@ def test_branches_by_data_are_refused():
 def test_a_table_is_read_on_tape():
     program = record(lambda x: {"y": np.interp(np.mod(x, 2.0), [0.0, 1.0, 2.0], [0.0, 5.0, 0.0])}, 2)
     assert np.allclose(program(np.array([0.5, 1.5, 2.2]))["y"], [2.5, 2.5, 1.0])
+
+
+def test_the_library_prepares_problem_files():
+    problem = load("problems/shaper.yaml")
+    results = solve(problem)
+    found = tmm_cli.prepare(problem)(results.motion.q)
+    assert np.allclose(found["T.1"], results.reactions.balance.moment, rtol=1e-12, atol=1e-12 * 400)
+    several = tmm_cli.prepare([problem, problem])(results.motion.q)
+    assert several["T.1"].shape == (2, 12)
 
 
 def test_keys_name_what_they_are():

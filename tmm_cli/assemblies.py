@@ -113,7 +113,7 @@ def find_assemblies(
 
     A group after them is there only when the sketch does not tell its assembly.
     """
-    motion = move(linkage, kernels, np.array([q]), Law(q, 1.0, 0.0, 1))
+    motion = move(linkage, kernels, np.array([q]), Law(q, 1.0, 0.0, 1), 0)
     decided = {kernel.group.links for kernel in kernels}
     undecided = next((group for group in structure.solved if group.links not in decided), None)
     found, lost = [], []

@@ -13,7 +13,7 @@ from tmm_cli.groups.base import Dyad, Kernel, Turn, reach
 from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move
+from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move, towards
 from tmm_cli.refused import Misfit, NoAssembly, Undecided
 from tmm_cli.structure.assur import Group, Structure
 
@@ -64,7 +64,7 @@ def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ..
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
     half = turns * np.pi if linkage.driver.kind == "turn" else reach(linkage)
     q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
-    motion = move(linkage, kernels, q, Law(at, 1.0, 0.0, 1))
+    motion = move(linkage, towards(kernels, links), q, Law(at, 1.0, 0.0, 1), 0)
     middle = len(q) // 2
     lost = np.flatnonzero(~motion.placed)
     first = int(lost[lost < middle].max(initial=-1)) + 1
@@ -179,6 +179,6 @@ def sketch_distance(sketched: Mapping[str, complex | float], hint: Hints, kernel
     return worst
 
 
-def source(linkage: Linkage, kernels: tuple[Kernel, ...], q: np.ndarray) -> Motion:
+def source(linkage: Linkage, kernels: tuple[Kernel, ...], q: np.ndarray, order: int = 2) -> Motion:
     """Motion of the links placed so far by the driver's place alone."""
-    return move(linkage, kernels, q, Law(linkage.sketch.at, 1.0, 0.0, 1))
+    return move(linkage, kernels, q, Law(linkage.sketch.at, 1.0, 0.0, 1), order)

@@ -22,7 +22,7 @@ from tmm_cli.groups.newton import CONVERGED, Newton
 from tmm_cli.groups.state import Drives, Placement, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import Linkage
-from tmm_cli.motion import Motion
+from tmm_cli.motion import Motion, towards
 from tmm_cli.refused import NoAssembly, TooLarge, Undecided
 from tmm_cli.structure.assur import Group
 from tmm_cli.vectors import Real, unit
@@ -61,8 +61,11 @@ def assembled(
 
 
 def _track(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State):  # type: ignore[no-untyped-def]
-    def upstream(q: Real) -> Upstream:
-        motion: Motion = source(linkage, before, q)
+    before = towards(before, {pair.other(link) for pair in kernel.group.outer for link in kernel.group.links
+                              if link in (pair.i, pair.j)} | {d.base for d in kernel.group.drivers})  # fmt: skip
+
+    def upstream(q: Real, order: int) -> Upstream:
+        motion: Motion = source(linkage, before, q, order)
         return Upstream(motion.poses, motion.first, motion.second, motion.drives, bool(motion.placed[0]))
 
     turns = linkage.driver.kind == "turn"

@@ -116,6 +116,8 @@ def prepare(
     if not all(isinstance(kernel, Dyad) and kernel.winding is None for kernel in kernels) or first.friction:
         return Batch(linkages, structure, kernels, asked, forces, strokes, None)
     columns, together = parts(varying(linkages))
+    if len(linkages) > 1 and not columns:  # all the same
+        columns = [np.zeros((len(linkages), 1))]
 
     def stages(*data: Any) -> Mapping[str, Any]:
         linkage = changed(first, together(*data[:-1])) if columns else first

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, pi
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]
 TAU = 2 * np.pi
@@ -35,12 +35,14 @@ def _parabolic(x: Any) -> tuple[Any, Any, Any]:
 
 
 def _cosine(x: Any) -> tuple[Any, Any, Any]:
-    return (1 - np.cos(np.pi * x)) / 2, np.pi / 2 * np.sin(np.pi * x), np.pi**2 / 2 * np.cos(np.pi * x)
+    half = pi(x)
+    return (1 - np.cos(half * x)) / 2, half / 2 * np.sin(half * x), half**2 / 2 * np.cos(half * x)
 
 
 def _sine(x: Any) -> tuple[Any, Any, Any]:
+    whole = 2 * pi(x)
     # 2 sin^2(pi x) is 1 - cos(2 pi x), which rounds to zero before the follower rests
-    return x - np.sin(TAU * x) / TAU, 2 * np.sin(np.pi * x) ** 2, TAU * np.sin(TAU * x)
+    return x - np.sin(whole * x) / whole, 2 * np.sin(pi(x) * x) ** 2, whole * np.sin(whole * x)
 
 
 def _polynomial5(x: Any) -> tuple[Any, Any, Any]:
@@ -101,7 +103,7 @@ class CamLaw:
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
-        turn = np.mod(np.asarray(angle) - self.start, TAU)
+        turn = np.mod(np.asarray(angle) - self.start, 2 * pi(angle))
         starts, overs, lows, rises = self._table
         number = np.clip(np.searchsorted(starts, turn, side="right") - 1, 0, len(self.pieces) - 1)
         over, rise = overs[number], rises[number]

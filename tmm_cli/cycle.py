@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from tmm_cli.linkage import FRAME, Linkage
 
+DENSE = 361  # places of a curve that is drawn, a turn
 MOST = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
 TEETH = 500  # denominators of ratios that are looked for
 

@@ -36,12 +36,12 @@ def _sketch(linkage: Linkage, driver: Driver) -> Sketch:
         kernels = assemble(linkage, analyse(linkage))
     except Refused:
         return linkage.sketch
-    motion = source(linkage, kernels, np.array([linkage.sketch.at]))
+    motion = source(linkage, kernels, np.array([linkage.sketch.at]), 0)
     points = {
-        point: complex(motion.named(point).x[0]) for n in linkage.moving for point in linkage.links[n].points
+        point: complex(motion.spot(point)[0]) for n in linkage.moving for point in linkage.links[n].points
         if point not in linkage.links[FRAME].points
     }  # fmt: skip
     angles = {name: float(np.angle(motion.poses[name].z)[0]) for name in linkage.moving}
     if driver.kind == "slide":
-        return Sketch(float(motion.slide(linkage.slide(driver.joint)).run[0]), points, angles)
+        return Sketch(float(motion.run(linkage.slide(driver.joint))[0]), points, angles)
     return Sketch(angles[driver.link], points, angles)

@@ -144,14 +144,21 @@ class Table:
     values: tuple[float, ...]
 
     def __call__(self, argument: Real) -> Real:
-        x, y = np.array(self.arguments), np.array(self.values)
-        if np.result_type(argument, x) == np.float64 or len(x) < 2:
-            found: Real = np.interp(argument, x, y)
-            return found
-        k = np.clip(np.searchsorted(x, argument, side="right") - 1, 0, len(x) - 2)  # np.interp knows float64 only
-        with np.errstate(invalid="ignore", divide="ignore"):
-            share = np.clip((argument - x[k]) / (x[k + 1] - x[k]), 0, 1)
-        return np.where(np.isnan(share), y[k + 1], y[k] + (y[k + 1] - y[k]) * share)
+        found: Real = (
+            np.interp(argument, self.arguments, self.values) if argument.dtype == float else self._wide(argument)
+        )
+        return found
+
+    def _wide(self, argument: Real) -> Real:
+        """The same in the precision of the argument, which np.interp does not know."""
+        at, size = (np.array(numbers, dtype=argument.dtype) for numbers in (self.arguments, self.values))
+        if len(at) < 2:
+            return np.full(np.shape(argument), size[0])
+        low = np.clip(np.searchsorted(at, argument, side="right") - 1, 0, len(at) - 2)
+        with np.errstate(invalid="ignore", divide="ignore"):  # where two arguments are equal the size jumps
+            share = np.clip((argument - at[low]) / (at[low + 1] - at[low]), 0, 1)
+        found: Real = np.where(np.isnan(share), size[low + 1], size[low] + share * (size[low + 1] - size[low]))
+        return found
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -84,7 +85,8 @@ class Motion:
     first and second are derivatives by q; drives say where all drivers are. finer: the positions of the mask `where` in
     extended precision.
 
-    margins: for each group its distance from a dead position, 1 at best. gaps: what it lacks to assemble (> 0), m.
+    order: 0 places only, 1 velocities too, 2 accelerations too. What was not computed is not there: asking for it is
+    NotComputed.
     """
 
     linkage: Linkage
@@ -104,6 +106,12 @@ class Motion:
     drives: Mapping[str, Drive] = field(default_factory=dict)
     finer: Motion | None = None
     where: Real | None = None
+    order: int = 2
+
+    def spot(self, point: str) -> Vector:
+        """Place of a named point, m."""
+        link = self.linkage.owner(point)
+        return self.poses[link].at(self.linkage.local(link, point))
 
     def point(self, link: str, local: complex) -> Point:
         """Motion of a point given in the axes of a link (m)."""
@@ -141,28 +149,79 @@ class Motion:
     def link(self, name: str) -> Turning:
         """Turning of a link."""
         w1, e1 = self.first[name].w, self.second[name].e
+        return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+
+    def angle(self, name: str) -> Real:
+        """Angle of a link, rad: in -pi..pi, of a crank that is driven as it is."""
         own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
-        angle = self.drives[name].value if own else np.angle(self.poses[name].z)
-        return Turning(angle, w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+        angle: Real = self.drives[name].value if own else np.angle(self.poses[name].z)
+        return angle
+
+    def run(self, slide: Slide) -> Real:
+        """Run in a sliding pair, m."""
+        return self._finest(lambda motion: motion._run(motion.linkage.slide(slide.name)))
+
+    def slope(self, slide: Slide) -> Real:
+        """First transfer function of the run in a sliding pair."""
+        return self._finest(lambda motion: motion._slope(motion.linkage.slide(slide.name)))
 
     def slide(self, slide: Slide) -> Sliding:
         """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
         return self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
 
+    def _run(self, slide: Slide) -> Real:
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        run: Real = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
+        return run
+
+    def _slope(self, slide: Slide) -> Real:
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        arm = runner.at(slide.at) - carrier.x
+        relative = self.first[slide.runner].at(slide.at * runner.z) - self.first[slide.carrier].at(arm)
+        slope: Real = dot(carrier.z * unit(slide.direction), relative)
+        return slope
+
     def _slide(self, slide: Slide) -> Sliding:
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         u = carrier.z * unit(slide.direction)
-        here = runner.at(slide.at)
-        run = dot(u, here - carrier.at(slide.through))
         point = self._point(slide.runner, slide.at)
         w = self.first[slide.carrier].w
-        arm = here - carrier.x
-        first = dot(u, point.first - self.first[slide.carrier].at(arm))
+        arm = runner.at(slide.at) - carrier.x
+        run, first = self._run(slide), self._slope(slide)
         # along the guide the Coriolis part vanishes, so the rest of the difference is the relative acceleration
         second = dot(u, point.second - self.second[slide.carrier].at(arm, w))
         v = first * self.rate
         coriolis = 2j * (w * self.rate) * v * u
         return Sliding(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
+
+
+class NotComputed(LookupError):  # noqa: N818  it says what is the matter
+    """Velocities or accelerations of a motion that was computed without them."""
+
+
+class Absent(dict[str, Any]):
+    """In the place of what was not computed."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self.what = what
+
+    def __missing__(self, link: str) -> Any:
+        raise NotComputed(f"{self.what} were not computed")
+
+
+def towards(kernels: Iterable[Kernel], links: Iterable[str]) -> tuple[Kernel, ...]:
+    """The groups that lie on the way from the drivers to some links, in solving order."""
+    wanted, kept = set(links), []
+    for kernel in reversed(tuple(kernels)):
+        group = kernel.group
+        if not wanted.isdisjoint(group.links):
+            pairs = (*group.outer, *group.inner)
+            wanted.update(link for pair in pairs for link in (pair.i, pair.j))
+            wanted.update(pair.mesh.carrier for pair in pairs if pair.mesh is not None)
+            wanted.update(link for driver in group.drivers for link in (driver.link, driver.base))
+            kept.append(kernel)
+    return tuple(reversed(kept))
 
 
 def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
@@ -216,9 +275,13 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
 
 
 def move(
-    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law, *, blank: bool = True, drives: Drives | None = None
-) -> Motion:
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: Law, order: int = 2, *, blank: bool = True,
+    drives: Drives | None = None,
+) -> Motion:  # fmt: skip
     """Kinematics at the first driver's places q (rad or m), each found alone.
+
+    Of the given groups only, which must include those they hang on (see towards); order: 0 places alone, 1 with
+    velocities, 2 with accelerations.
 
     A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it. blank:
     whether there are no numbers in such positions, but nan; else they are what the formulas give. drives: where the
@@ -226,13 +289,22 @@ def move(
     """
     kernels = tuple(kernels)
     q = np.atleast_1d(q)
-    poses, first, second = {}, {}, {}
-    poses[FRAME], first[FRAME], second[FRAME] = frame_state(q)
+    poses: dict[str, Pose] = {}
+    first: dict[str, Rate] = {} if order > 0 else Absent("velocities")
+    second: dict[str, Accel] = {} if order > 1 else Absent("accelerations")
+
+    def put(link: str, pose: Pose, rate: Rate, accel: Accel) -> None:
+        poses[link] = pose
+        if order > 0:
+            first[link] = rate
+        if order > 1:
+            second[link] = accel
+
+    put(FRAME, *frame_state(q))
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         drives = drives_at(linkage, q) if drives is None else drives
         for driver in linkage.cranks:
-            link = driver.link
-            poses[link], first[link], second[link] = driven_state(linkage, driver, drives[link])
+            put(driver.link, *driven_state(linkage, driver, drives[driver.link]))
     placed = np.ones(np.shape(q), dtype=bool)
     moving = placed.copy()
     placements, dead, missing = [], {}, {}
@@ -250,15 +322,17 @@ def move(
                 at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
             links = kernel.group.links
             poses.update(zip(links, at.poses, strict=True))
-            first.update(zip(links, kernel.rates(at, poses, first, drives), strict=True))
-            second.update(zip(links, kernel.accelerations(at, poses, first, second, drives), strict=True))
+            if order > 0:
+                first.update(zip(links, kernel.rates(at, poses, first, drives), strict=True))
+            if order > 1:
+                second.update(zip(links, kernel.accelerations(at, poses, first, second, drives), strict=True))
             placements.append(at)
     rate = law.speed(q)
     moving = moving & np.isfinite(rate)
     acceleration = np.full(np.shape(q), float(law.sense * law.acceleration))
     return Motion(
         linkage, kernels, q, law.time(q), rate, acceleration, poses, first, second,
-        tuple(placements), placed, moving, dead, missing, drives,
+        tuple(placements), placed, moving, dead, missing, drives, order=order,
     )  # fmt: skip
 
 

@@ -6,21 +6,20 @@ Only what is asked for is computed: the structure alone moves nothing, kinematic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tmm_cli.assembly import assemble
-from tmm_cli.groups.base import Kernel
+from tmm_cli.asked import carriers, check
 from tmm_cli.linkage import Linkage
+from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
-from tmm_cli.motion import Law, Motion, move
+from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.problem.record import Problem
-from tmm_cli.quality import DeadPosition, Range, find_dead, find_range
-from tmm_cli.refused import NoStrokes, NoSuchPosition, Refused
+from tmm_cli.refused import NoStrokes, NoSuchPosition
 from tmm_cli.structure.assur import Structure
-from tmm_cli.structure.naming import roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
@@ -30,7 +29,9 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.forces.friction import Losses, Rubbed
     from tmm_cli.forces.lever import Lever
     from tmm_cli.forces.plan import Reactions
+    from tmm_cli.groups.base import Kernel
     from tmm_cli.pressure import Pressure
+    from tmm_cli.quality import DeadPosition, Range
     from tmm_cli.strokes import Strokes, Travel
 
 CYCLE = 720  # places over which losses are summed up
@@ -40,15 +41,15 @@ Stage = Literal["structure", "kinematics", "forces"]
 
 @dataclass(frozen=True)
 class Results:
-    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle."""
+    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
+
+    of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
+    on the positions is found when it is asked for.
+    """
 
     problem: Problem
     structure: Structure
-    roles: dict[str, str]
-    kernels: tuple[Kernel, ...]
-    way: Range | None = None
-    dead: tuple[DeadPosition, ...] = ()
-    strokes: Strokes | None = None
+    mechanism: Mechanism
     numbers: tuple[int, ...] = ()
     motion: Motion | None = None
     loads: tuple[Applied, ...] = ()
@@ -57,22 +58,66 @@ class Results:
     friction: Rubbed | None = None
     losses: Losses | None = None
     energy: Energy | None = None
-    pressure: tuple[Pressure, ...] = ()
-    further: tuple[Strokes, ...] = ()
-    travels: tuple[Travel, ...] = ()
     assemblies: tuple[Assemblies, ...] | None = None
+    of: tuple[str, ...] = ()
+
+    @property
+    def roles(self) -> dict[str, str]:
+        return self.mechanism.roles
+
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """All groups in solving order; none where the sketch cannot be assembled."""
+        return self.mechanism.kernels if self.mechanism.assembles else ()
+
+    @property
+    def way(self) -> Range | None:
+        return self.mechanism.way if self.mechanism.assembles else None
+
+    @property
+    def strokes(self) -> Strokes | None:
+        return self.mechanism.strokes
+
+    @property
+    def dead(self) -> tuple[DeadPosition, ...]:
+        return () if self.of else self.mechanism.dead
+
+    @property
+    def further(self) -> tuple[Strokes, ...]:
+        return () if self.of else self.mechanism.further
+
+    @cached_property
+    def travels(self) -> tuple[Travel, ...]:
+        """How far the outputs go between the ends of what is asked for, where the driver does not turn fully."""
+        from tmm_cli.strokes import find_travel
+
+        if self.of or self.mechanism.way.full:
+            return ()
+        found = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.mechanism.outputs]
+        return tuple(t for t in found if t is not None)
+
+    @cached_property
+    def pressure(self) -> tuple[Pressure, ...]:
+        """Pressure angles of the driven links."""
+        from tmm_cli.pressure import find_pressure
+
+        if self.of or self.motion is None:
+            return ()
+        limits = self.problem.pressure_limits
+        return find_pressure(self.linkage, self.kernels, self.mechanism.way, self.motion, limits)
 
     @property
     def linkage(self) -> Linkage:
         return self.problem.linkage
 
-    @property
+    @cached_property
     def asked(self) -> Real:
         """The driver's places of all positions of the file, whether they were computed or not (rad or m)."""
         from tmm_cli.strokes import places
 
-        assert self.way is not None
-        return places(self.problem.request, self.way, self.strokes, self.linkage.driver.sense)
+        request = self.problem.request
+        strokes = self.strokes if request.start == "working stroke" else None
+        return places(request, self.mechanism.way, strokes, self.linkage.driver.sense)
 
     @property
     def start(self) -> float:
@@ -82,8 +127,8 @@ class Results:
     def closely(self, count: int) -> Real:
         """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
         driver = self.linkage.driver
-        if self.way is not None and self.way.full and driver.kind == "turn":
-            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.way.turns, count)
+        if self.mechanism.way.full and driver.kind == "turn":
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.mechanism.way.turns, count)
         asked = self.asked
         return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 
@@ -102,41 +147,52 @@ class Results:
         return bool(np.all(difference <= self.problem.lever_limit))
 
 
-def solve(problem: Problem, stage: Stage = "forces", positions: Sequence[int] | None = None) -> Results:
+ON_DEMAND = ("kernels", "way", "output", "outputs", "strokes", "further", "dead", "roles")  # of the mechanism
+OF_POSITIONS = ("travels", "pressure")
+
+
+def given(results: Results, **found: Any) -> Results:
+    """The same results with some of their parts given, those too that are found on demand (way, strokes, pressure...).
+
+    The others of these are the parts of `results` itself; they are not found anew.
+    """
+    own = {f.name: found[f.name] for f in fields(Results) if f.name in found}
+    new = replace(results, **own)
+    mechanism = Mechanism(new.linkage, new.structure)
+    for name in ON_DEMAND:
+        vars(mechanism)[name] = found[name] if name in found else getattr(results.mechanism, name)
+    new = replace(new, mechanism=mechanism)
+    for name in OF_POSITIONS:
+        vars(new)[name] = found[name] if name in found else getattr(results, name)
+    return new
+
+
+def solve(
+    problem: Problem, stage: Stage = "forces", positions: Sequence[int] | None = None, of: Sequence[str] = ()
+) -> Results:
     """Run the stages up to the one asked for, at all positions of the file or at those numbered.
 
-    Raises Refused: WrongMobility, NoSuchPosition, NoStrokes, and what assembly raises.
+    of: points, links, centres of mass; then kinematics solves the groups on the way to them only.
+    Raises Refused: WrongMobility, NoSuchPosition, NoSuchName, NoStrokes, and what assembly raises.
     """
     linkage = problem.linkage
     structure = mobile(linkage)
+    results = Results(problem, structure, Mechanism(linkage, structure), of=tuple(of))
     if stage == "structure":
-        return _structure_only(problem, structure)
-    from tmm_cli.pressure import find_pressure
-    from tmm_cli.strokes import find_strokes, find_travel, output_link, places, resisted
-
-    kernels = assemble(linkage, structure)
-    way = find_range(linkage, kernels)
-    strokes = find_strokes(linkage, kernels, way, resisted(linkage, output_link(linkage, structure.groups)))
-    _need_strokes(problem, strokes, way)
-    q = places(problem.request, way, strokes, linkage.driver.sense)
+        return results
+    kernels = results.mechanism.kernels
+    if of:
+        check(linkage, of)
+        kernels = towards(kernels, carriers(linkage, kernels, of))
+    _need_strokes(results)
+    q = results.asked
     numbers = tuple(range(len(q))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(q):
             raise NoSuchPosition(number, len(q))
     law = _law(linkage, float(q[0]))
     motion = move(linkage, kernels, q[list(numbers)], law)
-    motion = _refined(problem, motion, q, numbers, law)
-    named = roles(linkage, turning_links(linkage, kernels, way))
-    dead = find_dead(linkage, kernels, way)
-    results = Results(problem, structure, named, kernels, way, dead, strokes, numbers, motion)
-    results = replace(results, pressure=find_pressure(linkage, kernels, way, motion, problem.pressure_limits))
-    outputs = [o.link for o in linkage.outputs] or [link for link in (output_link(linkage, structure.groups),) if link]
-    if way.full:
-        found = [find_strokes(linkage, kernels, way, link=link) for link in outputs[1:]]
-        results = replace(results, further=tuple(s for s in found if s is not None))
-    else:
-        travels = [find_travel(linkage, kernels, q, link) for link in outputs]
-        results = replace(results, travels=tuple(t for t in travels if t is not None))
+    results = replace(results, numbers=numbers, motion=_refined(problem, motion, q, numbers, law))
     return results if stage == "kinematics" else with_forces(results)
 
 
@@ -161,36 +217,47 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
 
     motion = results.motion
     assert motion is not None
-    loads = applied(motion, results.strokes)
+    strokes = results.strokes if any(x.working_stroke_only or x.table for x in results.linkage.loads) else None
+    loads = applied(motion, strokes)
     reactions = react(motion, results.structure, loads)
     if motion.finer is not None and motion.where is not None:
         from tmm_cli.splice import spliced
 
-        exact = applied(motion.finer, results.strokes)
+        exact = applied(motion.finer, strokes)
         structure = results.structure.again(motion.finer.linkage)
         loads = spliced(loads, exact, motion.where)
         reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import losses, rub
+        from tmm_cli.forces.friction import rub
 
         rubbed = rub(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
-            whole = at_positions(results, results.closely(CYCLE + 1))
-            acting = applied(whole, results.strokes)
-            everywhere = rub(whole, results.structure, acting, react(whole, results.structure, acting))
-            lost = losses(everywhere, whole)
+            lost = cycle_losses(results)
     drivers = power(motion, reactions)
-    return replace(
+    found = replace(
         results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
         energy=energy(motion, loads, drivers),
     )  # fmt: skip
+    vars(found).update({name: vars(results)[name] for name in OF_POSITIONS if name in vars(results)})
+    return found
 
 
-def at_positions(results: Results, q: Real) -> Motion:
+def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
+    """What friction takes over the cycle, summed up over so many places."""
+    from tmm_cli.forces.friction import losses, rub
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import react
+
+    whole = at_positions(results, results.closely(places + 1))
+    acting = applied(whole, results.strokes)
+    return losses(rub(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
+
+
+def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
-    return move(results.linkage, results.kernels, q, _law(results.linkage, results.start))
+    return move(results.linkage, results.kernels, q, _law(results.linkage, results.start), order)
 
 
 def _law(linkage: Linkage, start: float) -> Law:
@@ -206,41 +273,19 @@ def at_places(results: Results, q: Real) -> Results:
     return moved if results.reactions is None else with_forces(moved, cycle=False)
 
 
-def turning_links(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> dict[str, bool]:
-    """Which links turn through 360 degrees while the driver goes its way."""
-    turned = {d.link: way.full and d.kind == "turn" for d in linkage.cranks}
-    hung = [d for d in kernels if any(linkage.hinged_to_frame(link) for link in d.group.links)]
-    if hung and way.full:
-        motion = move(
-            linkage, kernels, np.linspace(way.start, way.end, 720 * way.turns + 1), Law(way.start, 1.0, 0.0, 1)
-        )
-        for dyad in hung:
-            for link in dyad.group.links:
-                angle = np.unwrap(np.angle(motion.poses[link].z))
-                turned[link] = bool(abs(angle[-1] - angle[0]) > np.pi)
-    return turned
-
-
-def _structure_only(problem: Problem, structure: Structure) -> Results:
-    """Names of links need a turn of the driver; where it cannot be assembled yet, names come from the pairs alone."""
-    linkage = problem.linkage
-    try:
-        kernels = assemble(linkage, structure)
-    except Refused:  # kinematics will say what is wrong; the structure stands without it
-        turns = {linkage.driver.link: linkage.driver.kind == "turn"}
-        return Results(problem, structure, roles(linkage, turns), ())
-    way = find_range(linkage, kernels)
-    return Results(problem, structure, roles(linkage, turning_links(linkage, kernels, way)), kernels, way)
-
-
-def _need_strokes(problem: Problem, strokes: Strokes | None, way: Range) -> None:
+def _need_strokes(results: Results) -> None:
     """Refuse what rests on strokes that are not there, rather than quietly doing without."""
+    problem, way = results.problem, results.mechanism.way
+    loads = [x for x in problem.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
+    if problem.request.start != "working stroke" and not loads:
+        return
+    strokes = results.strokes
     if strokes is not None and strokes.strokes:
         return
     link = strokes.link if strokes else None
     if problem.request.start == "working stroke" and way.full:
         raise NoStrokes(link, ("positions", "from"))
-    for load in problem.linkage.loads:
+    for load in loads:
         if load.working_stroke_only and way.full:
             raise NoStrokes(link, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":

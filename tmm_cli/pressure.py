@@ -13,7 +13,7 @@ that is the angle above, and it is 90 deg in dead positions only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -22,7 +22,7 @@ import numpy as np
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Placement, Wrench
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.motion import Law, Motion, move
+from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.quality import SCAN, Range
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
@@ -131,33 +131,30 @@ def find_pressure(
     law = Law(way.start, 1.0, 0.0, 1)
     ends = (way.end - way.start) * 1e-9 * (not way.full)
     q = np.linspace(way.start + ends, way.end - ends, SCAN * way.turns + 1)
-    scan = move(linkage, kernels, q, law)
+    scan = move(linkage, kernels, q, law, 0)  # statics needs no velocities
     found = []
     with np.errstate(all="ignore"):
         for number, kernel in enumerate(kernels):
+            upto = towards(kernels, kernel.group.links)
             for lead in followers(kernel.group):
-                of = partial(_of, number, kernel, lead)
-                angles = of(scan)
+                angles = angle(scan, kernel, scan.placements[number], lead)
                 if not np.any(np.isfinite(angles)):
                     continue
                 k = int(np.nanargmax(angles))
                 place, value = float(q[k]), float(angles[k])
                 if value > 0:
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
-                    back = partial(_negative, of, linkage, kernels)
+                    back = partial(_negative, linkage, upto, lead)
                     place, value = least(back, low, high)
                     place, value = top(back, place, min(high - place, place - low)), -value
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
-                found.append(
-                    Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit, of(motion))
-                )
+                here = angle(motion, kernel, motion.placements[number], lead)
+                found.append(Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit, here))
     return tuple(found)
 
 
-def _of(number: int, kernel: Kernel, lead: Lead, motion: Motion) -> Real:
-    return angle(motion, kernel, motion.placements[number], lead)
-
-
-def _negative(of: Callable[[Motion], Real], linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
-    return -of(move(linkage, kernels, q, Law(0.0, 1.0, 0.0, 1)))
+def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:
+    """Of the last group."""
+    motion = move(linkage, kernels, q, Law(0.0, 1.0, 0.0, 1), 0)
+    return -angle(motion, kernels[-1], motion.placements[-1], lead)

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_cli.cycle import MOST, turns_of_cycle
 from tmm_cli.groups.base import Dyad, Kernel, reach
 from tmm_cli.linkage import Linkage
-from tmm_cli.motion import Law, Motion, move
+from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.roots import least, roots
 from tmm_cli.vectors import Real
 
@@ -86,10 +86,10 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
     # np.unique would import masked arrays, which costs more than all the rest of this stage
     steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
     law = Law(at, 1.0, 0.0, 1)
-    side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law).placements]
-    scan = move(linkage, kernels, at + steps, law)
+    side = [np.sign(p.det[0]) for p in move(linkage, kernels, np.array([at]), law, 0).placements]
+    scan = move(linkage, kernels, at + steps, law, 0)
     steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
-    lost = _lost(move(linkage, kernels, at + steps, law), side)
+    lost = _lost(move(linkage, kernels, at + steps, law, 0), side)
     stopped = _stopped(linkage, at + steps)
     if not bool(np.any(lost)) and not bool(np.any(stopped)):
         back = cycle is not None and (not turns or _returned(linkage, kernels, at, half))
@@ -108,7 +108,7 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> Range:
             between = between[(between != good) & (between != bad)]
             if not between.size:
                 break
-            gone = np.any(_lost(move(linkage, kernels, between, law), side), axis=0) | _stopped(linkage, between)
+            gone = np.any(_lost(move(linkage, kernels, between, law, 0), side), axis=0) | _stopped(linkage, between)
             found = np.flatnonzero(gone)
             places = np.array([good, *between, bad])
             there = int(found[0]) + 1 if found.size else len(places) - 1
@@ -142,7 +142,7 @@ def _stopped(linkage: Linkage, q: Real) -> Real:
 
 def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
     """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
-    motion = move(linkage, kernels, np.array([at, at + 2 * half]), Law(at, 1.0, 0.0, 1))
+    motion = move(linkage, kernels, np.array([at, at + 2 * half]), Law(at, 1.0, 0.0, 1), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
     moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
     return bool(max(moved) < BACK)
@@ -197,8 +197,10 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: Motion, number
     close = np.flatnonzero((inner >= gap[:-2]) & (inner > gap[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     step = scan.q[1] - scan.q[0]
 
+    way = towards(kernels, kernels[number].group.links)
+
     def slack(q: Real) -> Real:
-        return -move(linkage, kernels[: number + 1], q, Law(0.0, 1.0, 0.0, 1)).placements[number].gap
+        return -move(linkage, way, q, Law(0.0, 1.0, 0.0, 1), 0).placements[-1].gap
 
     return np.array([least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
 
@@ -238,7 +240,7 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tupl
     """Dead positions inside the driver's way (its limits are dead too and are not repeated here)."""
     q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
     law = Law(way.start, 1.0, 0.0, 1)
-    motion = move(linkage, kernels, q, law)
+    motion = move(linkage, kernels, q, law, 0)
     found = []
     for number, dyad in enumerate(kernels):
         at = motion.placements[number]
@@ -249,25 +251,26 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], way: Range) -> tupl
         steps = q[1] - q[0]
         if way.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
-        passed = _passed(linkage, kernels, number, way)
+        upto = towards(kernels, dyad.group.links)
+        passed = _passed(linkage, upto, way)
         found += passed
         for place in places:
             if any(abs(_apart(place, p.place, way)) <= 2 * steps for p in passed):
                 continue
-            best, left = least(partial(_margin, linkage, kernels, number), place - steps, place + steps)
+            best, left = least(partial(_margin, linkage, upto), place - steps, place + steps)
             if left < DEAD and (way.full or way.start + steps < best < way.end - steps):
-                best = _pinned(linkage, kernels[: number + 1], best, steps)
+                best = _pinned(linkage, upto, best, steps)
                 found.append(DeadPosition(best, dyad.group.title, left))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
-def _passed(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, way: Range) -> list[DeadPosition]:
-    """Dead positions inside the way that a followed group passes smoothly: they are nodes of its track."""
-    track, title = kernels[number].followed, kernels[number].group.title
+def _passed(linkage: Linkage, upto: tuple[Kernel, ...], way: Range) -> list[DeadPosition]:
+    """Dead positions inside the way that a followed group, the last one, passes smoothly: nodes of its track."""
+    track, title = upto[-1].followed, upto[-1].group.title
     if track is None or not track.dead.size:
         return []
     places = track.dead_within(way.start, way.end)
-    left = _margin(linkage, kernels, number, places) if places.size else places
+    left = _margin(linkage, upto, places) if places.size else places
     return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
 
 
@@ -277,9 +280,10 @@ def _apart(one: float, other: float, way: Range) -> float:
     return one - other - cycle * round((one - other) / cycle) if way.full else one - other
 
 
-def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], number: int, q: Real) -> Real:
-    motion = move(linkage, kernels[: number + 1], q, Law(0.0, 1.0, 0.0, 1))
-    return np.where(motion.placed, motion.placements[number].margin, 0.0)
+def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+    """Of the last group."""
+    motion = move(linkage, kernels, q, Law(0.0, 1.0, 0.0, 1), 0)
+    return np.where(motion.placed, motion.placements[-1].margin, 0.0)
 
 
 def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
@@ -292,7 +296,7 @@ def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: f
         return place
 
     def closing(q: Real) -> Real:
-        before = move(linkage, kernels[:-1], q, Law(0.0, 1.0, 0.0, 1))
+        before = move(linkage, kernels[:-1], q, Law(0.0, 1.0, 0.0, 1), 1)
         return last.closing(last.closed(before.poses), before.poses, before.first)
 
     low, high = np.array([place - step]), np.array([place + step])

@@ -67,6 +67,14 @@ class NoSuchPosition(Refused):
         self.number, self.count = number, count
 
 
+class NoSuchName(Refused):
+    """Something is asked for by a name that nothing has; allowed: those that are."""
+
+    def __init__(self, name: str, allowed: tuple[str, ...]) -> None:
+        super().__init__(name)
+        self.name, self.allowed = name, allowed
+
+
 class NoStrokes(Refused):
     """Strokes of the output are needed, by the key at `path` of the file, but it has none."""
 

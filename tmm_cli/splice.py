@@ -10,9 +10,27 @@ import numpy as np
 
 from tmm_cli.vectors import Real
 
-KEPT = ("linkage", "kernels", "group", "pair", "driver", "finer", "where")  # what is no array over positions
+KEPT = ("linkage", "kernels", "group", "pair", "driver", "finer", "where", "order")  # what is no array over positions
 
 Part = TypeVar("Part")
+
+
+def taken(record: Part, chosen: Real, count: int) -> Part:
+    """A record of arrays over so many positions with the chosen ones only; all that are in a finer one are chosen."""
+    found: Any = record
+    if isinstance(record, np.ndarray):
+        if record.shape[-1:] == (count,):
+            found = record[..., chosen]
+    elif is_dataclass(record) and not isinstance(record, type):
+        kept = tuple(name for name in (*KEPT, "mechanism", "problem", "structure") if name != "where")
+        changed = {f.name: taken(getattr(record, f.name), chosen, count) for f in fields(record) if f.name not in kept}
+        found = replace(record, **changed)
+    elif isinstance(record, Mapping):
+        found = {key: taken(value, chosen, count) for key, value in record.items()}
+    elif isinstance(record, tuple) and not all(isinstance(part, int | float | str) for part in record):
+        found = tuple(taken(part, chosen, count) for part in record)
+    part: Part = found
+    return part
 
 
 def spliced(full: Part, part: Part, where: Real) -> Part:

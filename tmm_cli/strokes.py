@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.groups.base import Kernel
-from tmm_cli.linkage import FRAME, Linkage, Load, Request
-from tmm_cli.motion import Law, Motion, move
+from tmm_cli.linkage import FRAME, Linkage, Load, Request, Slide
+from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.quality import SCAN, Range
 from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Group
@@ -88,12 +88,29 @@ def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
 
 def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
     """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
-    for slide in motion.linkage.slides:
-        if {slide.carrier, slide.runner} == {FRAME, link}:
-            sliding = motion.slide(slide)
-            return sliding.run, sliding.first, sliding.second
+    slide = _guide(motion.linkage, link)
+    if slide is not None:
+        sliding = motion.slide(slide)
+        return sliding.run, sliding.first, sliding.second
     turning = motion.link(link)
     return turning.angle, turning.first, turning.second
+
+
+def output_place(motion: Motion, link: str) -> Real:
+    """Run of the output (m, or its angle in rad) alone."""
+    slide = _guide(motion.linkage, link)
+    return motion.angle(link) if slide is None else motion.run(slide)
+
+
+def output_slope(motion: Motion, link: str) -> Real:
+    """First transfer function of the output alone."""
+    slide = _guide(motion.linkage, link)
+    return motion.first[link].w if slide is None else motion.slope(slide)
+
+
+def _guide(linkage: Linkage, link: str) -> Slide | None:
+    """The sliding pair of a link on the frame."""
+    return next((s for s in linkage.slides if {s.carrier, s.runner} == {FRAME, link}), None)
 
 
 @dataclass(frozen=True)
@@ -113,16 +130,17 @@ def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link
     kind = "slide" if linkage.slides_on_frame(link) else "swing"
     law = Law(0.0, 1.0, 0.0, 1)
     q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
-    moved = move(linkage, kernels, q, law)
-    run, slope, _ = output_run(moved, link)
+    moved = move(linkage, kernels, q, law, 1)  # all groups: it goes only where the whole linkage can
+    run, slope = output_place(moved, link), output_slope(moved, link)
     q, run, slope = q[moved.placed], run[moved.placed], slope[moved.placed]
     if len(q) < 2:
         return None
     run = np.unwrap(run) if kind == "swing" else run
     change = np.flatnonzero(slope[:-1] * slope[1:] < 0)
     if change.size:
-        ends = roots(lambda x: output_run(move(linkage, kernels, x, law), link)[1], q[change], q[change + 1])
-        there = output_run(move(linkage, kernels, ends, law), link)[0]
+        upto = towards(kernels, [link])
+        ends = roots(lambda x: output_slope(move(linkage, upto, x, law, 1), link), q[change], q[change + 1])
+        there = output_place(move(linkage, upto, ends, law, 0), link)
         if kind == "swing":
             there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
         q, run = np.concatenate([q, ends]), np.concatenate([run, there])
@@ -143,15 +161,18 @@ def find_strokes(
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None
     kind = "slide" if linkage.slides_on_frame(link) else "swing"
+    if not way.full:
+        return Strokes(link, kind, (), "")
     sense = linkage.driver.sense
     law = Law(way.start, 1.0, 0.0, 1)
+    kernels = towards(kernels, [link])
     q = np.linspace(way.start, way.end, SCAN * way.turns + 1)
-    if way.full:  # one step more: at the seam of the scan rounding may hide the end of a stroke
-        q = np.append(q, q[-1] + (q[1] - q[0]))
+    # one step more: at the seam of the scan rounding may hide the end of a stroke
+    q = np.append(q, q[-1] + (q[1] - q[0]))
     cycle = 2 * np.pi * way.turns
 
     def slope_at(x: Real) -> Real:
-        return output_run(move(linkage, kernels, x, law), link)[1]
+        return output_slope(move(linkage, kernels, x, law, 1), link)
 
     slope = slope_at(q)
     moves = np.flatnonzero(slope)
@@ -173,7 +194,7 @@ def find_strokes(
     runs = _runs(linkage, kernels, turns, lengths, link, kind)
     rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
     lengths = lengths - rests
-    lows = output_run(move(linkage, kernels, turns, law), link)[0]
+    lows = output_place(move(linkage, kernels, turns, law, 0), link)
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
     direction, rule = _working(linkage, forward, back, resists)
     strokes = [
@@ -252,7 +273,7 @@ def _runs(linkage: Linkage, kernels: tuple[Kernel, ...], turns: Real, lengths: R
     """How far the output goes in each stroke (an angle is followed through, so that it may pass 180 degrees)."""
     law = Law(0.0, 1.0, 0.0, 1)
     places = turns[:, None] + linkage.driver.sense * lengths[:, None] * np.linspace(0, 1, 65)
-    run = output_run(move(linkage, kernels, places.ravel(), law), link)[0].reshape(places.shape)
+    run = output_place(move(linkage, kernels, places.ravel(), law, 0), link).reshape(places.shape)
     if kind == "swing":
         run = np.unwrap(run, axis=1)
     return run[:, -1] - run[:, 0]

@@ -11,6 +11,14 @@ Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
 Vector = NDArray[Any]  # complex arrays, likewise
 
 
+PI = "3.14159265358979323846264338327950288"
+
+
+def pi(values: Any) -> Any:
+    """Pi in the precision of an array."""
+    return np.asarray(values).real.dtype.type(PI)
+
+
 def dot(a: Any, b: Any) -> Any:
     """Scalar product a.b."""
     return a.real * b.real + a.imag * b.imag

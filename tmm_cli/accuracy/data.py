@@ -61,9 +61,8 @@ def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
         else:
             record: Any = {"links": links, "slides": slides, "loads": loads, "springs": springs}[kind]
             record[name] = replace(record[name], **{part: getattr(record[name], part) + more})
-    return replace(
-        linkage, links=links, slides=tuple(slides.values()), loads=tuple(loads.values()), springs=tuple(springs.values())
-    )  # fmt: skip
+    linkage = replace(linkage, links=links, slides=tuple(slides.values()))
+    return replace(linkage, loads=tuple(loads.values()), springs=tuple(springs.values()))
 
 
 def _vectors(linkage: Linkage) -> Any:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,8 +26,9 @@ from tmm_cli.accuracy.data import Length, angles, changed, lengths, shaken, wide
 from tmm_cli.extended import WIDER, near_dead, refined
 from tmm_cli.groups.base import Kernel
 from tmm_cli.linkage import FRAME, Linkage, Request
+from tmm_cli.mechanism import Mechanism
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pipeline import Results, with_forces
+from tmm_cli.pipeline import Results, given, with_forces
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.strokes import Strokes, output_run
@@ -77,8 +78,8 @@ def judged(
     """Digits of what `of` reads out of results with a motion, at all their positions.
 
     mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are sums of parts of one size.
-    wider: False is for machines whose longdouble is a double.
+    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are
+    sums of parts of one size. wider: False is for machines whose longdouble is a double.
     """
     motion = results.motion
     assert motion is not None
@@ -100,7 +101,19 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel,
     where = near_dead(motion)
     if WIDER and bool(np.any(where)):
         motion = refined(motion, widened(linkage), q[where].astype(np.longdouble), law, where)
-    results = Results(problem, structure, {}, kernels, numbers=tuple(range(len(q))), motion=motion)
+    mechanism = Mechanism(linkage, structure)
+    nothing: dict[str, Any] = {
+        "way": None,
+        "output": None,
+        "outputs": (),
+        "strokes": None,
+        "further": (),
+        "dead": (),
+        "roles": {},
+    }
+    vars(mechanism).update(nothing, kernels=kernels)  # nothing but the positions themselves is looked for
+    results = Results(problem, structure, mechanism, tuple(range(len(q))), motion)
+    vars(results).update(travels=(), pressure=())
     return with_forces(results, cycle=False)
 
 
@@ -123,7 +136,8 @@ def _turns(key: Hashable) -> bool:
 
 def quantities(results: Results) -> Cells:
     """The motion and reactions of results, by quantity, name and component."""
-    motion, found = results.motion, {}
+    motion = results.motion
+    found: dict[Hashable, Real] = {}
     assert motion is not None
 
     def put(quantity: str, name: str, value: Real) -> None:
@@ -241,7 +255,7 @@ def _judge(
 
 
 def _gap(one: Real, other: Real, turns: bool) -> Real:
-    away = np.abs(one - other)
+    away: Real = np.abs(one - other)
     return np.minimum(away, np.abs(2 * np.pi - away)) if turns else away
 
 
@@ -278,9 +292,9 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         strokes = _begun(strokes, linkage, kernels, q)
-    found = replace(
-        results, problem=replace(results.problem, linkage=linkage), structure=results.structure.again(linkage), kernels=kernels, motion=moved, numbers=numbers,
-        strokes=strokes, pressure=_pressed(results, moved),
+    found = given(
+        results, problem=replace(results.problem, linkage=linkage), structure=results.structure.again(linkage),
+        kernels=kernels, motion=moved, numbers=numbers, strokes=strokes, pressure=_pressed(results, moved),
     )  # fmt: skip
     return found if results.reactions is None else with_forces(found, cycle=False)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from tmm_cli.accuracy import board, closed, differences, loops, multibody, precision
+from tmm_cli.accuracy import board, closed, differences, loops, multibody, precision, taped
 from tmm_cli.accuracy.case import Method
 
 OURS = Method("closed", "closed", closed.prepare)
+TAPED = Method("taped", "taped", taped.prepare)
 METHODS: tuple[Method, ...] = (
     OURS,
+    TAPED,
     *(Method(f"newton-{k}", "newton", loops.prepare(10.0**-k), 10.0**-k) for k in range(2, 16)),
     Method("multibody", "multibody", multibody.prepare),
     *(Method(f"differences-{k}", "differences", differences.prepare(10.0**-k), 10.0**-k) for k in range(1, 9)),

@@ -8,23 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.digits import U, exact
+from tmm_cli.accuracy.data import Length, changed, lengths
+from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, U, exact
 from tmm_cli.extended import WIDER
 from tmm_cli.groups.base import Dyad
+from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pipeline import Results
+from tmm_cli.pipeline import CYCLE, Results, cycle_losses, given
 from tmm_cli.pressure import NOTHING, angle, followers
-from tmm_cli.strokes import Strokes, Travel, output_run
+from tmm_cli.strokes import RESTS, Strokes, Travel, output_run
 from tmm_cli.vectors import Real
 
 Cells = Mapping[Hashable, Real]
 Shift = tuple[Results, float]  # results with one number shifted, and by how many of its bounds
 
 FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
+SMOOTH = 1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
 NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
 LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
 LEAST = 1e-12  # of the way: ends of groups that were followed there
@@ -41,22 +45,33 @@ class Searched:
     blur: float = 0.0
 
 
-def searched(results: Results, of: Callable[[Results], Cells]) -> Searched:
-    """Judge what `of` reads out of results that belongs to no position."""
+def searched(results: Results, of: Callable[[Results], Cells], mu: float) -> Searched:
+    """Judge what `of` reads out of results that belongs to no position. mu: scale of the drawing (m a mm)."""
     values, found = of(results), Searched()
     shifts = list(_shifts(results, found))
     for key, value in values.items():
         found.bound[key] = 2 * U * np.abs(np.asarray(value, float))
-        found.lengths[key] = found.paper[key] = np.full(np.shape(value), np.nan)
+        found.lengths[key], found.paper[key] = np.zeros((2, *np.shape(value)))
     with np.errstate(invalid="ignore"):
         for shifted, times in shifts:
             moved = of(shifted)
             for key, value in values.items():
-                if key in moved and np.shape(moved[key]) == np.shape(value):
-                    gap = np.abs(np.asarray(moved[key], float) - np.asarray(value, float))
-                    gap = np.minimum(gap, np.abs(gap - 2 * np.pi)) if times > 1 else gap
-                    found.bound[key] = found.bound[key] + np.where(np.isnan(value), 0.0, gap) / times
+                found.bound[key] = found.bound[key] + np.where(np.isnan(value), 0.0, _gap(moved, key, value)) / times
+        for changed_ones, by, length in _responses(results):
+            moved = of(changed_ones)
+            for key, value in values.items():
+                rate = _gap(moved, key, value) / by
+                found.lengths[key] = found.lengths[key] + rate * SHARE * abs(length.value)
+                found.paper[key] = found.paper[key] + rate * PAPER * mu
     return found
+
+
+def _gap(moved: Cells, key: Hashable, value: Real) -> Real:
+    """How far a number has moved; a full turn is no way, and what is not there any more has not moved."""
+    if key not in moved or np.shape(moved[key]) != np.shape(value):
+        return np.zeros(np.shape(value))
+    gap: Real = np.abs(np.asarray(moved[key], float) - np.asarray(value, float))
+    return np.where(np.abs(gap - 2 * np.pi) < 1e-3, np.abs(gap - 2 * np.pi), gap)
 
 
 def _shifts(results: Results, found: Searched) -> Iterator[Shift]:
@@ -70,9 +85,7 @@ def _shifts(results: Results, found: Searched) -> Iterator[Shift]:
         place, limit = getattr(way, name), None if way.full else _limit(results, getattr(way, name))
         bound = 2 * U * abs(place) if limit is None else wide.end(place, towards, limit, span)
         found.blur = max(found.blur, 0.0 if way.full else bound)
-        yield _shifted(
-            bound, lambda by, name=name: replace(results, way=replace(way, **{name: getattr(way, name) + by}))
-        )
+        yield _shifted(bound, partial(_with_way, results, name))
     for number, strokes in enumerate((results.strokes, *results.further)):
         if strokes is None or not strokes.strokes:
             continue
@@ -85,28 +98,116 @@ def _shifts(results: Results, found: Searched) -> Iterator[Shift]:
         for k, bound in enumerate(bounds):
             own = {"start": bound, "length": bound + after[k], "low": lows[k], "run": lows[k] + high[k]}
             for part, by in own.items():
-                yield _shifted(float(by), lambda by, n=number, k=k, p=part: _with_stroke(results, n, k, p, by))
+                yield _shifted(float(by), partial(_with_stroke, results, number, k, part))
+    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
+        yield given(results, losses=cycle_losses(results, CYCLE // 2)), 1.0
     for k, travel in enumerate(results.travels):
         for part, by in wide.travel(travel).items():
-            yield _shifted(by, lambda by, k=k, p=part: _with(results, "travels", k, p, by))
+            yield _shifted(by, partial(_with, results, "travels", k, part))
     for k, dead in enumerate(results.dead):
-        yield _shifted(wide.dead(dead.place, dead.group, span), lambda by, k=k: _with(results, "dead", k, "place", by))
-        yield _shifted(1e-6, lambda by, k=k: _with(results, "dead", k, "margin", by))
+        yield _shifted(wide.dead(dead.place, dead.group, span), partial(_with, results, "dead", k, "place"))
+        yield _shifted(dead.margin + 4 * U, partial(_with, results, "dead", k, "margin"))
     for k, pressure in enumerate(results.pressure):
         largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
-        yield _shifted(largest, lambda by, k=k: _with(results, "pressure", k, "largest", -by))
-        yield _shifted(there, lambda by, k=k: _with(results, "pressure", k, "place", by))
+        yield _shifted(largest, partial(_with, results, "pressure", k, "largest"), -1.0)
+        yield _shifted(there, partial(_with, results, "pressure", k, "place"))
 
 
-def _shifted(bound: float, by: Callable[[float], Results]) -> Shift:
+def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
+    """The results with what was searched for as it is when one length is changed, by how much, and which one.
+
+    At an extreme the place does not matter to first order, so values there are taken where they were found. Places that
+    are no roots of a derivative which is known have no such answer: nan.
+    """
+    way, linkage = results.way, results.linkage
+    if way is None:
+        return
+    nowhere = float("nan")
+    lost = given(
+        results, way=way if way.full else replace(way, start=nowhere, end=nowhere),
+        dead=tuple(replace(d, place=nowhere) for d in results.dead),
+    )  # fmt: skip
+    data = lengths(linkage)
+    for length in data:
+        by = STEP * max(abs(other.value) for other in data if other.link == length.link)
+        moved = changed(linkage, length, by)
+        both = (results.kernels, tuple(kernel.again(moved) for kernel in results.kernels))
+
+        def motions(places: Any, both: Any = both, moved: Linkage = moved) -> tuple[Motion, Motion]:
+            q = np.atleast_1d(np.array(places, dtype=float))
+            law = Law(0.0, 1.0, 0.0, 1)
+            return move(linkage, both[0], q, law), move(moved, both[1], q, law)
+
+        further = tuple(_strokes_after(strokes, motions) for strokes in results.further)
+        travels = []
+        for travel in results.travels:
+            runs = [output_run(m, travel.link)[0] for m in motions([travel.low_at, travel.high_at])]
+            low, high = np.remainder(runs[1] - runs[0] + np.pi, 2 * np.pi) - np.pi
+            travels.append(
+                replace(travel, low=travel.low + low, high=travel.high + high, low_at=nowhere, high_at=nowhere)
+            )
+        pressure = []
+        for p in results.pressure:
+            before, after = (_largest(m, p.group, p.link) for m in motions(p.place))
+            pressure.append(replace(p, largest=p.largest + after - before, place=nowhere))
+        strokes = results.strokes and _strokes_after(results.strokes, motions)
+        yield (
+            given(lost, strokes=strokes, further=further, travels=tuple(travels), pressure=tuple(pressure)),
+            by,
+            length,
+        )
+
+
+def _strokes_after(strokes: Strokes, motions: Callable[[Any], tuple[Motion, Motion]]) -> Strokes:
+    """Strokes after a small change of the linkage: by the rate at which the output's speed passes zero."""
+    if not strokes.strokes:
+        return strokes
+    before, after = (output_run(m, strokes.link) for m in motions([s.start for s in strokes.strokes]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        moved = -(after[1] - before[1]) / np.where(
+            np.abs(before[2]) > RESTS * np.max(np.abs(before[2])), before[2], np.nan
+        )
+    low = np.remainder(after[0] - before[0] + np.pi, 2 * np.pi) - np.pi
+    sense = np.sign(strokes.strokes[1].start - strokes.strokes[0].start)
+    ahead = np.mod(
+        strokes.strokes[0].length * sense - (strokes.strokes[1].start - strokes.strokes[0].start), strokes.cycle
+    )
+    sense = sense if min(ahead, strokes.cycle - ahead) < 1e-6 else -sense
+    return replace(
+        strokes,
+        strokes=tuple(
+            replace(s, start=s.start + moved[k], length=s.length + sense * (np.roll(moved, -1) - moved)[k],
+                    low=s.low + low[k], run=s.run + (np.roll(low, -1) - low)[k])
+            for k, s in enumerate(strokes.strokes)
+        ),
+    )  # fmt: skip
+
+
+def _largest(motion: Motion, group: str, link: str) -> float:
+    """The pressure angle of a link at the one place of a motion."""
+    for kernel, there in zip(motion.kernels, motion.placements, strict=True):
+        for lead in followers(kernel.group):
+            if (kernel.group.title, lead[0]) == (group, link):
+                with np.errstate(all="ignore"):
+                    return float(angle(motion, kernel, there, lead)[0])
+    return float("nan")
+
+
+def _shifted(bound: float, by: Callable[[float], Results], sense: float = 1.0) -> Shift:
     times = max(1.0, min(LARGE, 1e-6 / bound if bound else LARGE))
-    return by(bound * times), times
+    return by(sense * bound * times), times
+
+
+def _with_way(results: Results, name: str, by: float) -> Results:
+    way: Any = results.way
+    return given(results, way=replace(way, **{name: getattr(way, name) + by}))
 
 
 def _with(results: Results, part: str, k: int, name: str, by: float) -> Results:
     records: list[Any] = list(getattr(results, part))
     records[k] = replace(records[k], **{name: getattr(records[k], name) + by})
-    return replace(results, **{part: tuple(records)})
+    changes: dict[str, Any] = {part: tuple(records)}
+    return given(results, **changes)
 
 
 def _with_stroke(results: Results, number: int, k: int, part: str, by: float) -> Results:
@@ -116,10 +217,10 @@ def _with_stroke(results: Results, number: int, k: int, part: str, by: float) ->
     own[k] = replace(own[k], **{part: getattr(own[k], part) + by})
     moved = replace(strokes, strokes=tuple(own))
     if number == 0:
-        return replace(results, strokes=moved)
+        return given(results, strokes=moved)
     further = list(results.further)
     further[number - 1] = moved
-    return replace(results, further=tuple(further))
+    return given(results, further=tuple(further))
 
 
 def _limit(results: Results, place: float) -> str | None:
@@ -135,15 +236,17 @@ class _Wide:
         self.results = results
         self.linkage = exact(results) if WIDER else results.linkage
         self.kernels = tuple(kernel.again(self.linkage) for kernel in results.kernels)
-        self.kind = np.longdouble if WIDER else np.float64
+        self.kind: Any = np.longdouble if WIDER else np.float64
         self.unit = float(np.finfo(self.kind).eps) / 2
 
     def at(self, q: Real) -> Motion:
+        """Kinematics there, per unit of the driver's motion."""
         return move(self.linkage, self.kernels, np.asarray(q, self.kind), Law(0.0, 1.0, 0.0, 1))
 
     def steps(self, place: float) -> Real:
         """Growing distances from a place, the last bit first."""
-        return 2.0 ** np.arange(FARTHEST) * np.spacing(max(abs(place), 1e-3)) / 2
+        steps: Real = 2.0 ** np.arange(FARTHEST) * np.spacing(max(abs(place), 1e-3)) / 2
+        return steps
 
     def bracket(self, place: float, of: Callable[[Motion], Real], size: float) -> float:
         """The least distance at which a function has different signs on both sides for sure; inf if there is none."""
@@ -215,15 +318,18 @@ class _Wide:
         """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only."""
         if largest < NOTHING:
             return largest + 4 * U, span
-        step = 1e-4 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
-        motion = self.at(np.array([place, place - step, place + step]))
+        step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
+        motion = self.at(self.kind(place) + step * np.arange(-2, 3).astype(self.kind))
         for kernel, there in zip(motion.kernels, motion.placements, strict=True):
             for lead in followers(kernel.group):
                 if (kernel.group.title, lead[0]) == (group, link):
                     with np.errstate(all="ignore"):
-                        here, before, after = (float(v) for v in angle(motion, kernel, there, lead))
-                    error = 2 * abs(here - largest) + 32 * U
-                    bend = (2 * here - before - after) / step**2
-                    flat = 4 * float(np.sqrt(error / bend)) + 1e-11 * step / 1e-4 if bend > 0 else span
-                    return error, min(flat, span)
+                        b2, b1, here, a1, a2 = angle(motion, kernel, there, lead)
+                        error = 2 * abs(float(here) - largest) + 32 * U
+                        bend = float(2 * here - b1 - a1) / step**2
+                        slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
+                        off = abs(slope / bend) if bend > 0 else span  # where the slope of a smooth top is nothing
+                        flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step if bend > 0 else span
+                    smooth = off < 1e-3 * step
+                    return error, min(4 * off + SMOOTH * step + 4 * U * abs(place) if smooth else flat, span)
         return largest, span

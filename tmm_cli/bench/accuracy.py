@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_cli import __version__
 from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
-from tmm_cli.accuracy.methods import FEWER, METHODS, OURS
+from tmm_cli.accuracy.methods import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.vectors import Real
 
@@ -59,8 +59,8 @@ class Accuracy:
         """Where the product misses its targets."""
         slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
         return tuple(
-            f"{row.linkage}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
-            for row in self.rows if row.method == OURS.name
+            f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
+            for row in self.rows if row.method in (OURS.name, TAPED.name)
             for quantity in QUANTITIES if not row.errors[quantity] <= slack * TARGETS[quantity]
         )  # fmt: skip
 
@@ -121,7 +121,7 @@ def measure(
         worst = {method: errors(solver(true.q), true.exact) for method, solver in solvers.items()}
         times = by_turns({m: s for m, s in solvers.items() if m.timed}, places(true.case, COUNT), repeats)
         rows += [Row(name, m.name, m.family, m.setting, times.get(m), worst[m]) for m in solvers]
-    return Accuracy(tuple(rows), COUNT, repeats, reduced, tuple(absent), _machine())
+    return Accuracy(tuple(rows), COUNT, repeats, reduced, tuple(absent), machine())
 
 
 def by_turns(solvers: dict[Method, Solver], q: Real, repeats: int) -> dict[Method, float]:
@@ -136,7 +136,8 @@ def by_turns(solvers: dict[Method, Solver], q: Real, repeats: int) -> dict[Metho
     return {method: 1e6 * median(times) / len(q) for method, times in found.items()}
 
 
-def _machine() -> dict[str, str]:
+def machine() -> dict[str, str]:
+    """What it was measured on."""
     return {
         "tmm": __version__, "python": platform.python_version(), "numpy": np.__version__,
         "system": f"{platform.system()} {platform.machine()}",

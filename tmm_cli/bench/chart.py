@@ -20,6 +20,7 @@ LOW, HIGH = 1e-20, 1e4  # of the error axis; what lies beyond is drawn on its ed
 DARK, GREY = "#1a1a1a", "#8a8a8a"
 STYLES: dict[str, dict[str, Any]] = {
     "closed": {"marker": "*", "ms": 13, "color": "#b3261e", "zorder": 9},
+    "taped": {"marker": "*", "ms": 13, "color": "#b3261e", "mfc": "white", "zorder": 9},
     "newton": {"marker": "o", "ms": 4, "color": "#1f4e9c"},
     "multibody": {"marker": "s", "ms": 6, "color": "#1d7a3a", "zorder": 8},
     "differences": {"marker": "v", "ms": 4.5, "color": "#c77700"},

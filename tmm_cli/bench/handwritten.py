@@ -160,7 +160,7 @@ def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at:
     # slotted link and stone: the stone turns with it, so its couple passes through the slot
     R32 = -(M3 + M2 + cross(CS3, P3) + cross(CD, -RD)) / rho  # on the link from the stone, across the slot
     Q = 1j * u * R32
-    couple2 = -M2
+    couple2 = M2  # likewise
     RC = -(P3 - RD + Q)
     RA = Q - P2  # on the stone from the crank
     T = -cross(OS1, P1) + cross(A, RA)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import typer
 
-from tmm_cli.cli import bench_accuracy, bench_stability
+from tmm_cli.cli import bench_accuracy, bench_savings, bench_speed, bench_stability
 
 app = typer.Typer(
     name="bench",
-    help="Measure speed, accuracy and stability on this machine.",
+    help="Measure speed, accuracy, stability and savings on this machine.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
 
 app.command("accuracy")(bench_accuracy.accuracy)
+app.command("savings")(bench_savings.savings)
+app.command("speed")(bench_speed.speed)
 app.command("stability")(bench_stability.stability)
-
-
-@app.callback()
-def _group() -> None:
-    """One command alone would else stand in the place of the group."""

@@ -79,7 +79,8 @@ def _write(measured: Accuracy, folder: Path) -> str:
     """accuracy.csv, accuracy.json and a chart a linkage; their names."""
     from tmm_cli.bench.chart import chart
     from tmm_cli.draw.sheet import picture
-    from tmm_cli.results.files import json_bytes, write_whole
+    from tmm_cli.results.files import write_whole
+    from tmm_cli.results.text import json_bytes
 
     contents = {"accuracy.csv": measured.to_csv().encode(), "accuracy.json": json_bytes(measured.to_dict())}
     for linkage in dict.fromkeys(row.linkage for row in measured.rows):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_cli.cli.common import OK, console, emit_json, say
+from tmm_cli.cli.common import OK, console, emit_results, say
 
 if TYPE_CHECKING:
     from tmm_cli.chain import ChainResults
@@ -38,9 +38,7 @@ def report_chain(results: ChainResults, as_json: bool, out: Path | None, *, quie
     from tmm_cli.results.terminal import show
 
     if as_json:
-        from tmm_cli.results.as_json import to_json
-
-        emit_json(to_json(results))
+        emit_results(results)
     elif not quiet:
         screen = console()
         for table in tables(results):

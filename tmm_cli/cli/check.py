@@ -52,7 +52,8 @@ def _one(file: Path, update: bool) -> tuple[int, Outcome]:
     from tmm_cli.problem.errors import ProblemError
     from tmm_cli.results.as_json import to_json
     from tmm_cli.results.compare import IGNORED, differences
-    from tmm_cli.results.files import json_bytes, write_whole
+    from tmm_cli.results.files import write_whole
+    from tmm_cli.results.text import json_bytes
 
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     try:

@@ -13,6 +13,7 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from tmm_cli.chain import ChainResults
     from tmm_cli.pipeline import Results, Stage
     from tmm_cli.results.digits import Trusted
 
@@ -77,16 +78,24 @@ def _progress(files: Sequence[Any]) -> Iterable[Any]:
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
-def solved(file: str, stage: Stage, positions: Sequence[int] | None) -> Results:
+def solved(file: str, stage: Stage, positions: Sequence[int] | None, of: Sequence[str] = ()) -> Results:
     """Read and compute one file. Raises ProblemError."""
     from tmm_cli import load, solve
 
-    return solve(load(file), stage, positions)
+    return solve(load(file), stage, positions, of)
 
 
 def emit_json(content: dict[str, Any]) -> None:
     """Pure JSON on standard output, one document a file."""
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+
+
+def emit_results(results: Results | ChainResults, digits: Trusted | None = None) -> None:
+    """The content of result.json on standard output, as it comes."""
+    from tmm_cli.results.as_json import sections
+    from tmm_cli.results.text import json_text
+
+    sys.stdout.writelines(json_text(sections(results, digits)))
 
 
 def judged(results: Results) -> Trusted | None:
@@ -105,9 +114,7 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
     """
     found = judged(results)
     if as_json:
-        from tmm_cli.results.as_json import to_json
-
-        emit_json(to_json(results, found))
+        emit_results(results, found)
     else:
         show(results, names, found, digits)
     if out is not None:
@@ -124,19 +131,18 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
 
 def show(results: Results, names: Iterable[str], found: Trusted | None = None, digits: bool = False) -> None:
     """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
-    from tmm_cli.results.reports import tables
+    from tmm_cli.results.reports import walk
     from tmm_cli.results.terminal import show as print_table
 
-    screen, names = console(), {*names, "digits"} if digits else set(names)
-    shown = tables(results)
+    screen = console()
+    shown = walk(results, set(names))
     if found is not None:
         from tmm_cli.results.digits import beside, judged_tables
 
         shown = judged_tables(shown, found)
-        shown = tuple(beside(table) for table in shown) if digits else shown
+        shown = map(beside, shown) if digits else (table for table in shown if table.name in names)
     for table in shown:
-        if table.name in names:
-            print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
+        print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
 
 
 def detailed_rows(results: Results, table: Any) -> set[int]:

@@ -13,22 +13,30 @@ Assemblies = Annotated[
 ]
 
 
+Of = Annotated[
+    str,
+    typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
+]
+
+
 def kinematics(
     files: Files,
     as_json: Json = False,
     out: Out = None,
     position: Position = None,
     assemblies: Assemblies = False,
+    of: Of = "",
     digits: Digits = False,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
-    names = ("quality", "pressure", "cycle", "points", "link-motion", "slides")
+    asked = [name.strip() for name in of.split(",") if name.strip()]
+    names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
         if assemblies:
             from tmm_cli.cli.assemblies import list_assemblies
 
             return list_assemblies(file, as_json, out, position)
-        return report(solved(file, "kinematics", position), names, as_json, out, digits)
+        return report(solved(file, "kinematics", position, asked), names, as_json, out, digits)
 
     each(files, work, as_json=as_json)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tmm_cli.cli.chains import report_chain, solved_any
-from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_json, judged, say, show
+from tmm_cli.cli.common import CHECK_FAILED, OK, Files, Json, Position, each, emit_results, judged, say, show
 
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
@@ -26,7 +26,6 @@ def run(
 
     def work(file: str) -> int:
         from tmm_cli.chain import ChainResults
-        from tmm_cli.results.as_json import to_json
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
@@ -36,7 +35,7 @@ def run(
         found = judged(results)
         folder = write_results(results, out, drawn(results) if drawings else (), found)
         if as_json:
-            emit_json(to_json(results, found))
+            emit_results(results, found)
         elif len(files) == 1:
             show(results, ("structure", "links", "groups", "quality", "cycle"), found)
         for warning in warnings(results):

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from tmm_cli.cycle import DENSE
 from tmm_cli.draw.sheet import DARK, MM, THIN
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import FRAME
@@ -21,7 +22,8 @@ from tmm_cli.problem.dimensions import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOME
 from tmm_cli.results.reports.cycle import output_links, output_motion
 from tmm_cli.words import say
 
-POINTS, MOST_POINTS = 361, 1440  # of a curve over one turn, over a cycle
+MOST_POINTS = 1440  # of a curve over a cycle
+MARKS = 360  # computed positions that are marked on a curve; more of them would hide it
 LINES = (DARK, "#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#c77700", "#00757d", "#8a8a8a")
 STYLES = ("-", "--", "-.", ":")
 
@@ -67,7 +69,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
 def _points(results: Results) -> int:
     """More points where the cycle has several turns."""
     turns = results.way.turns if results.way is not None and results.way.full else 1
-    return min((POINTS - 1) * turns, MOST_POINTS) + 1
+    return min((DENSE - 1) * turns, MOST_POINTS) + 1
 
 
 def _stem(name: str) -> str:
@@ -103,12 +105,15 @@ def _output(results: Results, motion: Motion, link: str) -> list[Panel]:
     """Motion of an output; an angle is followed through full turns."""
     assert results.motion is not None
     panels: list[Panel] = []
-    near = [int(np.argmin(np.abs(_turned(results, motion) - x))) for x in _turned(results, results.motion)]
+    q = _turned(results, motion)
+    near = [int(np.argmin(np.abs(q - x))) for x in _marked(_turned(results, results.motion))]
     curves, given = output_motion(results, motion, link), output_motion(results, results.motion, link)
     for (key, values, dimension), (_, points, _) in zip(curves, given, strict=True):
         if key == "psi":
             values = np.unwrap(values)
-            points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
+            marked = _marked(points)
+            points = np.full(np.shape(points), np.nan)
+            points[:: _every(points)] = marked + 2 * np.pi * np.round((values[near] - marked) / (2 * np.pi))
         panels.append((say(f"cycle.{key}", link=link), dimension, [("", values, points)]))
     return panels
 
@@ -162,6 +167,16 @@ def _pressure(results: Results, motion: Motion) -> list[Panel]:
     return panels
 
 
+def _every(values: Any) -> int:
+    """Of so many positions one is marked on a curve."""
+    return -(-len(values) // MARKS)
+
+
+def _marked(values: Any) -> Any:
+    """Values at the positions that are marked on curves."""
+    return values[:: _every(values)]
+
+
 def _turned(results: Results, motion: Motion) -> Any:
     """The driver's turn from position 0, deg; a slider's run in the file's unit."""
     if results.linkage.driver.kind == "slide":
@@ -194,7 +209,8 @@ def _figure(
                 "lw": 1.4,
             }
             axes.plot(q, _in_units(values, dimension, units), label=label or None, **style)
-            axes.plot(marks, _in_units(given, dimension, units), "o", ms=3, color=style["color"])
+            dots = _marked(np.broadcast_to(_in_units(given, dimension, units), np.shape(marks)))
+            axes.plot(_marked(marks), dots, "o", ms=3, color=style["color"])
         measured = "" if dimension == NUMBER else f", {units.symbol(dimension)}"
         axes.set_ylabel(name + measured, parse_math=False, fontsize=9)
         axes.axhline(0, color=DARK, lw=0.6)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.cycle import DENSE
 from tmm_cli.draw.actuators import driver_arrows, driver_name
 from tmm_cli.draw.scheme import beyond, mechanism, moving_points, placer, reach, skeleton, trajectory
 from tmm_cli.draw.sheet import COLOURS, DARK, LOAD, REACTION, Sheet, scale_text
@@ -17,7 +18,6 @@ from tmm_cli.plans.record import balance_name
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
 from tmm_cli.words import say
 
-DENSE = 361  # places of a trajectory
 LOAD_MM = 18.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 SHOWN = 48  # positions drawn thin, at most
 
@@ -37,17 +37,17 @@ def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    whole = at_positions(results, results.closely(DENSE))
+    whole = at_positions(results, results.closely(DENSE), 0)
     points = moving_points(linkage)
     used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
     chosen = detailed(results)
     k = chosen[0] if chosen else int(np.argmax(motion.placed))
-    used += [p for name in points for p in whole.named(name).x]
+    used += [p for name in points for p in whole.spot(name)]
     sheet = Sheet(
         results.problem.title, say("draw.mechanism", count=len(results.numbers)), [*used, *beyond(motion, k, used)]
     )
     for name in points:
-        trajectory(sheet, whole.named(name).x)
+        trajectory(sheet, whole.spot(name))
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
             skeleton(sheet, motion, other)

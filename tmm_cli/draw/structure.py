@@ -79,11 +79,12 @@ def at_sketch(results: Results) -> tuple[Motion, int] | None:
     None when the linkage cannot be assembled there.
     """
     linkage, structure = results.linkage, results.structure
-    if results.way is None:
+    way = results.way
+    if way is None:
         return None
     others = PLACES if len(structure.pairs) <= MANY else 0
-    places = np.linspace(results.way.start, results.way.end, others + 2)
-    motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]))
+    places = np.linspace(way.start, way.end, others + 2)
+    motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
     if not bool(motion.placed[0]):
         return None
     clear = _clearness(Scene(linkage, structure, motion.poses), motion)

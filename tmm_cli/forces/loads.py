@@ -8,8 +8,8 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.springs import spring_loads
 from tmm_cli.linkage import Load
 from tmm_cli.motion import Motion
-from tmm_cli.strokes import Strokes, output_run
-from tmm_cli.vectors import Real
+from tmm_cli.strokes import Strokes, output_place
+from tmm_cli.vectors import Real, pi
 
 
 def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
@@ -45,16 +45,15 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":
-        turn = 2 * np.arccos(np.asarray(motion.q).dtype.type(-1))  # in the precision of the motion
-        angle: Real = np.mod(motion.q, turn)
-        return angle
+        turned: Real = np.mod(motion.q, 2 * pi(motion.q))
+        return turned
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi
         return np.mod(driver.sense * (motion.q - start) + 1e-12, cycle) - 1e-12
     assert strokes is not None and first is not None
-    run: Real = output_run(motion, strokes.link)[0] - first.low
+    run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
     way: Real = run * np.sign(first.run)

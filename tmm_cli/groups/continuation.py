@@ -48,7 +48,7 @@ class Upstream:
     placed: bool
 
 
-Source = Callable[[Real], Upstream]
+Source = Callable[[Real, int], Upstream]  # places, and the order of derivatives that is needed
 
 
 class Walker:
@@ -63,7 +63,7 @@ class Walker:
     def node(self, q: float, start: State) -> tuple[Node, float] | None:
         """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
         place = np.array([q])
-        before = self.source(place)
+        before = self.source(place, 2)
         if not before.placed:
             return None
         kernel = self.kernel
@@ -199,7 +199,7 @@ class Walker:
 
             def at(s: float, state: State, q: float) -> tuple[State, float, float] | None:
                 for _ in range(15):
-                    before = self.source(np.array([q]))
+                    before = self.source(np.array([q]), 1)
                     if not before.placed:
                         return None
                     everything = {**before.poses, **kernel.poses_of(state)}
@@ -212,7 +212,7 @@ class Walker:
                     state, q = _moved(state, step[:-1], kernel.size), q + float(step[-1]) * self.scale
                     if np.max(np.abs(step)) < NEAR:  # its square is less than rounding
                         break
-                before = self.source(np.array([q]))
+                before = self.source(np.array([q]), 1)
                 if not before.placed:
                     return None
                 everything = {**before.poses, **kernel.poses_of(state)}

@@ -117,7 +117,7 @@ class Crossings:
     def _finest(self, node: Node) -> Node:
         """The same node found in extended precision, where the machine has it, and rounded."""
         kernel = self.kernel
-        before = self.source(np.array([node.q], np.longdouble))
+        before = self.source(np.array([node.q], np.longdouble), 0)
         start = State(node.state.x.astype(np.clongdouble), node.state.turn.astype(np.longdouble))
         with np.errstate(all="ignore"):
             state, size = kernel.close(start, before.poses, before.drives)
@@ -143,7 +143,7 @@ class Crossings:
     def _slope(self, node: Node) -> np.float64:
         """Derivative of the determinant by q, roughly."""
         step = AHEAD * self.scale
-        before, state = self.source(np.array([node.q + step])), predicted(node, node.q + step)
+        before, state = self.source(np.array([node.q + step]), 0), predicted(node, node.q + step)
         moved = np.linalg.det(self.kernel.matrix({**before.poses, **self.kernel.poses_of(state)}))
         return np.float64(moved[0] - node.det) / step
 

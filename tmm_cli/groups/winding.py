@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.groups.state import Pose
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, pi
 
 TAU = 2 * np.pi
 
@@ -38,5 +38,5 @@ class Winding:
             table = self.angles[link]
             about = np.interp(np.asarray(within, float), self.q, table) + whole * (table[-1] - table[0])
             angle = np.arctan2(pose.z.imag, pose.z.real)
-            found.append(replace(pose, turn=angle + TAU * np.round((about - angle) / TAU)))
+            found.append(replace(pose, turn=angle + 2 * pi(angle) * np.round((about - angle) / TAU)))
         return tuple(found)

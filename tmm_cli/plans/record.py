@@ -71,7 +71,7 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
     """The paper (mm) on which points (SI) are drawn largest, and the scale there, SI a millimetre."""
-    _, width, height, _ = extent(points)
+    _, width, height, _ = extent(list(points) or [0j])
     scales = {
         paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
         for paper in (LANDSCAPE, PORTRAIT)

@@ -32,8 +32,8 @@ _UNIT = re.compile(rf"\s*((?:1\s*/\s*)?{_FACTOR}(?:(?:\s*[*·/]\s*|\s+){_FACTOR}
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
 _JOINT = re.compile(r"\s*[*·/]|\s+")
 
-_ANGLE_IN: Final[Mapping[str, Callable[[float], float]]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
-_ANGLE_OUT: Final[Mapping[str, Callable[[float], float]]] = {"asin": math.asin, "acos": math.acos, "atan": math.atan}
+_ANGLE_IN: Final = ("sin", "cos", "tan")
+_ANGLE_OUT: Final = ("asin", "acos", "atan")
 FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, "atan2", "sqrt", "abs", "min", "max", "hypot")
 
 
@@ -178,7 +178,7 @@ class Parser:
         if name in self.parameters:
             return self.parameters[name]
         if name == "pi":
-            return Quantity(math.pi, self.pi)
+            return Quantity(self.units.functions["pi"], self.pi)
         if name in FUNCTIONS:
             return self.call(name)
         if symbol(name):
@@ -207,16 +207,20 @@ class Parser:
                 raise self.fault(f"{name} wants an angle, not {first.dimension}")
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault("tan of a right angle has no value")
-            return Quantity(_ANGLE_IN[name](angle), None)
+            return Quantity(self.units.functions[name](angle), None)
         if name in _ANGLE_OUT:
             if first.dimension not in (None, NUMBER):
                 raise self.fault(f"{name} wants a number, not {first.dimension}")
-            return Quantity(self.real(f"{name} of {first.value:.6g}", lambda: _ANGLE_OUT[name](first.value)), ANGLE)
+            return Quantity(
+                self.real(f"{name} of {first.value:.6g}", lambda: self.units.functions[name](first.value)), ANGLE
+            )
         if name == "sqrt":
             dimension = first.dimension and _half(first.dimension)
             if first.dimension is not None and dimension is None:
                 raise self.fault(f"{first.dimension} has no square root")
-            return Quantity(self.real(f"sqrt of {first.value:.6g}", lambda: math.sqrt(first.value)), dimension)
+            return Quantity(
+                self.real(f"sqrt of {first.value:.6g}", lambda: self.units.functions["sqrt"](first.value)), dimension
+            )
         if name == "abs":
             return Quantity(abs(first.value), first.dimension)
         return self.of_many(name, given)
@@ -229,9 +233,9 @@ class Parser:
         values = [self.alike(one, Quantity(0.0, total.dimension))[0] for one in given]
         dimension = total.dimension
         if name == "atan2":
-            return Quantity(math.atan2(*values), ANGLE)
+            return Quantity(self.units.functions[name](*values), ANGLE)
         if name == "hypot":
-            return Quantity(math.hypot(*values), dimension)
+            return Quantity(self.units.functions[name](*values), dimension)
         return Quantity(min(values) if name == "min" else max(values), dimension)
 
     def alike(self, left: Quantity, right: Quantity) -> tuple[float, float, Dimension | None]:

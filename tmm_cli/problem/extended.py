@@ -5,10 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.vectors import PI
 
 
 class ExtendedUnits(UnitSystem):
-    """Units whose numbers are longdoubles; functions of arithmetic (sin, sqrt, ...) stay in float64."""
+    """Units whose numbers are longdoubles, and with them the functions of arithmetic."""
+
+    functions = {  # noqa: RUF012  a table
+        "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
+        "atan2": np.arctan2, "hypot": np.hypot, "sqrt": np.sqrt, "pi": np.longdouble(PI),
+    }  # fmt: skip
 
     def number(self, written: str | int | float) -> float:
         super().number(written)  # refuses what float64 has no place for

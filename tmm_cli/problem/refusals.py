@@ -16,6 +16,7 @@ from tmm_cli.refused import (
     Misfit,
     NoAssembly,
     NoStrokes,
+    NoSuchName,
     NoSuchPosition,
     NotOnFrame,
     Refused,
@@ -233,6 +234,11 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
             return ProblemError(
                 "there is no such position", path=("positions",), found=str(number), allowed=f"0 to {count - 1}"
             )
+        case NoSuchName(name=name, allowed=allowed):
+            return ProblemError(
+                "there is no such point, link or centre of mass", path=("links",), found=quote(name),
+                allowed=", ".join(allowed), near=nearest(name, list(allowed)), key=True,
+            )  # fmt: skip
         case NotOnFrame(link=link, allowed=allowed):
             return ProblemError(
                 "this link cannot drive: it is not joined to the frame", path=("links",), found=quote(link),

@@ -226,6 +226,8 @@ class UnitSystem:
             self._names[kind.dimension] = name
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
+    functions: Mapping[str, Any] = vars(math)  # what arithmetic computes with
+
     def number(self, written: str | int | float) -> float:
         """The value of a number as it is written."""
         return finite_float(written) if isinstance(written, str) else float(written)

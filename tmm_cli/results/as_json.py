@@ -5,12 +5,13 @@ Arrays have one entry a position, null where a position cannot be reached or is 
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterator
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_cli import asked
 from tmm_cli.chain import ChainResults
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.linkage import Driver
@@ -19,8 +20,8 @@ from tmm_cli.pipeline import Results
 from tmm_cli.problem.chain import ChainProblem
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.as_space import chain_json, space_json
-from tmm_cli.results.reports.cycle import state
-from tmm_cli.results.reports.kinematics import mass_centres, named_points
+from tmm_cli.results.reports.cycle import states
+from tmm_cli.results.text import plain
 from tmm_cli.results.warnings import warnings
 from tmm_cli.strokes import Strokes, output_link
 from tmm_cli.structure.assur import ROMAN, Structure
@@ -34,54 +35,40 @@ if TYPE_CHECKING:
 FORMAT = 1
 
 
-def plain(value: Any) -> Any:
-    """Numbers and arrays as JSON has them: no nan, no infinity."""
-    if isinstance(value, np.ndarray):
-        sound = value.dtype.kind != "f" or bool(np.all(np.isfinite(value)))
-        return value.tolist() if sound else [plain(v) for v in value.tolist()]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, dict):
-        return {key: plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    return value
-
-
 def to_json(results: Results | ChainResults, digits: Trusted | None = None) -> dict[str, Any]:
     """The whole content of result.json as plain data; with the section `digits` when all has been judged."""
+    return {key: plain(part) for key, part in sections(results, digits)}
+
+
+def sections(results: Results | ChainResults, digits: Trusted | None = None) -> Iterator[tuple[str, Any]]:
+    """The parts of result.json one after the other, with arrays as they are."""
+    yield "tmm", FORMAT
+    yield "problem", _problem(results.problem)
     if isinstance(results, ChainResults):
-        return {"tmm": FORMAT, "problem": _problem(results.problem), "chain": chain_json(results.chain), "warnings": []}
-    problem = results.problem
-    found: dict[str, Any] = {
-        "tmm": FORMAT,
-        "problem": _problem(problem),
-        "structure": _structure(results.structure, results),
-        "space": _space(results),
-    }
-    found |= numbers(results)
+        yield "chain", chain_json(results.chain)
+        yield "warnings", []
+        return
+    yield "structure", _structure(results.structure, results)
+    yield "space", _space(results)
+    yield from numbers(results)
     if digits is not None:
-        found["digits"] = digits.json()
+        yield "digits", digits.json()
     if results.assemblies is not None:
         from tmm_cli.results.as_assemblies import assemblies_json
 
-        found["assemblies"] = assemblies_json(results.assemblies)
-    found["warnings"] = list(warnings(results))
-    return {key: plain(value) for key, value in found.items()}
+        yield "assemblies", assemblies_json(results.assemblies)
+    yield "warnings", list(warnings(results))
 
 
-def numbers(results: Results) -> dict[str, Any]:
-    """What was computed, as arrays."""
-    found: dict[str, Any] = {}
+def numbers(results: Results) -> Iterator[tuple[str, Any]]:
+    """What was computed, part by part, as arrays."""
     if results.motion is not None:
-        found |= _range(results)
-        found["positions"] = _positions(results.motion, results)
-        found["kinematics"] = _kinematics(results.motion, results)
+        yield from _range(results).items()
+        yield "positions", _positions(results.motion, results)
+        yield "kinematics", _kinematics(results.motion, results)
     if results.reactions is not None and results.lever is not None:
-        found["forces"] = _forces(results.reactions, results)
-        found["lever"] = {
+        yield "forces", _forces(results.reactions, results)
+        yield "lever", {
             "balancing": results.lever.balancing,
             "difference": results.lever.difference,
             "limit": results.problem.lever_limit,
@@ -93,8 +80,7 @@ def numbers(results: Results) -> dict[str, Any]:
             ],
         }  # fmt: skip
     if results.energy is not None:
-        found["energy"] = _energy(results)
-    return found
+        yield "energy", _energy(results)
 
 
 def _problem(problem: Problem | ChainProblem) -> dict[str, Any]:
@@ -137,7 +123,7 @@ def _structure(structure: Structure, results: Results) -> dict[str, Any]:
 
 def _range(results: Results) -> dict[str, Any]:
     driver: Driver = results.linkage.driver
-    way, strokes = results.way, results.strokes
+    way = results.way
     assert way is not None
     return {
         "driver": {
@@ -151,6 +137,13 @@ def _range(results: Results) -> dict[str, Any]:
             "limits": [{"at": limit.place, "group": limit.group} for limit in way.limits],
         },
         "turns": way.turns,
+        **({} if results.of else _quality(results)),
+    }
+
+
+def _quality(results: Results) -> dict[str, Any]:
+    strokes = results.strokes
+    return {
         "pressure": [
             {"group": p.group, "link": p.link, "pair": p.pair, "slides": p.slides, "largest": p.largest, "at": p.place,
              "allowed": p.allowed, "holds": p.holds, "transmission": p.transmission, "gain": p.gain, "angles": p.angles}
@@ -189,20 +182,25 @@ def _positions(motion: Motion, results: Results) -> dict[str, Any]:
         "rate": motion.rate,
         "placed": motion.placed,
         "moving": motion.moving,
-        "state": [state(results, k) for k in range(len(results.numbers))],
+        "state": states(results),
     }
 
 
 def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
-    linkage = results.linkage
+    linkage, of = results.linkage, results.of
+    points, centres = asked.named_points(linkage), asked.mass_centres(linkage)
+    if of:
+        places = asked.places(linkage, results.kernels, of)
+        points = {name: key for name, key in places.items() if name in points}
+        centres = {name: key for name, key in places.items() if name not in points}
     links = {}
-    for name in linkage.moving:
+    for name in asked.links(linkage, of) if of else linkage.moving:
         t = motion.link(name)
         links[name] = {
             "angle": t.angle, "omega": t.omega, "epsilon": t.epsilon, "first": t.first, "second": t.second
         }  # fmt: skip
     slides = {}
-    for slide in linkage.slides:
+    for slide in () if of else linkage.slides:
         s = motion.slide(slide)
         slides[slide.name] = {
             "runner": slide.runner, "carrier": slide.carrier, "run": s.run, "v": s.v, "a": s.a,
@@ -211,8 +209,8 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
     margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
-        "points": {name: _point(motion.named(name)) for name in named_points(results)},
-        "centres": {name: _point(motion.point(*key)) for name, key in mass_centres(results).items()},
+        "points": {name: _point(motion.point(*key) if of else motion.named(name)) for name, key in points.items()},
+        "centres": {name: _point(motion.point(*key)) for name, key in centres.items()},
         "links": links,
         "slides": slides,
         "margins": margins,

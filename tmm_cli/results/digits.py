@@ -7,7 +7,7 @@ lengths too, and compared number by number; so no quantity can be forgotten, and
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
@@ -16,40 +16,51 @@ import numpy as np
 
 from tmm_cli.accuracy.digits import PAPER, Digits, U, judged
 from tmm_cli.accuracy.searches import Searched, searched
+from tmm_cli.extended import near_dead
 from tmm_cli.linkage import FRAME
-from tmm_cli.pipeline import Results, at_positions
+from tmm_cli.pipeline import Results, at_positions, given
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.dimensions import ANGLE, NUMBER
 from tmm_cli.results.as_json import numbers
 from tmm_cli.results.reports import REPORTS
 from tmm_cli.results.table import Column, Table
+from tmm_cli.splice import taken
 from tmm_cli.vectors import Real
 from tmm_cli.words import say
 
 COMPUTED = ("motion", "reactions", "lever", "energy")  # parts whose tables hold computed numbers
 DENSE = 361  # places of a trajectory
+LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
+BETWEEN = 4.0  # times the largest bound of the judged positions about: what holds for those between them
 PARTS = ("bound", "lengths", "paper")
 
 
 @dataclass(frozen=True)
 class Trusted:
-    """Digits of results: of numbers at positions by key, and of those that were searched for."""
+    """Digits of results: of numbers at positions by key, and of those that were searched for.
+
+    results: at the positions that were judged; chosen: which of all positions these are. In a long cycle they are some
+    hundreds, with all that are near dead ones; between them a bound is four times the largest near it.
+    """
 
     results: Results
+    chosen: Real
+    count: int
     digits: Digits
     found: Searched
 
     def table(self, table: Table) -> Table:
         """The same table, its numbers with their bounds and sensitivities, and a note of the worst of them."""
-        keys = _keys(table, len(self.results.numbers))
+        keys = _keys(table, self.count)
         columns = []
         for k, column in enumerate(table.columns):
             if column.dimension is not None and keys is not None:
-                parts = {part: self._of(part, keys[k]) for part in PARTS}
+                parts: dict[str, Any] = {part: self._of(part, keys[k]) for part in PARTS}
                 columns.append(replace(column, **parts))
             elif column.dimension is not None and (False, table.name, column.header) in self.found.bound:
                 key = (False, table.name, column.header)
-                columns.append(replace(column, **{part: getattr(self.found, part)[key] for part in PARTS}))
+                parts = {part: getattr(self.found, part)[key] for part in PARTS}
+                columns.append(replace(column, **parts))
             else:
                 columns.append(column)
         judged_table = replace(table, columns=tuple(columns))
@@ -58,48 +69,78 @@ class Trusted:
 
     def _of(self, part: str, keys: list[Hashable]) -> Real | None:
         values = getattr(self.digits, part)
-        nothing = np.full(len(self.results.numbers), np.nan)
-        return np.stack([values.get(key, nothing) for key in keys], axis=1).ravel()
+        nothing = np.full(len(self.chosen), np.nan)
+        found = np.empty((self.count, len(keys)), dtype=float if self.count < LONG else np.float32)  # two figures tell all
+        for k, key in enumerate(keys):
+            found[:, k] = self._everywhere(part, values.get(key, nothing))
+        return found.ravel()
 
-    def summary(self, tables: tuple[Table, ...]) -> Table:
+    def _everywhere(self, part: str, values: Real) -> Real:
+        """Values at all positions from those at the chosen ones."""
+        if len(self.chosen) == self.count:
+            return values
+        about = values
+        for by in (1, 2) if part == "bound" else (1,):
+            about = np.fmax(about, np.fmax(np.roll(values, by), np.roll(values, -by)))
+        near = np.searchsorted(self.chosen, np.arange(self.count)).clip(max=len(self.chosen) - 1)
+        everywhere: Real = (BETWEEN if part == "bound" else 1.0) * about[near]
+        everywhere[self.chosen] = values
+        return everywhere
+
+    def summary(self, rows: Sequence[tuple[str | float, ...]]) -> Table:
         """Table by table and column by column: the largest bound, digits to be trusted, sensitivities."""
-        rows = [(table.name, *row) for table in tables for row in _worst(table)]
         keys = ("digits.table", "digits.column", "digits.bound", "digits.true", "digits.lengths", "digits.paper")
         columns = tuple(
-            Column(say(key), [row[k] for row in rows], None if k < 2 else NUMBER, digits=2)
+            Column(say(key), [row[k] for row in rows])
+            if k < 2
+            else Column(say(key), [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2)
             for k, key in enumerate(keys)
         )  # fmt: skip
         return Table("digits", say("digits.title"), columns, notes=(_scale(self.digits.mu),))
 
     def json(self) -> dict[str, Any]:
         """The section `digits` of result.json: bounds and sensitivities in the places of their values."""
-        content = numbers(self.results)
-        named: dict[str, Any] = {"scale": self.digits.mu}
+        content = dict(numbers(self.results))
+        named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.results.numbers)}
         for part in PARTS:
             values = {**getattr(self.digits, part), **getattr(self.found, part)}
             named[part] = _parallel(content, (), {key[1:]: v for key, v in values.items()}) or {}
         return named
 
 
-def judged_tables(tables: Iterable[Table], found: Trusted | None) -> tuple[Table, ...]:
-    """Tables with the digits that were found for them, and the table of the worst; as they are without."""
-    if found is None:
-        return tuple(tables)
-    told = tuple(found.table(table) for table in tables)
-    return (*told, found.summary(told))
+def judged_tables(tables: Iterable[Table], found: Trusted) -> Iterator[Table]:
+    """Tables with the digits that were found for them, one after the other, and last the table of the worst."""
+    worst: list[tuple[str | float, ...]] = []
+    for table in tables:
+        told = found.table(table)
+        worst += [(table.name, *row) for row in _worst(told)]
+        yield told
+    yield found.summary(worst)
 
 
 def trusted(results: Results) -> Trusted:
     """Judge all numbers of results that have a motion."""
+    motion = results.motion
+    assert motion is not None
+    count = len(results.numbers)
+    asked = near_dead(motion) if motion.where is None else motion.where | near_dead(motion)
+    asked[:: -(-count // LONG)] = True
+    asked[-1:] = True
+    chosen = np.flatnonzero(asked)
+    if len(chosen) < count:
+        numbers = tuple(results.numbers[k] for k in chosen)
+        pressure = taken(results.pressure, chosen, count)
+        results = given(taken(results, chosen, count), numbers=numbers, pressure=pressure, travels=results.travels)
     assert results.motion is not None
-    found = searched(results, _single)
-    digits = judged(
-        results, cells, mu=_mu(results), blur=found.blur + 3 * U * np.abs(results.motion.q), turning=_turning
-    )
+    with np.errstate(all="ignore"):
+        mu = _mu(results)
+        found = searched(results, _single, mu)
+        blur = found.blur + 3 * U * np.abs(results.motion.q)
+        digits = judged(results, cells, mu=mu, blur=blur, turning=_turning)
     for key, bound in digits.bound.items():
         if _turning(key):  # no direction is farther from another one than half a turn
             digits.bound[key] = np.minimum(bound, np.pi)
-    return Trusted(results, digits, found)
+    return Trusted(results, chosen, count, digits, found)
 
 
 def _turning(key: Hashable) -> bool:
@@ -117,7 +158,7 @@ def cells(results: Results) -> Mapping[Hashable, Real]:
                     values = _array(column).reshape(count, -1)
                     found.update({name: values[:, k] for k, name in enumerate(names)})
     turns = results.linkage.driver.kind == "turn"
-    for path, value in _leaves(numbers(results), ()):
+    for path, value in _leaves(dict(numbers(results)), ()):
         if isinstance(value, np.ndarray) and value.shape == (count,) and value.dtype.kind == "f":
             angle = path[-1] in ("angle", "angles") or (turns and path == ("positions", "driver"))
             found[(angle, *path)] = value
@@ -132,7 +173,7 @@ def _single(results: Results) -> Mapping[Hashable, Real]:
             for column in table.columns:
                 if column.dimension is not None:
                     found[False, table.name, column.header] = _array(column)
-    for path, value in _leaves(numbers(results), ()):
+    for path, value in _leaves(dict(numbers(results)), ()):
         if isinstance(value, float):
             found[(False, *path)] = np.array([value])
     return found
@@ -140,7 +181,7 @@ def _single(results: Results) -> Mapping[Hashable, Real]:
 
 def computed_tables(results: Results) -> Iterator[Table]:
     """Tables with computed numbers."""
-    for name, part in REPORTS:
+    for name, part, _ in REPORTS:
         if part in COMPUTED and getattr(results, part) is not None:
             yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
 
@@ -214,28 +255,35 @@ def _short(values: Real) -> list[float]:
 
 
 def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
-    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %."""
+    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %.
+
+    Of a table in which every row has a unit of its own, the same of each row.
+    """
+    rows = table.columns[-1].header == say("word.unit")
     for column in table.columns:
         if column.bound is None:
             continue
-        size = _most(_array(column))
-        bound, share, paper = (_most(getattr(column, part)) / (size or 1.0) for part in PARTS)
-        if size > 0 and bound < 1:  # else it is nothing but rounding
-            true = np.floor(-np.log10(2 * max(bound, U)))
-            yield column.header, bound, true, 100 * share, 100 * paper
+        digits = [_array(column), *(getattr(column, part) for part in PARTS)]
+        for k, name in enumerate(table.columns[0].values) if rows else [(slice(None), column.header)]:
+            size, bound, share, paper = (_most(values[k]) for values in digits)
+            if size > 0 and bound < size:  # else it is nothing but rounding
+                true = np.floor(-np.log10(2 * max(bound / size, U)))
+                yield name, bound / size, true, 100 * share / size, 100 * paper / size
 
 
-def _most(values: Real) -> float:
-    values = np.abs(np.asarray(values, dtype=float))
-    return float(np.max(values, where=np.isfinite(values), initial=0.0))
+def _most(values: Any) -> float:
+    """The largest number; nan where there is none."""
+    values = np.abs(np.atleast_1d(np.asarray(values, dtype=float)))
+    values = values[np.isfinite(values)]
+    return float(np.max(values)) if values.size else float("nan")
 
 
 def _note(table: Table, mu: float) -> str:
     rows = list(_worst(table))
     if not rows:
         return ""
-    bound, share, paper = (max(rows, key=lambda row: row[k]) for k in (1, 3, 4))
-    if share[3] == 0:
+    bound, share, paper = (max(rows, key=lambda row: np.nan_to_num(row[k])) for k in (1, 3, 4))
+    if not share[3] > 0:
         return say("digits.note_rounding", bound=f"{bound[1]:.1e}")
     return say(
         "digits.note", bound=f"{bound[1]:.1e}", lengths=f"{share[3]:.2g}", by_lengths=share[0], paper=f"{paper[4]:.2g}",
@@ -254,7 +302,7 @@ def _mu(results: Results) -> float:
     for name in linkage.moving:
         for point in linkage.links[name].points:
             places += [complex(x) for x in motion.named(point).x if np.isfinite(x)]
-    return sheet_scale(places or [0j])[1]
+    return sheet_scale(places)[1]
 
 
 def beside(table: Table) -> Table:

@@ -12,6 +12,7 @@ from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.explain_pairs import further
+from tmm_cli.results.stages import how, stages
 from tmm_cli.results.table import Column, Table
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.words import say
@@ -30,6 +31,9 @@ def explain(results: Results) -> Iterable[Table]:
     if problem.linkage.loads:
         yield _loads(problem)
     yield _way(results)
+    yield _words(
+        "stages", list(stages(results)), tuple(f"explain.{k}" for k in ("stage", "groups", "places", "motion", "note"))
+    )
     skipped = list(_skipped(problem))
     if skipped:
         yield _words("skipped", skipped, ("word.what", "explain.why"))
@@ -142,7 +146,7 @@ def _way(results: Results) -> Table:
     structure = results.structure
     linkage = results.linkage
     rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers),
-             say("explain.given_all" if linkage.others else "explain.given"), "")]  # fmt: skip
+             say("explain.given_all" if linkage.others else "explain.given"), "", say("stages.closed"))]  # fmt: skip
     solved = {link: k for k in results.kernels for link in k.group.links}
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)
@@ -154,8 +158,8 @@ def _way(results: Results) -> Table:
             which = say("explain.newton")
         else:
             which = say("explain.unsolved")
-        rows.append((str(number), f"{group.title} {group.type}", hangs, which))
-    table = _words("way", rows, ("explain.step", "word.group", "explain.hangs", "explain.assembly"))
+        rows.append((str(number), f"{group.title} {group.type}", hangs, which, "" if kernel is None else how(kernel)))
+    table = _words("way", rows, ("explain.step", "word.group", "explain.hangs", "explain.assembly", "explain.how"))
     return Table(table.name, table.title, table.columns, notes=(say("explain.back"),))
 
 

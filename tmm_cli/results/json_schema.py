@@ -90,7 +90,8 @@ def _computed() -> dict[str, Any]:
 def _digits() -> dict[str, Any]:
     """Numbers in result.json are float64 in full; here is how many of their digits count."""
     return _object(
-        "how far the numbers of this file are to be trusted, in the places of the numbers themselves and in their units",
+        "how far the numbers of this file, which are float64 in full, are to be trusted: in their places and units",
+        number=_list("positions that were judged: arrays below have one entry for each", {"type": "integer"}),
         scale=_number("of a drawing on A4, m a mm: that of `paper`"),
         bound=_object(
             "how far each number may be from the truth by rounding; null: it is not known at all", **_computed()

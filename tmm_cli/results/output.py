@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_cli.chain import ChainResults
 from tmm_cli.pipeline import Results
-from tmm_cli.results.as_json import to_json
-from tmm_cli.results.files import csv_bytes, folder_name, json_bytes, listed, write_whole
-from tmm_cli.results.reports import tables
+from tmm_cli.results.as_json import sections
+from tmm_cli.results.files import Staged, folder_name, listed
+from tmm_cli.results.reports import walk
+from tmm_cli.results.text import csv_text, json_text
 
 if TYPE_CHECKING:
     from tmm_cli.results.digits import Trusted
@@ -21,21 +23,23 @@ def write_results(
 ) -> Path:
     """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
 
-    All is computed and drawn first: a refusal or an interruption before the end leaves the folder as it was.
+    Each table is dropped when it is written. Nothing is renamed to its name before all is there: a refusal or an
+    interruption before the end leaves the folder as it was.
     """
     folder = out / folder_name(results.problem.name)
-    shown = tables(results)
+    shown = walk(results)
     if digits is not None:
         from tmm_cli.results.digits import judged_tables
 
         shown = judged_tables(shown, digits)
-    content = {f"{table.name}.csv": csv_bytes(table, results.problem.units) for table in shown}
-    content |= dict(more)
-    record = json_bytes(to_json(results, digits) | {"files": sorted(content)})
     earlier = listed(folder)
-    for name, data in content.items():
-        write_whole(folder / name, data)
-    write_whole(folder / "result.json", record)
-    for name in earlier - set(content):
+    with Staged(folder) as staged:
+        for table in shown:
+            staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
+        for name, picture in more:
+            staged.write(name, (picture,))
+        names = sorted(staged.waiting)
+        staged.write("result.json", json_text(chain(sections(results, digits), [("files", names)])))
+    for name in earlier - set(names):
         (folder / name).unlink(missing_ok=True)
     return folder

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from rich import box
@@ -19,19 +20,22 @@ MOST_ROWS = 120  # on a terminal; files have them all
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
 
 
-def cells(column: Column, units: UnitSystem) -> list[str]:
+def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
     """Words as they are, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
-        return [str(value) for value in column.values]
-    values = [math.nan if value is None else float(value) for value in column.values]
-    nothing = ROUNDING * max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+        return [str(column.values[k]) for k in rows]
+    given = column.values
+    values = np.array([math.nan if v is None else v for v in given] if isinstance(given, list) else given, dtype=float)
+    nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
+    chosen = values[list(rows)]
     if column.bound is not None:
-        known = np.isfinite(values) & np.isfinite(column.bound)
+        bound = np.asarray(column.bound)[list(rows)]
+        known = np.isfinite(chosen) & np.isfinite(bound)
         factor = 1.0 if column.dimension == NUMBER else units.from_si(1.0, column.dimension)
-        true = true_digits(np.where(known, values, 0.0) * factor, np.where(known, column.bound, 0.0) * factor)
-        told = zip(values, true.tolist(), known.tolist(), strict=True)
+        true = true_digits(np.where(known, chosen, 0.0) * factor, np.where(known, bound, 0.0) * factor)
+        told = zip(chosen.tolist(), true.tolist(), known.tolist(), strict=True)
         return ["-" if not sound else _number(v, column, units, n) if n else "0" for v, n, sound in told]
-    return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in values]
+    return [_number(v, column, units) if abs(v) > nothing or v != v else "0" for v in chosen.tolist()]
 
 
 def _number(value: float, column: Column, units: UnitSystem, true: int = 17) -> str:
@@ -58,7 +62,7 @@ def show(
     """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
     printed = chosen[:most]
-    told = [_told(column, cells(column, units), printed, units) for column in table.columns]
+    told = [_told(column, cells(column, units, printed), units) for column in table.columns]
     for number, part in enumerate(_parts(table, told, console.width)):
         title = table.title if number == 0 else say("table.continued", title=table.title)
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
@@ -74,9 +78,9 @@ def show(
         console.print(Text(note, style="dim"))
 
 
-def _told(column: Column, shown: list[str], rows: list[int], units: UnitSystem) -> tuple[str, list[str]]:
+def _told(column: Column, shown: list[str], units: UnitSystem) -> tuple[str, list[str]]:
     """A column's heading and the cells that are printed."""
-    return heading(column, units), [shown[k] for k in rows]
+    return heading(column, units), shown
 
 
 def _least(column: tuple[str, list[str]]) -> int:

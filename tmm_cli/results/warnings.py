@@ -47,7 +47,7 @@ def warnings(results: Results) -> Iterable[str]:
         yield say("warning.range", groups=groups, **ends) + given
     if any(limit.driver for limit in way.limits):
         yield say("warning.range_stopped", **ends) + given
-    there = move(results.linkage, results.kernels, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1))
+    there = move(results.linkage, results.kernels, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1), 0)
     for point, off in sketch_deviations(results.linkage, there.poses).items():
         if off > SKETCH:
             yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
@@ -82,7 +82,7 @@ def warnings(results: Results) -> Iterable[str]:
         yield say("warning.passive", pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
     if not way.repeats:
         yield say("warning.cycle")
-    for pressure in results.pressure:
+    for pressure in results.pressure if any(results.problem.limits_set) else ():
         if results.problem.limits_set[0 if pressure.slides else 1] and not pressure.holds:
             largest, allowed = (f"{units.from_si(v, ANGLE):.6g} {units.symbol(ANGLE)}" for v in
                                 (pressure.largest, pressure.allowed))  # fmt: skip
@@ -97,10 +97,9 @@ def warnings(results: Results) -> Iterable[str]:
     for tabled in results.linkage.loads:
         if tabled.table is not None and _short_table(results, tabled):
             yield say("warning.table", load=tabled.name, against=tabled.table.against)
-    if results.strokes is None or not results.strokes.strokes:
-        for asked in results.linkage.loads:
-            if asked.working_stroke_only:
-                yield say("warning.always", load=asked.name)
+    for asked in results.linkage.loads:
+        if asked.working_stroke_only and (results.strokes is None or not results.strokes.strokes):
+            yield say("warning.always", load=asked.name)
     if results.lever is not None and not results.lever_holds:
         worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
         k = int(np.argmax(worst))
@@ -127,7 +126,7 @@ def _twisted(results: Results, place: Callable[[float], str]) -> Iterable[str]:
     springs = [s for s in results.linkage.springs if s.turns]
     if not springs or results.reactions is None:
         return
-    motion = at_positions(results, results.closely(CLOSELY * (results.way.turns if results.way else 1) + 1))
+    motion = at_positions(results, results.closely(CLOSELY * (results.way.turns if results.way else 1) + 1), 0)
     for spring in springs:
         with np.errstate(invalid="ignore"):
             jumps = np.flatnonzero(np.abs(np.diff(twisted(spring, motion))) > np.pi)

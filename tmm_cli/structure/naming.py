@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 
 from tmm_cli.linkage import FRAME, Linkage
 
 
-def roles(linkage: Linkage, turns: Mapping[str, bool]) -> dict[str, str]:
-    """The role of each moving link; `turns` tells which links turn through 360 degrees."""
-    return {name: _role(linkage, name, turns.get(name, False)) for name in linkage.moving}
+def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
+    """The role of each moving link; `turns` tells whether a link turns through 360 degrees, and is asked only then."""
+    return {name: _role(linkage, name, turns) for name in linkage.moving}
 
 
-def _role(linkage: Linkage, name: str, turns: bool) -> str:
+def _role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str:
     special = _higher(linkage, name) or _cylinder(linkage, name)
     if special is not None:
         return special
@@ -26,7 +26,7 @@ def _role(linkage: Linkage, name: str, turns: bool) -> str:
             return "slotted link"
         if runs:
             return "rocking slider"
-        return "crank" if turns else "rocker"
+        return "crank" if turns(name) else "rocker"
     if runs:
         return "stone"
     if carries:

@@ -150,21 +150,22 @@ class _Code:
             for term in self.before:
                 known[term.number] = _worked_out(term, known)
             own = [known[number] for number in self.outer]
-            block = np.empty((len(self.slots) - self.truths, *shape))
-            truths = np.empty((self.truths, *shape), dtype=bool)
+            floats, truths = len(self.slots) - self.truths, self.truths
             rows, columns = shape
-            wide = min(columns, CHUNK)
+            wide = -(-columns // -(-columns // CHUNK))  # chunks of equal width
             high = max(1, min(rows, CHUNK // wide))
             if rows <= high and columns <= wide:
-                self.function(*own, *block, *truths, *self.registers(shape))
-            else:
+                found = [*np.empty((floats, *shape)), *np.empty((truths, *shape), dtype=bool)]
+                self.function(*own, *found, *self.registers(shape))
+            else:  # a plane each: the system hands out one large block with all its pages to be cleared, each time
+                found = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
                 for top in range(0, rows, high):
                     for left in range(0, columns, wide):
                         here = (slice(top, top + high), slice(left, left + wide))
                         size = (min(high, rows - top), min(wide, columns - left))
                         parts = [_part(d, here) for d in own]
-                        self.function(*parts, *block[:, *here], *truths[:, *here], *self.registers(size))
-        return dict(zip(self.slots, (*block, *truths), strict=True)) | {n: known[n] for n in self.small}
+                        self.function(*parts, *[plane[here] for plane in found], *self.registers(size))
+        return dict(zip(self.slots, found, strict=True)) | {n: known[n] for n in self.small}
 
 
 def _part(data: Array, here: tuple[slice, slice]) -> Array:

@@ -2,6 +2,7 @@
 
 WORDS: dict[str, str] = {
     "accuracy.closed": "groups (tmm), class II in closed form",
+    "accuracy.taped": "the same, written on a tape",
     "accuracy.newton": "Newton on loop closure, tolerances 1e-2 to 1e-15",
     "accuracy.multibody": "whole Jacobian, Lagrange multipliers",
     "accuracy.differences": "central differences, steps 0.1 to 1e-8 rad",

@@ -22,6 +22,7 @@ WORDS: dict[str, str] = {
     "structure.formula": "formula of structure",
     "structure.class": "class of the mechanism",
     "links.title": "Links",
+    "links.turned": "A crank is told from a rocker by moving the linkage.",
     "links.role": "is a",
     "links.label": "called",
     "links.points": "points",

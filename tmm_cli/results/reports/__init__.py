@@ -5,32 +5,40 @@ A report has a function `tables(results)`, which gives its tables; it gives none
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterator
 from importlib import import_module
 
 from tmm_cli.chain import ChainResults
 from tmm_cli.pipeline import Results
 from tmm_cli.results.table import Table
 
-# file here, and the part of Results that it needs: a report of a stage that did not run is not even imported
-REPORTS: tuple[tuple[str, str], ...] = (
-    ("structure", "structure"),
-    ("space", "structure"),
-    ("chain", "chain"),
-    ("quality", "motion"),
-    ("pressure", "motion"),
-    ("cycle", "motion"),
-    ("kinematics", "motion"),
-    ("forces", "reactions"),
-    ("lever", "lever"),
-    ("energy", "energy"),
-    ("assemblies", "assemblies"),
+# file here, the part of Results that it needs, the tables it gives (of other names where there are none): a report of a
+# stage that did not run, or of which no table is wanted, is not even imported
+REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    ("structure", "structure", ("structure", "links", "pairs", "groups")),
+    ("space", "structure", ("contours", "space", "replacements")),
+    ("chain", "chain", ()),
+    ("quality", "motion", ("quality",)),
+    ("pressure", "motion", ("pressure",)),
+    ("cycle", "motion", ("cycle",)),
+    ("kinematics", "motion", ("points", "link-motion", "slides")),
+    ("forces", "reactions", ("reactions", "loads", "balance")),
+    ("lever", "lever", ("lever",)),
+    ("energy", "energy", ("energy", "friction")),
+    ("assemblies", "assemblies", ()),
 )
 
 
 def tables(results: Results | ChainResults) -> tuple[Table, ...]:
     """Every table of the results."""
-    found: list[Table] = []
-    for name, part in REPORTS:
-        if getattr(results, part, None) is not None:
-            found += import_module(f"{__name__}.{name}").tables(results)
-    return tuple(found)
+    return tuple(walk(results))
+
+
+def walk(results: Results | ChainResults, wanted: Collection[str] = ()) -> Iterator[Table]:
+    """Every table of the results, or those wanted by name, made one after the other."""
+    for name, part, given in REPORTS:
+        if getattr(results, part, None) is None or (wanted and given and not set(given) & set(wanted)):
+            continue
+        for table in import_module(f"{__name__}.{name}").tables(results):
+            if not wanted or table.name in wanted:
+                yield table

@@ -22,7 +22,7 @@ from tmm_cli.problem.dimensions import (
 )
 from tmm_cli.results.table import Column, Table
 from tmm_cli.strokes import output_link, output_run
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, pi
 from tmm_cli.words import say
 
 
@@ -32,7 +32,7 @@ def driver_columns(results: Results) -> list[Column]:
     assert motion is not None
     turns = results.linkage.driver.kind == "turn"
     round_and_round = turns and results.way is not None and results.way.full
-    q = np.mod(motion.q, 2 * np.pi) if round_and_round else motion.q
+    q = np.mod(motion.q, 2 * pi(motion.q)) if round_and_round else motion.q
     return [
         Column(say("word.position"), [str(n) for n in results.numbers]),
         Column(say("cycle.phi" if turns else "cycle.drive"), q, ANGLE if turns else LENGTH),
@@ -50,7 +50,7 @@ def tables(results: Results) -> Iterable[Table]:
             columns.append(Column(say(f"cycle.{key}", link=link), values, dimension))
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(say("word.state"), [state(results, k) for k in range(len(results.numbers))]))
+        columns.append(Column(say("word.state"), states(results)))
     yield Table("cycle", say("cycle.title"), tuple(columns))
 
 
@@ -64,7 +64,7 @@ def _other_drivers(results: Results) -> Iterable[Column]:
         full = turns and results.way is not None and results.way.full
         key = "cycle.place_turn" if turns else "cycle.place_slide"
         yield Column(
-            say(key, link=driver.link), np.mod(value, 2 * np.pi) if full else value, ANGLE if turns else LENGTH
+            say(key, link=driver.link), np.mod(value, 2 * pi(value)) if full else value, ANGLE if turns else LENGTH
         )
 
 
@@ -116,7 +116,15 @@ def _balance(results: Results) -> Iterable[Column]:
     yield difference
 
 
-def state(results: Results, k: int) -> str:
+def states(results: Results) -> list[str]:
+    """What is wrong with each position, or nothing."""
+    motion = results.motion
+    assert motion is not None
+    lost = ~motion.moving | results.locked
+    return [_state(results, k) if wrong else "" for k, wrong in enumerate(lost.tolist())]
+
+
+def _state(results: Results, k: int) -> str:
     """What is wrong with a position, or nothing."""
     motion = results.motion
     assert motion is not None

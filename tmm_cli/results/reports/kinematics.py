@@ -6,7 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Slide
+from tmm_cli.asked import links as asked_links
+from tmm_cli.asked import mass_centres, named_points
+from tmm_cli.asked import places as asked_places
+from tmm_cli.linkage import Slide
 from tmm_cli.motion import Motion, Point
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import (
@@ -20,23 +23,7 @@ from tmm_cli.problem.dimensions import (
 )
 from tmm_cli.results.reports.long import Values, long_table
 from tmm_cli.results.table import Table
-
-
-def named_points(results: Results) -> dict[str, tuple[str, complex]]:
-    """Every named point of a moving link, once, with its link and place on it."""
-    linkage = results.linkage
-    return {
-        point: (link, local)
-        for link in reversed(linkage.moving)
-        for point, local in linkage.links[link].points.items()
-        if point not in linkage.links[FRAME].points
-    }
-
-
-def mass_centres(results: Results) -> dict[str, tuple[str, complex]]:
-    """Centres of mass of the links that have one, named S3 after the link."""
-    links = results.linkage.links
-    return {f"S{name}": (name, links[name].centre) for name in results.linkage.moving if np.any(links[name].mass != 0)}
+from tmm_cli.vectors import pi
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -44,12 +31,18 @@ def tables(results: Results) -> Iterable[Table]:
     motion = results.motion
     if motion is None:
         return
-    points = {name: motion.named(name) for name in sorted(named_points(results))}
-    points |= {name: motion.point(*key) for name, key in mass_centres(results).items()}
-    yield long_table(results, "points", {"word.point": list(points)}, [_point(p) for p in points.values()])
-    links = results.linkage.moving
-    yield long_table(results, "link-motion", {"word.link": links}, [_link(motion, name) for name in links])
-    slides = results.linkage.slides
+    linkage, of = results.linkage, results.of
+    points = dict(sorted(named_points(linkage).items())) | mass_centres(linkage)
+    if of:
+        points = dict(asked_places(linkage, results.kernels, of))
+    if points:
+        hinges = () if of else named_points(linkage)
+        values = [_point(motion.named(n) if n in hinges else motion.point(*key)) for n, key in points.items()]
+        yield long_table(results, "points", {"word.point": list(points)}, values)
+    links = asked_links(linkage, of) if of else linkage.moving
+    if links:
+        yield long_table(results, "link-motion", {"word.link": links}, [_link(motion, name) for name in links])
+    slides = () if of else linkage.slides
     if slides:
         words = {"word.pair": [s.name for s in slides]}
         yield long_table(results, "slides", words, [_slide(motion, slide) for slide in slides])
@@ -74,7 +67,8 @@ def _point(p: Point) -> Values:
 
 def _link(motion: Motion, name: str) -> Values:
     t = motion.link(name)
-    angle = t.angle - 2 * np.pi * np.ceil((t.angle - np.pi) / (2 * np.pi))  # -180 to 180 deg, the driver's too
+    half = pi(t.angle)
+    angle = t.angle - 2 * half * np.ceil((t.angle - half) / (2 * half))  # -180 to 180 deg, the driver's too
     return [
         ("kinematics.angle", angle, ANGLE),
         ("kinematics.omega", t.omega, ANGULAR_SPEED),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
 
 from tmm_cli.pipeline import Results
+from tmm_cli.pressure import NOTHING
 from tmm_cli.problem.dimensions import ANGLE, LENGTH, NUMBER
 from tmm_cli.results.table import Column, Table
 from tmm_cli.words import say
@@ -21,6 +23,7 @@ def tables(results: Results) -> Iterable[Table]:
     way = results.way
     full = turns and way is not None and way.full
     places = [float(np.mod(p.place, 2 * np.pi * way.turns)) if full and way else p.place for p in found]
+    places = [place if p.largest > NOTHING else math.nan for place, p in zip(places, found, strict=True)]
     note = say("pressure.note.file" if any(results.problem.limits_set) else "pressure.note.default")
     yield Table(
         "pressure", say("pressure.title"),

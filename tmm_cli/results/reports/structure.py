@@ -57,15 +57,16 @@ def tables(results: Results) -> Iterable[Table]:
         "structure", say("structure.title"),
         (Column(say("word.what"), [a for a, _ in facts]), Column(say("word.value"), [b for _, b in facts])),
     )  # fmt: skip
-    links = [linkage.links[name] for name in structure.links]
+    links, roles = [linkage.links[name] for name in structure.links], results.roles
     yield Table(
         "links", say("links.title"),
         (
             Column(say("word.link"), [x.name for x in links]),
-            Column(say("links.role"), [say(f"role.{results.roles[x.name]}") for x in links]),
+            Column(say("links.role"), [say(f"role.{roles[x.name]}") for x in links]),
             Column(say("links.label"), [x.label for x in links]),
             Column(say("links.points"), [", ".join(x.points) for x in links]),
         ),
+        notes=(say("links.turned"),) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
     pairs = structure.pairs
     yield Table(

@@ -1,0 +1,82 @@
+"""What `tmm bench speed` compares is the same on both sides, and its verdict follows from its numbers; times themselves
+are asserted nowhere."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tmm_cli.assembly import assemble
+from tmm_cli.bench.by_hand import MECHANISMS
+from tmm_cli.bench.chains import chain
+from tmm_cli.bench.speed import Growth, Race, Rival, Speed, exponent
+from tmm_cli.forces.lever import lever
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import power, react
+from tmm_cli.mobile import mobile
+from tmm_cli.motion import Law, move
+
+Q = np.linspace(0.1, 6.2, 40)
+TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
+@pytest.mark.parametrize("variants", [1, 7])
+def test_the_code_by_hand_gives_what_the_product_gives(mechanism, variants):
+    linkages = mechanism.variants(variants)
+    ours, by_hand = mechanism.ours(linkages)(Q), mechanism.by_hand(linkages)(Q)
+    assert set(ours) == set(mechanism.names.values())
+    for hand, name in mechanism.names.items():
+        mine, theirs = ours[name], by_hand[hand] * (1j if hand == "N" else 1)
+        off = min(np.max(np.abs(mine - theirs)), np.max(np.abs(mine + theirs)) if hand in TURNED else np.inf)
+        assert off < 1e-12 * np.max(np.abs(mine)), name
+
+
+def test_a_long_chain_of_dyads_moves_and_balances():
+    it = chain(30)
+    structure = mobile(it)
+    motion = move(it, assemble(it, structure), np.linspace(0, 6.28, 25), Law(1.0, 10.0, 0.0, 1))
+    assert len(structure.groups) == 30 and bool(np.all(motion.moving))
+    loads = applied(motion, None)
+    drivers = power(motion, react(motion, structure, loads))
+    assert np.allclose(lever(motion, loads, drivers).balancing, drivers, rtol=0, atol=1e-9 * np.max(np.abs(drivers)))
+
+
+@pytest.mark.parametrize("true", [0.8, 1.0, 1.2])
+def test_the_exponent_is_found_beside_a_constant_cost(true):
+    n = [30, 100, 300, 1000, 3000, 10_000]
+    assert abs(exponent(n, [2.0 + 1e-3 * k**true for k in n]) - true) < 0.002
+    assert abs(exponent(n, [1e-3 * k**true for k in n]) - true) < 0.002
+
+
+def test_the_verdict():
+    good = Race("six-bar", 1, 360, 120.0, 100.0, 3.0)
+    assert good.ratio == 1.2 and good.target == 1.3
+    bad = replace(good, ours=150.0)
+    growth = Growth("links", (3, 5), (1.0, 1.7), 1.07)
+    rival = Rival("kinepy", "shaper", 2000.0, 100.0)
+    found = Speed((good, bad), (growth,), (rival,), (), False).failures
+    assert found == (
+        "six-bar, 1 x 360: 1.50 times the code by hand, target 1.3",
+        "growth with links: exponent 1.070, target 1 +- 0.05",
+        "kinepy, shaper: 20.0 times as long, target 30",
+    )
+    assert Speed((good, bad), (growth,), (rival,), (), True).failures == ()  # twice as wide in a reduced run
+
+
+def test_the_command_writes_its_numbers_and_its_chart(tmp_path):
+    call = [sys.executable, "-m", "tmm_cli", "bench", "speed", "--reduced", "--json", "-o", str(tmp_path)]
+    done = subprocess.run(call, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode in (0, 1), done.stderr  # 1: a target missed, as on a busy machine
+    found = json.loads(done.stdout)
+    assert {r["mechanism"] for r in found["races"]} == {m.name for m in MECHANISMS}
+    assert all(r["ours"] > 0 and r["by_hand"] > 0 for r in found["races"])
+    assert [g["what"] for g in found["growths"]] == ["links", "positions", "variants"]
+    assert (done.returncode == 0) == (not found["failures"])
+    assert json.loads((tmp_path / "speed.json").read_text(encoding="utf-8")) == found
+    assert (tmp_path / "speed.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,272 @@
+"""Every number has a bound of its error: against 60 and 120 digits, in all classes, near dead positions, of any size.
+
+Width of a bound: how many times larger it is than the true error, or than a quarter of the last place of the number
+where the error is less (an answer that is right by accident cannot be told from one that is right by that much).
+Numbers that are exact are not counted.
+"""
+
+from __future__ import annotations
+
+import cmath
+import csv
+import json
+import re
+from dataclasses import replace
+
+import mpmath as mp
+import multibody
+import numpy as np
+import pytest
+from random_linkages import any_linkage, linkage
+from test_commands import ROOT, SHAPER, described, tmm
+
+from tmm_cli import load, solve
+from tmm_cli.accuracy.data import changed, lengths
+from tmm_cli.accuracy.digits import at, bare, bounds, exact
+from tmm_cli.accuracy.searches import searched
+from tmm_cli.assembly import assemble
+from tmm_cli.extended import WIDER
+from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
+from tmm_cli.quality import find_range
+from tmm_cli.results.digits import cells, computed_tables, trusted
+from tmm_cli.results.table import true_digits
+from tmm_cli.structure.assur import analyse
+
+U = 2.0**-53
+NOTHING = 1e-22  # of a value: less is what 60 digits and their differences leave
+CLASSES = [
+    (3, ("RRR",)), (36, ("RRP",)), (41, ("RPR",)), (24, ("RPP", "PRP")), (53, ("RRP", "RPR", "RRR")), (0, ("III",)),
+    (3, ("IV",)), (4, ("III", "RRR")),
+]  # fmt: skip
+
+
+@pytest.fixture
+def many_digits(monkeypatch):
+    """Differences in the reference so fine that they are right at 1e-14 from a dead position."""
+    for name, value in (("DIGITS", 120), ("STEP", mp.mpf(10) ** -45), ("BEND", mp.mpf(10) ** -35)):
+        monkeypatch.setattr(multibody, name, value)
+    monkeypatch.setattr(multibody.Multibody, "rounds", 9)
+    yield
+    mp.mp.dps = 60
+
+
+def made(seed, kinds):
+    return any_linkage(seed, kinds) if any(kind in ("III", "IV") for kind in kinds) else linkage(seed, kinds)
+
+
+def four_bar(size=1.0):
+    """A four-bar whose crank cannot turn fully, of any size."""
+    a, b, c, d = 0.9 * size, 1.1 * size, 0.7 * size, 1.3 * size
+    A = a * cmath.exp(1j)
+    base = abs(d - A)
+    x = (base**2 + b**2 - c**2) / (2 * base)
+    B = A + (d - A) / base * complex(x, (b**2 - x**2) ** 0.5)
+    links = {
+        FRAME: Link(FRAME, {"O": 0j, "D": complex(d)}),
+        "1": Link("1", {"O": 0j, "A": complex(a)}, 1.0, 0.1 * size**2, complex(0.4 * a)),
+        "2": Link("2", {"A": 0j, "B": complex(b), "K": complex(0.4 * b, 0.2 * size)}, 2.0, 0.2 * size**2, 0.5 * b + 0j),
+        "3": Link("3", {"D": 0j, "B": complex(c)}, 1.5, 0.1 * size**2, complex(0.5 * c)),
+    }
+    hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")), Hinge("D", (FRAME, "3")))
+    load = Load("F", "3", complex(0.8 * c), 30 + 10j)
+    return Linkage(links, hinges, (), Driver("1", "turn", "O", 2.0, 0.3), Sketch(1.0, {"A": A, "B": B}), (load,))
+
+
+def truth(body, it, structure, k):
+    """Position k in many digits, by quantity, name and component; of pairs with the link the reaction is on."""
+    X, V, A, multipliers = body.at(k)
+    found = {}
+
+    def put(quantity, name, value):
+        if isinstance(value, mp.mpc):
+            found[quantity, name, "x"], found[quantity, name, "y"] = value.real, value.imag
+        else:
+            found[quantity, name, ""] = value
+
+    for name, i in body.at_row.items():
+        z = body.pose(X, name)[1]
+        for quantity, values in (("angle", X), ("omega", V), ("epsilon", A)):
+            put(quantity, name, values[i + 2])
+        points = {p: at for p, at in it.links[name].points.items() if p not in it.links[FRAME].points}
+        for point, local in {**points, f"S{name}": it.links[name].centre}.items():
+            arm = mp.mpc(local) * z
+            put("x", point, mp.mpc(X[i], X[i + 1]) + arm)
+            put("v", point, mp.mpc(V[i], V[i + 1]) + 1j * V[i + 2] * arm)
+            put("a", point, mp.mpc(A[i], A[i + 1]) + (1j * A[i + 2] - V[i + 2] ** 2) * arm)
+    for pair in structure.pairs:
+        row = body.row_of(pair)
+        if pair.kind == "R":
+            put("force", (pair.name, pair.i), mp.mpc(multipliers[row], multipliers[row + 1]))
+        else:
+            across = 1j * body.pose(X, pair.i)[1] * mp.expj(mp.mpf(pair.slide.direction))
+            put("force", (pair.name, pair.j), multipliers[row + 1] * across)
+            put("couple", (pair.name, pair.j), multipliers[row])
+    first = body.size - len(it.drivers)
+    for row, driver in enumerate(it.drivers, first):
+        put("balancing", driver.link, multipliers[row])
+    return found
+
+
+def judged(it, q, wider=WIDER):
+    """(value, true error, bound) of every quantity at every place that is not refused."""
+    structure = analyse(it)
+    results = bare(it, q, structure, assemble(it, structure))
+    values, digits = bounds(results, wider=wider)
+    body = multibody.Multibody(it, structure, results.motion)
+    rows = []
+    for k in np.flatnonzero(results.motion.moving):
+        X = np.zeros(body.size)
+        for name, i in body.at_row.items():
+            pose = results.motion.poses[name]
+            X[i : i + 3] = pose.x[k].real, pose.x[k].imag, np.angle(pose.z[k])
+        X[body.at_row[it.driver.link] + 2] = q[k]
+        body.walked = lambda place, X=X: X
+        for (quantity, name, component), true in truth(body, it, structure, k).items():
+            sign = 1
+            if isinstance(name, tuple):
+                name, on = name
+                sign = 1 if results.reactions.of(name).on == on else -1
+            key = quantity, name, component
+            error = abs(sign * mp.mpf(float(values[key][k])) - true)
+            if quantity == "angle":
+                error = abs(error - 2 * mp.pi * mp.nint(error / (2 * mp.pi)))
+            error = float(error) if error > NOTHING * max(abs(true), 1e-3) else 0.0
+            rows.append((key, float(abs(true)), error, float(digits.bound[key][k])))
+    return rows, results
+
+
+def widths(rows):
+    return [bound / max(error, U / 4 * size) for _, size, error, bound in rows if error > 0]
+
+
+@pytest.mark.parametrize("wider", [WIDER, False])
+def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_narrow(wider):
+    rows = [row for seed, kinds in CLASSES for it in [made(seed, kinds)]
+            for row in judged(it, it.sketch.at + np.array([0.0, 0.01]), wider)[0]]  # fmt: skip
+    assert len(rows) > 1000
+    assert [row for row in rows if not row[2] <= row[3]] == []
+    assert np.mean(np.array(widths(rows)) <= 100) >= (0.9 if wider else 0.75)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
+def test_bounds_hold_on_the_way_to_a_dead_position_or_the_position_is_refused(size, many_digits):
+    it = four_bar(size)
+    way = find_range(it, assemble(it, analyse(it)))
+    q = np.append(way.end - 10.0 ** -np.arange(1, 15), way.end)
+    rows, results = judged(it, q)
+    assert results.motion.moving.tolist() == [True] * 14 + [False]
+    assert [row for row in rows if not row[2] <= row[3]] == []
+    worst = max(bound / size for _, size, _, bound in rows if size > 0 and bound < size)
+    assert worst > 1e-5, "so near to a dead position hardly a digit is left, and the bound says so"
+
+
+@pytest.mark.parametrize("kinds", [("RRP",), ("RPR",), ("PRP",), ("III",), ("IV",), ("RPR", "RRP")])
+def test_bounds_hold_near_the_ends_of_the_way_of_every_class(kinds, many_digits):
+    rows, number = [], np.random.default_rng(7)
+    for seed in range(3):
+        it = any_linkage(seed, kinds)
+        way = find_range(it, assemble(it, analyse(it)))
+        if not way.full:
+            rows += judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)))[0]
+    assert len(rows) > 50
+    assert [row for row in rows if not row[2] <= row[3]] == []
+
+
+def test_nine_of_ten_bounds_are_narrow_near_dead_positions(many_digits):
+    found, number = [], np.random.default_rng(5)
+    for kinds in (("RRR",), ("RRP",), ("RPR",), ("IV",)):
+        for seed in range(4):
+            it = any_linkage(seed, kinds)
+            way = find_range(it, assemble(it, analyse(it)))
+            if not way.full:
+                found += widths(judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)))[0])
+    assert np.mean(np.array(found) <= 100) >= 0.9
+
+
+def test_half_a_unit_of_the_last_figure_is_not_below_the_bound():
+    values, bound = np.array([3.14159, 3.14159, 3.14159, 9.99, 0.0, 5.0]), np.array([4e-6, 6e-6, 4.0, 1e-16, 0.0, 0.0])
+    assert true_digits(values, bound).tolist() == [6, 5, 0, 15, 0, 16]
+
+
+def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
+    results = solve(load(str(ROOT / "problems" / "crank-slider.yaml")), "kinematics")
+    found = searched(results, lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])}, 0.001)
+    for key, value, true in (("H", results.strokes.travel, mp.mpf("0.12")), ("k", results.strokes.k, mp.mpf(1))):
+        assert abs(mp.mpf(value) - true) <= found.bound[key][0] < 1e-14
+    assert found.lengths["H"][0] == pytest.approx(2 * 0.06e-3), "H = 2 r"
+
+
+def test_sensitivity_is_that_of_a_larger_change_of_the_data():
+    problem = load(str(ROOT / "problems" / "crank-rocker.yaml"))
+    places = replace(problem.request, places=tuple(0.3 + 0.7 * k for k in range(8)))
+    problem = replace(problem, request=places, extended=None)
+    found = trusted(solve(problem))
+    base, total = cells(found.results), {}
+    for length in lengths(problem.linkage):
+        by = 1e-3 * abs(length.value)
+        moved = [
+            cells(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by)))) for sign in (1, -1)
+        ]
+        for key in base:
+            if key[1] == "link-motion" and not key[0]:
+                total[key] = total.get(key, 0) + np.abs(moved[0][key] - moved[1][key]) / 2
+    for key, change in total.items():
+        assert found.digits.lengths[key] == pytest.approx(change, rel=0.05, abs=1e-3 * np.max(change) + 1e-9), key
+
+
+def test_digits_stand_beside_the_values():
+    done = tmm("kinematics", ROOT / "problems" / "crank-slider.yaml", "--digits", "--position", "3")
+    lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
+    assert done.returncode == 0
+    start = lines.index("what value ± rounding ± lengths ± paper unit")
+    quality = [re.sub(r"\S+e-1[3-6]", "tiny", line) for line in lines[start + 2 : start + 10]]
+    assert quality == [
+        "stroke H of link 3 120 tiny 0.12 1.5 mm",
+        "coefficient of change of mean speed k 1 tiny 0 0",
+        "working stroke starts at 180 tiny 0 0 deg",
+        "link 3 is then at 160 tiny 0.28 1.5 mm",
+        "working stroke lasts 180 tiny 0 0 deg",
+        "idle stroke starts at 0 tiny 0 0 deg",
+        "link 3 is then at 280 tiny 0.28 1.5 mm",
+        "idle stroke lasts 180 tiny 0 0 deg",
+    ]
+    assert any(line.startswith("cycle s of 3 ") for line in lines)
+
+
+def test_what_is_zero_within_its_bound_prints_as_zero_and_files_hold_true_digits_only(tmp_path):
+    assert tmm("run", SHAPER, "-o", tmp_path, "--no-drawings").returncode == 0
+    folder = tmp_path / "shaper"
+    cycle = list(csv.DictReader((folder / "cycle.csv").open(encoding="utf-8")))
+    assert cycle[0]["v of 5, m/s"] == "0", "at the end of its stroke the output stands still"
+    assert {row["difference, %"] for row in cycle} == {"0"}
+    digits = list(csv.DictReader((folder / "digits.csv").open(encoding="utf-8")))
+    assert {row["table"] for row in digits} >= {"quality", "cycle", "points", "reactions", "lever", "energy"}
+    assert all(int(row["true digits"]) >= 12 for row in digits if row["table"] in ("points", "reactions", "cycle"))
+
+
+def test_result_json_has_a_bound_in_the_place_of_every_number():
+    result = json.loads(tmm("forces", SHAPER, "--json").stdout)
+    described(result, json.loads(tmm("schema", "--result").stdout), "")
+    digits = result["digits"]
+    assert digits["scale"] > 0
+    for part in ("bound", "lengths", "paper"):
+        for group in ("kinematics", "forces", "lever", "energy", "positions", "output"):
+            assert group in digits[part], (part, group)
+        x = digits[part]["kinematics"]["points"]["E"]["x"]["x"]
+        assert len(x) == len(result["positions"]["number"]) and all(v is None or v >= 0 for v in x)
+    assert digits["bound"]["output"]["travel"] < 1e-15 < digits["lengths"]["output"]["travel"] < 0.01
+
+
+def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_hold():
+    problem = load(str(SHAPER))
+    results = solve(replace(problem, request=replace(problem.request, count=2900)), "kinematics")
+    found = trusted(results)
+    assert len(found.chosen) < 800
+    (table,) = (t for t in computed_tables(results) if t.name == "slides")
+    told = found.table(table)
+    wide = cells(at(results, exact(results), results.motion.q.astype(np.longdouble), results.start))
+    for header in ("s", "v relative", "a relative"):
+        column = next(c for c in told.columns if c.header == header)
+        expected = [wide[False, "slides", header, 0, name, 0] for name in ("A'", "x")]
+        error = np.abs(column.values - np.stack(expected, axis=1).ravel())
+        assert np.all(error <= column.bound), header

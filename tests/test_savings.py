@@ -1,0 +1,343 @@
+"""No more is computed than what is asked for, and what is asked for does not change by it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from test_commands import PROBLEMS, ROOT, SHAPER, tmm
+
+from tmm_cli import load, solve
+from tmm_cli.bench.counting import all_orders, counted, no_closed_form
+from tmm_cli.bench.savings import Saving, savings
+from tmm_cli.draw import files as drawings
+from tmm_cli.draw.savings import chart
+from tmm_cli.motion import Law, NotComputed, move, towards
+from tmm_cli.problem.build import build
+from tmm_cli.problem.dimensions import LENGTH, NUMBER
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.files import Staged, listed
+from tmm_cli.results.stages import heavy, stages
+from tmm_cli.results.table import Column, Table
+from tmm_cli.results.text import csv_text, json_bytes, json_text
+from tmm_cli.structure.assur import analyse
+
+IDS = [path.stem for path in PROBLEMS]
+
+
+def into_numpy(work):
+    """What of numpy a piece of work calls."""
+    called = []
+
+    def watch(frame, event, found):
+        if event == "c_call":
+            own = getattr(found, "__self__", None)
+            home = getattr(found, "__module__", None) or ""
+            if home.startswith("numpy") or isinstance(own, np.ndarray | np.generic):
+                called.append(found)
+
+    sys.setprofile(watch)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return called
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
+def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
+    problem = load(str(path))
+    with counted() as count:
+        called = into_numpy(lambda: solve(problem, "structure").structure.formula)
+    if analyse(problem.linkage).sound:
+        assert count.all == 0
+        assert called == []
+    else:  # counting alone does not tell its mobility: the rank does, from numbers
+        assert solve(problem, "structure").structure.passive
+
+
+def test_the_structure_of_a_chain_in_space_builds_no_arrays():
+    from tmm_cli.chain import count_chain
+    from tmm_cli.problem.build_chain import build_chain
+    from tmm_cli.problem.reader import read_file
+
+    problem = build_chain(read_file(str(ROOT / "problems" / "spatial-six-bar.yaml")))
+    assert into_numpy(lambda: count_chain(problem)) == []
+
+
+def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_turn():
+    toothed = solve(load(str(ROOT / "problems" / "planetary-dwell-press.yaml")), "structure")
+    shaper = solve(load(str(SHAPER)), "structure")
+    with counted() as count:
+        assert toothed.roles["1"] == "carrier"
+        assert count.all == 0
+        assert shaper.roles["1"] == "crank"
+        assert count.places > 0
+        assert count.velocities == count.accelerations == 0
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
+def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(path):
+    problem = load(str(path))
+    whole = solve(problem, "kinematics")
+    for link in problem.linkage.moving:
+        kernels = towards(whole.kernels, [link])
+        assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
+        q = whole.motion.q[:3]
+        alone = move(problem.linkage, kernels, q, Law(float(q[0]), 1.0, 0.0, 1), 1)
+        there = alone.placed & whole.motion.placed[:3]
+        here, known = alone.poses[link].x[there], whole.motion.poses[link].x[:3][there]
+        assert np.allclose(here, known, rtol=1e-12, atol=1e-13)  # where it is iterated, to rounding
+
+
+def test_groups_that_do_not_lead_to_what_is_asked_are_not_solved():
+    problem = load(str(ROOT / "problems" / "engine-four.yaml"))
+    ways = {"3": ["II(2,3)"], "5": ["II(4,5)"], "7": ["II(4,5)", "II(6,7)"], "1": []}  # rods 4 and 6 are on one hinge
+    for piston, titles in ways.items():
+        with counted() as count:
+            results = solve(problem, "kinematics", of=[piston])
+        assert [kernel.group.title for kernel in results.motion.kernels] == titles
+        assert count.accelerations == len(titles) * len(results.numbers)
+
+
+def test_kinematics_of_names_lists_them_alone_with_the_numbers_of_the_whole_table():
+    whole = json.loads(tmm("kinematics", SHAPER, "--json").stdout)["kinematics"]
+    alone = json.loads(tmm("kinematics", SHAPER, "--json", "--of", "E,5,S3").stdout)
+    part = alone["kinematics"]
+    assert (list(part["points"]), list(part["centres"]), list(part["links"])) == (["E"], ["S3"], ["5"])
+    assert part["points"]["E"] == whole["points"]["E"]
+    assert part["centres"]["S3"] == whole["centres"]["S3"]
+    assert part["links"]["5"] == whole["links"]["5"]
+    assert part["slides"] == {}
+    assert "pressure" not in alone
+    assert list(json.loads(tmm("kinematics", SHAPER, "--json", "--of", "D").stdout)["kinematics"]["margins"]) == [
+        "II(2,3)"
+    ]
+
+
+def test_an_unknown_name_is_one_error_with_the_nearest_one():
+    done = tmm("kinematics", SHAPER, "--of", "E,S33")
+    assert done.returncode == 2
+    assert "'S33'" in done.stderr
+    assert "did you mean 'S3'" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_only_positions_asked_for_are_solved():
+    problem = load(str(SHAPER))
+    with counted() as one:
+        results = solve(problem, "forces", [7])
+    with counted() as all_of_them:
+        solve(problem, "forces")
+    groups, others = len(results.structure.groups), len(results.asked) - 1
+    assert all_of_them.places - one.places == groups * others
+    assert (one.accelerations, all_of_them.accelerations) == (groups, groups * (others + 1))
+
+
+@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
+def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(path):
+    problem = load(str(path))
+    if any(kernel.followed for kernel in solve(problem, "structure").kernels):
+        return  # a group is followed by its accelerations
+
+    def quality():
+        found = solve(problem, "structure").mechanism
+        return found.way, found.strokes, found.dead, found.roles, found.further
+
+    with counted() as count:
+        lean = quality()
+    assert count.accelerations == 0
+    with all_orders():
+        assert repr(quality()) == repr(lean)
+
+
+def test_places_alone_have_no_velocities_and_asking_for_them_is_an_error():
+    results = solve(load(str(SHAPER)), "kinematics")
+    q = results.motion.q
+    law = Law(float(q[0]), 1.0, 0.0, 1)
+    places, rates = (move(results.linkage, results.kernels, q, law, order) for order in (0, 1))
+    assert np.allclose(places.spot("E"), results.motion.named("E").x, rtol=1e-15, atol=0)
+    assert np.array_equal(rates.first["5"].v, results.motion.first["5"].v)
+    with pytest.raises(NotComputed, match="velocities"):
+        places.link("3")
+    with pytest.raises(NotComputed, match="accelerations"):
+        rates.named("E")
+    with pytest.raises(NotComputed):
+        rates.centre("3")
+
+
+def test_massless_links_carry_no_inertia():
+    results = solve(load(str(ROOT / "problems" / "cylinder.yaml")))
+    light = [name for name in results.linkage.moving if name not in heavy(results.linkage)]
+    assert not [load for load in results.loads if load.link in light and load.kind in ("weight", "inertia")]
+
+
+def test_every_group_with_a_closed_form_is_solved_by_it():
+    for name in ("shaper", "six-bar", "sine", "tangent", "press-class-iii", "gear-straight-line"):
+        results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "structure")
+        for kernel in results.kernels:
+            if kernel.group.type in ("RRR", "RRP", "RPR", "PRP", "RPP") and not kernel.group.drivers:
+                assert type(kernel).__name__ == kernel.group.type
+
+
+def test_closed_form_and_newton_give_the_same_places():
+    results = solve(load(str(ROOT / "problems" / "six-bar.yaml")), "kinematics")
+    with no_closed_form():
+        from tmm_cli.assembly import assemble
+
+        iterated = assemble(results.linkage, results.structure)
+    motion = move(results.linkage, iterated, results.motion.q, Law(0.0, 1.0, 0.0, 1), 0)
+    assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
+    for link, pose in motion.poses.items():
+        assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("command", ["structure", "kinematics", "forces", "explain"])
+def test_what_shows_tables_imports_no_drawing(command):
+    code = (
+        "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\n"
+        "except SystemExit: print([m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, command, str(SHAPER)], capture_output=True, text=True, cwd=ROOT)
+    assert done.stderr.strip().splitlines()[-1] == "[]"
+
+
+def test_explain_says_of_every_stage_what_the_stage_does():
+    results = solve(load(str(SHAPER)), "kinematics")
+    rows = {row[0]: row for row in stages(results)}
+    with counted() as count:
+        results.mechanism.strokes  # noqa: B018
+        asked = count.places
+        results.dead  # noqa: B018
+    groups = len(results.structure.groups)
+    assert count.places - asked >= groups * int(rows["dead positions"][2])
+    assert rows["kinematics"][1:4] == ("all 2", "12", "and accelerations")
+    assert "inertia of 1, 2, 3, 4, 5" in rows["forces"][4]
+
+
+def test_every_saving_is_one():
+    found = list(savings(load(str(SHAPER)), reduced=True))
+    assert [saving.name for saving in found if not saving.holds] == []
+    assert [saving.name for saving in found if saving.why] == []
+    names = ("structure", "groups", "positions", "orders", "massless", "closed", "drawings")
+    assert tuple(saving.name for saving in found) == names
+    assert chart("A shaper", found, "png").startswith(b"\x89PNG")
+
+
+def test_a_crank_alone_has_nothing_to_save_and_says_so():
+    text = """
+tmm: 1
+points: {O: [0, 0]}
+links: {1: {points: {O: [0, 0], A: [100, 0]}}}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 30 deg}
+"""
+    found = savings(build(read_text(text, "crank.yaml")), reduced=True)
+    assert {saving.name: saving.why for saving in found if saving.name != "drawings"} == {
+        "groups": "one_group", "structure": "no_groups", "positions": "no_groups", "orders": "no_groups",
+        "massless": "no_groups", "closed": "no_dyads",
+    }  # fmt: skip
+
+
+def test_what_saves_nothing_is_said_so_and_makes_the_exit_code(monkeypatch, tmp_path):
+    from typer.testing import CliRunner
+
+    from tmm_cli.bench import savings as bench
+    from tmm_cli.cli.app import application
+
+    one = [Saving("groups", with_=5, without=5, seconds=(1.0, 1.0)), Saving("closed", why="no_dyads")]
+    monkeypatch.setattr(bench, "savings", lambda problem, reduced: iter(one))
+    done = CliRunner().invoke(application(), ["bench", "savings"])
+    assert done.exit_code == 1
+    assert "saves nothing" in done.stdout
+    one[0] = Saving("groups", with_=4, without=5, seconds=(1.0, 1.0))
+    done = CliRunner().invoke(application(), ["bench", "savings", "--json", "-o", str(tmp_path)])
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)["holds"] is True
+    assert {path.name for path in tmp_path.iterdir()} == {f"savings.{kind}" for kind in ("csv", "json", "png", "svg")}
+    assert CliRunner().invoke(application(), ["bench", "savings", str(tmp_path / "none.yaml")]).exit_code == 2
+
+
+# ---------------------------------------------------------------------------------------------- writing of long cycles
+
+VALUES = np.concatenate([
+    [0.0, -0.0, 1.0, -1.0, np.nan, np.inf, -np.inf, 0.1, 1e15, 1e16, 123456789012345678.0, 1e-5, 1e-4, 5e-324, 1.8e308],
+    np.random.default_rng(1).standard_normal(3000) * 10.0 ** np.random.default_rng(2).integers(-30, 30, 3000),
+    np.repeat([1.5, 0.0, -2.25e-9], 2000), np.round(np.random.default_rng(3).standard_normal(500), 3),
+])  # fmt: skip
+
+
+def test_a_table_is_written_as_a_csv_writer_writes_it():
+    words = ["a", "b, c", 'say "x"', "=1+1", "-5", "two\nlines", ""]
+    told = [words[k % len(words)] for k in range(len(VALUES))]
+    table = Table("t", "t", (Column("word, here", told), Column("x", VALUES, LENGTH), Column("y", VALUES, NUMBER)))
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["word, here", "x, mm", "y"])
+    for word, value in zip(told, VALUES.tolist(), strict=True):
+        cells = [f"{number:.15g}" if np.isfinite(number) else "" for number in (value * 1000, value)]
+        writer.writerow(["'" + word if word[:1] in ("=", "-") else word, *cells])
+    assert "".join(csv_text(table, UnitSystem())) == text.getvalue()
+
+
+def test_a_record_is_written_as_json_writes_it():
+    finite = VALUES[np.isfinite(VALUES)]
+    record = {"a": {"x": finite, "flags": finite > 0, "whole": np.arange(5), "none": np.zeros(0)}, "b": [1, "й", None]}
+    plainly = {"a": {key: part.tolist() for key, part in record["a"].items()}, "b": record["b"]}
+    text = "".join(json_text(record.items()))
+    assert text.encode() == json_bytes(plainly)
+    assert json.loads(text) == plainly
+    assert f'"x": {json.dumps(finite.tolist())},\n' in text
+    assert json.loads("".join(json_text([("v", VALUES)])))["v"][4:7] == [None, None, None]
+
+
+def test_nothing_is_renamed_before_all_is_written(tmp_path):
+    with pytest.raises(ZeroDivisionError), Staged(tmp_path / "new") as staged:
+        staged.write("a.csv", ["a"])
+        staged.write("b.csv", (str(1 / k) for k in (1, 0)))
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "a.csv").write_text("old", encoding="utf-8")
+    with Staged(tmp_path) as staged:
+        staged.write("a.csv", ["ne", b"w"])
+        assert (tmp_path / "a.csv").read_text(encoding="utf-8") == "old"
+    assert [(path.name, path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()] == [("a.csv", "new")]
+
+
+def test_the_files_of_an_earlier_run_are_read_from_the_end_of_its_record(tmp_path):
+    record = {"kinematics": {"x": list(range(50_000))}, "files": ["a.csv", "b.png", "../c.csv"]}
+    (tmp_path / "result.json").write_bytes(json_bytes(record))
+    assert listed(tmp_path) == {"a.csv", "b.png"}
+    (tmp_path / "result.json").write_text("{}", encoding="utf-8")
+    assert listed(tmp_path) == set()
+
+
+def test_a_run_of_36_000_positions_needs_less_than_400_MB(tmp_path):
+    text = SHAPER.read_text(encoding="utf-8").replace("count: 12", "count: 36000")
+    assert "count: 36000" in text
+    (tmp_path / "long.yaml").write_text(text, encoding="utf-8")
+    code = (
+        "import resource, sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\n"
+        "except SystemExit: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, file=sys.stderr)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, "run", str(tmp_path / "long.yaml"), "--no-drawings", "-o", str(tmp_path / "out")],
+        capture_output=True, text=True, cwd=ROOT,
+    )  # fmt: skip
+    assert float(done.stderr.strip().splitlines()[-1]) < 400
+    with (tmp_path / "out" / "long" / "cycle.csv").open(encoding="utf-8") as stream:
+        assert sum(1 for _ in stream) == 36_001
+
+
+def test_a_diagram_of_many_positions_marks_no_more_than_can_be_told_apart():
+    from dataclasses import replace
+
+    problem = load(str(SHAPER))
+    many = replace(problem, request=replace(problem.request, count=3600, detail=()))
+    sizes = {name: len(content) for name, content in drawings(solve(many, "kinematics"))}
+    assert sizes["diagrams.svg"] < 600_000

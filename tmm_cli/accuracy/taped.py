@@ -1,0 +1,41 @@
+"""The product's own way for many positions: the closed-form groups written on a tape and played back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tmm_cli.accuracy.case import Answers, Case
+from tmm_cli.batch import prepare as batch_of
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.motion import Motion
+from tmm_cli.vectors import Real, Vector
+
+
+def prepare(case: Case) -> Callable[[Real], Answers]:
+    """Writes the tape. Raises NotImplementedError for groups that are found by iteration."""
+
+    def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
+        assert plan is not None
+        found: dict[str, Any] = {"balancing": plan.balance.generalized}
+        for name in case.points:
+            point = motion.named_on(case.linkage.owner(name), name)
+            found |= {f"positions.{name}": point.x, f"velocities.{name}": point.v, f"accelerations.{name}": point.a}
+        return found | {f"reactions.{r.pair.name}": r.onto(r.pair.j) for r in plan.all}
+
+    batch = batch_of(case.linkage, asked, strokes=case.strokes)
+    if batch.program is None:
+        raise NotImplementedError("groups that are found by iteration cannot be written on a tape")
+
+    def at(q: Real) -> Answers:
+        found = batch(q)
+
+        def of(kind: str) -> dict[str, Vector]:
+            start = f"{kind}."
+            return {name.removeprefix(start): found[name] for name in found if name.startswith(start)}
+
+        return Answers(
+            of("positions"), of("velocities"), of("accelerations"), of("reactions"), found["balancing"]
+        )  # fmt: skip
+
+    return at

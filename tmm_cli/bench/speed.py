@@ -1,0 +1,239 @@
+"""`tmm bench speed`: against code by hand for one mechanism, and how time grows with links, positions, variants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch import Batch, everything, prepare
+from tmm_cli.bench.accuracy import CLOCK, machine
+from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
+from tmm_cli.bench.chains import chain
+from tmm_cli.bench.references import reference
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.motion import Motion
+from tmm_cli.vectors import Real
+
+POSITIONS = (12, 360, 36_000)
+VARIANTS = (1, 100, 10_000)
+OF_VARIANTS = 12  # positions of each variant
+OF_LINKS = 72  # positions of each chain: of 360 the longest chain fills the cache, and that is measured then
+TURNS, REDUCED_TURNS = 41, 15
+LEAST = 2e-3  # s: what is quicker is repeated in one turn
+TARGETS = {(1, 360): 1.3, (1, 36_000): 1.0, (10_000, 12): 1.3}  # ours over by hand, by (variants, positions)
+RIVALS = {"pylinkage": 3.0, "kinepy": 30.0}  # theirs over ours, at least
+EXPONENT = 0.05  # growth may differ so much from linear
+SLACK_WHEN_REDUCED = 2.0
+
+DYADS = (1, 2, 3, 5, 8, 12, 18, 24, 30)
+GROWING = {"links": DYADS, "positions": (360, 1000, 3000, 9000, 18_000, 36_000, 72_000),
+           "variants": (30, 100, 300, 1000, 3000, 10_000)}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Race:
+    """One mechanism in both ways: nanoseconds a position, the least of the turns; preparing (ms) is once a linkage."""
+
+    mechanism: str
+    variants: int
+    positions: int
+    ours: float
+    by_hand: float
+    preparing: float
+
+    @property
+    def ratio(self) -> float:
+        return self.ours / self.by_hand
+
+    @property
+    def target(self) -> float | None:
+        """At most this ratio; None where none is set."""
+        return TARGETS.get((self.variants, self.positions))
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Seconds for so many links, positions or variants; they grow as t0 + c n^exponent."""
+
+    what: str
+    numbers: tuple[int, ...]
+    seconds: tuple[float, ...]
+    exponent: float
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another program on a mechanism: nanoseconds a position of both, each giving what it can."""
+
+    name: str
+    mechanism: str
+    theirs: float
+    ours: float
+
+    @property
+    def ratio(self) -> float:
+        return self.theirs / self.ours
+
+
+@dataclass(frozen=True)
+class Speed:
+    """The whole measurement."""
+
+    races: tuple[Race, ...]
+    growths: tuple[Growth, ...]
+    rivals: tuple[Rival, ...]
+    absent: tuple[str, ...]
+    reduced: bool
+    machine: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Targets that are missed; of a reduced run, by more than twice."""
+        slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
+        found = [
+            f"{r.mechanism}, {r.variants} x {r.positions}: {r.ratio:.2f} times the code by hand, target {r.target:g}"
+            for r in self.races if r.target is not None and r.ratio > slack * r.target
+        ]  # fmt: skip
+        found += [
+            f"growth with {g.what}: exponent {g.exponent:.3f}, target 1 +- {EXPONENT:g}"
+            for g in self.growths if abs(g.exponent - 1) > slack * EXPONENT
+        ]  # fmt: skip
+        found += [
+            f"{r.name}, {r.mechanism}: {r.ratio:.1f} times as long, target {RIVALS[r.name]:g}"
+            for r in self.rivals if r.ratio < RIVALS[r.name] / slack
+        ]  # fmt: skip
+        return tuple(found)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON."""
+        return asdict(self) | {
+            "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
+            "rivals": [asdict(r) | {"ratio": r.ratio, "target": RIVALS[r.name]} for r in self.rivals],
+            "failures": list(self.failures),
+        }
+
+
+def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Speed:
+    """All in one process, by turns, so that what disturbs the machine disturbs all alike."""
+    races: list[Race] = []
+    for mechanism in MECHANISMS:
+        progress(mechanism.name)
+        races += race(mechanism, reduced)
+    growths = []
+    for what in GROWING:
+        progress(what)
+        growths.append(growth(what, reduced))
+    rivals, absent = against_rivals(reduced, progress)
+    return Speed(tuple(races), tuple(growths), rivals, absent, reduced, machine())
+
+
+def race(mechanism: Mechanism, reduced: bool) -> list[Race]:
+    """A mechanism with one and with many variants, ours and by hand by turns."""
+    found = []
+    kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if v > 1 and not (reduced and v == 100)]
+    for variants, positions in kinds:
+        linkages = mechanism.variants(variants)
+        start = perf_counter()
+        ours = mechanism.ours(linkages)
+        q = linkages[0].sketch.at + 2 * np.pi * np.arange(positions) / positions
+        ours(q)
+        preparing = 1e3 * (perf_counter() - start)
+        by_hand = mechanism.by_hand(linkages)
+        times = by_turns({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, reduced)  # noqa: B023
+        share = 1e9 / (variants * positions)
+        found.append(
+            Race(mechanism.name, variants, positions, times["ours"] * share, times["hand"] * share, preparing)
+        )  # fmt: skip
+    return found
+
+
+def by_turns(runs: Mapping[str, Callable[[], Any]], reduced: bool) -> dict[str, float]:
+    """Seconds of each, the least of its turns: the one that was disturbed least."""
+    turns = REDUCED_TURNS if reduced else TURNS
+    often = {}
+    for name, run in runs.items():
+        run()
+        start = CLOCK()
+        run()
+        often[name] = max(1, int(LEAST / max(CLOCK() - start, 1e-9)))
+    best = dict.fromkeys(runs, np.inf)
+    for _ in range(turns):
+        for name, run in runs.items():
+            start = CLOCK()
+            for _ in range(often[name]):
+                run()
+            best[name] = min(best[name], (CLOCK() - start) / often[name])
+    return {name: float(seconds) for name, seconds in best.items()}
+
+
+def growth(what: str, reduced: bool) -> Growth:
+    """Times of a chain of dyads with growing numbers of links, of the six-bar with growing positions or variants.
+
+    Of the balancing moment, for which all groups are walked forward and backward; what is large is the work, not the
+    results, which would soon measure the memory.
+    """
+    numbers = GROWING[what][1::2] if reduced else GROWING[what]
+    six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
+    runs: dict[str, Callable[[], Any]] = {}
+    for number in numbers:
+        if what == "links":
+            runs[str(number)] = _ready(prepare(chain(number), _balancing), OF_LINKS)
+        elif what == "positions":
+            runs[str(number)] = _ready(prepare(six_bar.linkage(), _balancing), number)
+        else:
+            runs[str(number)] = _ready(prepare(six_bar.variants(number), _balancing), OF_VARIANTS)
+    seconds = tuple(by_turns(runs, reduced).values())
+    size = [2 * n + 1 for n in numbers] if what == "links" else list(numbers)
+    return Growth(what, tuple(size), seconds, exponent(size, seconds))
+
+
+def _balancing(_: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+    assert reactions is not None
+    return {"T": reactions.balance.generalized}
+
+
+def _ready(batch: Batch, positions: int) -> Callable[[], Any]:
+    q: Real = 1.0 + 2 * np.pi * np.arange(positions) / positions
+    return lambda: batch(q)
+
+
+def exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
+    """p of the best t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
+    n, t = np.asarray(numbers, float), np.asarray(seconds, float)
+    best, found = np.inf, 1.0
+    for p in np.arange(0.5, 1.5005, 0.001):
+        columns = np.stack([np.ones_like(n), n**p], -1) / t[:, None]
+        both = np.linalg.lstsq(columns, np.ones_like(t), rcond=None)[0]
+        if both[0] < 0:
+            both = np.array([0.0, np.linalg.lstsq(columns[:, 1:], np.ones_like(t), rcond=None)[0][0]])
+        off = float(np.sum((columns @ both - 1) ** 2))
+        if off < best:
+            best, found = off, float(p)
+    return found
+
+
+def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
+    """Rivals that are installed, on the mechanisms that they can do, at 360 positions."""
+    from tmm_cli.bench.rivals import installed
+
+    there, missing = installed()
+    absent = [f"{name}: not installed" for name in missing]
+    found = []
+    for method in there:
+        for mechanism in MECHANISMS:
+            progress(f"{method.name}, {mechanism.name}")
+            case = reference(mechanism.name).case
+            try:
+                solver = method.prepare(case)
+            except NotImplementedError as error:
+                absent.append(f"{method.name}: {mechanism.name}: {error}")
+                continue
+            q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360
+            batch = prepare(case.linkage, everything, forces=method.name != "pylinkage", strokes=case.strokes)
+            times = by_turns({"theirs": lambda: solver(q), "ours": lambda: batch(q)}, reduced)  # noqa: B023
+            found.append(Rival(method.name, mechanism.name, times["theirs"] * 1e9 / 360, times["ours"] * 1e9 / 360))
+    return tuple(found), tuple(absent)
