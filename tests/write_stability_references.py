@@ -365,7 +365,16 @@ def write(name):
         seeds.append({"numbers": {key: str(value) for key, value in n.items()}, "scenes": scenes})
         print(name, seed, flush=True)
     DATA.mkdir(parents=True, exist_ok=True)
-    (DATA / f"{name}.json").write_text(json.dumps({"seeds": seeds}, indent=0) + "\n", encoding="utf-8")
+    (DATA / f"{name}.json").write_text(lines(seeds), encoding="utf-8")
+
+
+def lines(seeds):
+    """The file: a line a scene."""
+    parts = []
+    for seed in seeds:
+        scenes = ",\n".join(json.dumps(scene) for scene in seed["scenes"])
+        parts.append(f'{{"numbers": {json.dumps(seed["numbers"])},\n"scenes": [\n{scenes}\n]}}')
+    return '{"seeds": [\n' + ",\n".join(parts) + "\n]}\n"
 
 
 if __name__ == "__main__":

@@ -81,7 +81,8 @@ def _write(measured: Stability, folder: Path) -> str:
     """stability.csv, stability.json and the charts; their names."""
     from tmm_cli.bench.stability_chart import charts
     from tmm_cli.draw.sheet import picture
-    from tmm_cli.results.files import json_bytes, write_whole
+    from tmm_cli.results.files import write_whole
+    from tmm_cli.results.text import json_bytes
 
     contents = {"stability.csv": measured.to_csv().encode(), "stability.json": json_bytes(measured.to_dict())}
     for number, figure in enumerate(charts(measured), 1):
