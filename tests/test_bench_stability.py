@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from write_stability_references import NUMBERS, Closely, circles, closed, starts, written
 
+from tmm_cli.accuracy import digits
 from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method
 from tmm_cli.accuracy.following import close
 from tmm_cli.bench import stability
@@ -187,9 +188,9 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
     honest = stability.bounds
 
     def boasting(results):
-        values, digits = honest(results)
-        digits.bound = {key: bound / 1000 for key, bound in digits.bound.items()}
-        return values, digits
+        values, found = honest(results)
+        found.bound = {key: bound / 1000 for key, bound in found.bound.items()}
+        return values, found
 
     monkeypatch.setattr(stability, "bounds", boasting)
     found = measure(["stone-over-pivot"], methods=(), reduced=True)
@@ -201,14 +202,24 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
     honest = stability.bounds
 
     def timid(results):
-        values, digits = honest(results)
-        digits.bound = {key: bound * 1e4 for key, bound in digits.bound.items()}
-        return values, digits
+        values, found = honest(results)
+        found.bound = {key: bound * 1e4 for key, bound in found.bound.items()}
+        return values, found
 
     monkeypatch.setattr(stability, "bounds", timid)
     found = measure(["size"], methods=(), reduced=True)
     assert found.lies("size", OURS) is None
     assert len(found.failures) == 1 and "of the bounds are within 100 times the true error" in found.failures[0]
+
+
+@pytest.mark.parametrize("family, distance", [("change-point", "1e-7"), ("two-assemblies-lost", "1e-15")])
+def test_bounds_hold_where_longdouble_is_no_wider_than_double_or_no_value_is_told(family, distance, monkeypatch):
+    honest = stability.bounds
+    monkeypatch.setattr(digits, "WIDER", False)
+    monkeypatch.setattr(stability, "bounds", lambda results: honest(results, wider=False))
+    for at in known(family):
+        if at.distance == Decimal(distance):
+            assert ours(Case.of(at.scene.linkage), at).verdict == "said"
 
 
 # what is thought of an answer

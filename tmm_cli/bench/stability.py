@@ -243,7 +243,7 @@ def _watched(found: Answers, quantity: Quantity, at: Known) -> Any:
 
 
 def ours(case: Case, at: Known) -> Shot:
-    """What the product prints, and its bounds: a value outside its own is a lie, and so is one without a bound."""
+    """What the product prints, and its bounds: a value outside its own is a lie; without a bound none is printed."""
     q = np.array([at.scene.q])
     results = bare(case.linkage, q, case.structure, case.kernels)
     values, digits = bounds(results)
@@ -263,7 +263,9 @@ def ours(case: Case, at: Known) -> Shot:
         parts = (("x", true.real), ("y", true.imag)) if np.iscomplexobj(true) else (("", true),)
         for component, exact in parts:
             mine, bound = values[*key, component][0], float(digits.bound[*key, component][0])
-            given = given and bool(np.isfinite(mine))
+            if not (np.isfinite(mine) and np.isfinite(bound)):
+                given, total = False, float("nan")
+                continue
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
             within = within and off <= bound + TRUE * at.largest[quantity]
             floor = max(off, UNIT * abs(float(exact)), TRUE * at.largest[quantity])
@@ -271,10 +273,10 @@ def ours(case: Case, at: Known) -> Shot:
             total += off * off
             widest = max(widest, bound / at.largest[quantity])
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
-    if not given:
-        return Shot(OURS, "said", dict.fromkeys(QUANTITIES, float("nan")), "nan")
     if not within:
         return Shot(OURS, "wrong", errors, "", widest, tuple(widths))
+    if not given:
+        return Shot(OURS, "said", errors, "nan", widest or float("nan"), tuple(widths))
     far = max(errors.values()) > WRONG  # the bound says it
     return Shot(OURS, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 

@@ -28,10 +28,10 @@ WORDS: dict[str, str] = {
     "stability.bound": "the bound that tmm prints",
     "stability.chart": "Near what kills a method ({page} of {pages})",
     "stability.caption": "Above: largest error of the answers given, positions to balancing moment, over the largest "
-    "value. Below: share of {scenes} linkages at each distance with a right answer, none, a wrong one.",
+    "value. Below: share of {scenes} linkages at each distance that it gets right, does not, and says so, or gets wrong.",
     "stability.error": "largest error",
     "stability.right": "right",
-    "stability.said": "no answer, and it says so",
+    "stability.said": "no answer, or a bound as wide as it is off",
     "stability.wrong": "wrong, and it does not say so",
     "stability.title": "Where each method first gives a wrong answer without saying so",
     "stability.method": "method",
