@@ -153,7 +153,7 @@ class Stability:
 
 
 def _plain(value: float) -> float | None:
-    return None if np.isnan(value) else float(min(value, 1e300))
+    return None if np.isnan(value) else float(f"{min(value, 1e300):.3g}")
 
 
 def measure(
