@@ -130,7 +130,8 @@ class Motion:
 
     def named(self, point: str) -> Point:
         """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
-        return self.named_on(min(self.linkage.carriers(point), key=lambda link: self._sway(link, point)), point)
+        there = [link for link in self.linkage.carriers(point) if link in self.poses]
+        return self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
 
     def _sway(self, link: str, point: str) -> float:
         """Size of the terms that a point's acceleration is the sum of."""

@@ -16,7 +16,7 @@ PI = "3.14159265358979323846264338327950288"
 
 def pi(values: Any) -> Any:
     """Pi in the precision of an array."""
-    return np.asarray(values).real.dtype.type(PI)
+    return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
 
 
 def dot(a: Any, b: Any) -> Any:

@@ -288,7 +288,8 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     """
     lead = linkage.driver
     law = Law(linkage.sketch.at if linkage.others else first, lead.rate, lead.acceleration, lead.sense)
-    kernels = tuple(kernel.again(linkage) for kernel in results.kernels)
+    solved = results.kernels if results.motion is None else results.motion.kernels
+    kernels = tuple(kernel.again(linkage) for kernel in solved)
     moved = move(linkage, kernels, q, law)
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes

@@ -209,7 +209,7 @@ def _kinematics(motion: Motion, results: Results) -> dict[str, Any]:
     margins = {d.group.title: p.margin for d, p in zip(motion.kernels, motion.placements, strict=True)}
     return {
         "output": output_link(linkage, results.structure.groups),
-        "points": {name: _point(motion.point(*key) if of else motion.named(name)) for name, key in points.items()},
+        "points": {name: _point(motion.named(name)) for name, key in points.items()},
         "centres": {name: _point(motion.point(*key)) for name, key in centres.items()},
         "links": links,
         "slides": slides,

@@ -70,7 +70,9 @@ class Trusted:
     def _of(self, part: str, keys: list[Hashable]) -> Real | None:
         values = getattr(self.digits, part)
         nothing = np.full(len(self.chosen), np.nan)
-        found = np.empty((self.count, len(keys)), dtype=float if self.count < LONG else np.float32)  # two figures tell all
+        found = np.empty(
+            (self.count, len(keys)), dtype=float if self.count < LONG else np.float32
+        )  # two figures tell all
         for k, key in enumerate(keys):
             found[:, k] = self._everywhere(part, values.get(key, nothing))
         return found.ravel()
@@ -182,7 +184,8 @@ def _single(results: Results) -> Mapping[Hashable, Real]:
 def computed_tables(results: Results) -> Iterator[Table]:
     """Tables with computed numbers."""
     for name, part, _ in REPORTS:
-        if part in COMPUTED and getattr(results, part) is not None:
+        wanted = name == "kinematics" or not results.of  # else the rest is not there
+        if part in COMPUTED and wanted and getattr(results, part) is not None:
             yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
 
 

@@ -36,7 +36,7 @@ def tables(results: Results) -> Iterable[Table]:
     if of:
         points = dict(asked_places(linkage, results.kernels, of))
     if points:
-        hinges = () if of else named_points(linkage)
+        hinges = named_points(linkage)
         values = [_point(motion.named(n) if n in hinges else motion.point(*key)) for n, key in points.items()]
         yield long_table(results, "points", {"word.point": list(points)}, values)
     links = asked_links(linkage, of) if of else linkage.moving
