@@ -27,8 +27,9 @@ WORDS: dict[str, str] = {
     "stability.freudenstein": "Freudenstein, tan of half the angle",
     "stability.bound": "the bound that tmm prints",
     "stability.chart": "Near what kills a method ({page} of {pages})",
-    "stability.caption": "Above: largest error of the answers given, positions to balancing moment, over the largest "
-    "value. Below: of {scenes} linkages at each distance the share that it gets right, does not and says so, gets wrong.",
+    "stability.caption": "Above: largest error of the answers given, positions to balancing moment, over the "
+    "largest value. Below: of {scenes} linkages at each distance the share that it gets "
+    "right, does not and says so, gets wrong.",
     "stability.error": "largest error",
     "stability.right": "right",
     "stability.said": "no answer, or a bound as wide as it is off",
