@@ -66,13 +66,13 @@ class Multibody:
     """One linkage; `at(k)` solves position k of a motion.
 
     strokes: those of the run, for loads of the working stroke; they say only which way the output works.
-    rounds: of Newton's method in 60 digits; near dead positions more are wanted.
+    rounds: of Newton's method in so many digits; near dead positions more of both are wanted, and shorter steps.
     """
 
-    rounds = 3
+    rounds, digits, step, bend = 3, DIGITS, STEP, BEND
 
     def __init__(self, it, structure, motion, strokes=None):
-        mp.mp.dps = DIGITS
+        mp.mp.dps = self.digits
         self.it, self.pairs, self.motion, self.strokes = it, structure.pairs, motion, strokes
         self.at_row = {name: 3 * i for i, name in enumerate(it.moving)}
         self.size = 3 * len(it.moving)
@@ -214,10 +214,14 @@ class Multibody:
         J = mp.matrix(self.size, self.size)
         for j in range(self.size):
             more, less = X.copy(), X.copy()
-            more[j] += STEP
-            less[j] -= STEP
-            J[:, j] = (self.gaps(more, q) - self.gaps(less, q)) / (2 * STEP)
+            more[j] += self.step
+            less[j] -= self.step
+            J[:, j] = (self.gaps(more, q) - self.gaps(less, q)) / (2 * self.step)
         return J
+
+    def begun(self, place):
+        """Where Newton's method in many digits begins."""
+        return mp.matrix([mp.mpf(float(x)) for x in self.walked(place)])
 
     def at(self, k):
         """Places, velocities, accelerations and multipliers at position k."""
@@ -225,7 +229,7 @@ class Multibody:
         n = Digits()
         drives = self.drives(self.time(place, n), n)
         q = [drive[0] for drive in drives]
-        X = mp.matrix([mp.mpf(float(x)) for x in self.walked(place)])
+        X = self.begun(place)
         for _ in range(self.rounds):
             J = self.jacobian(X, q)
             X = X - mp.lu_solve(J, self.gaps(X, q))
@@ -236,8 +240,8 @@ class Multibody:
             for row, drive in enumerate(drives, self.size - len(drives)):
                 asked[order - 1][row] = drive[order]
         V = mp.lu_solve(J, asked[0])
-        bend = self.gaps(X + BEND * V, q) - 2 * self.gaps(X, q) + self.gaps(X - BEND * V, q)
-        A = mp.lu_solve(J, asked[1] - bend / BEND**2)
+        bend = self.gaps(X + self.bend * V, q) - 2 * self.gaps(X, q) + self.gaps(X - self.bend * V, q)
+        A = mp.lu_solve(J, asked[1] - bend / self.bend**2)
         pushing = self.pushing(J, X).T
         missing = self.missing(X, V, A)
         multipliers = mp.lu_solve(pushing, missing)
@@ -274,7 +278,7 @@ class Multibody:
             away = -1j * forward * (1 if mesh.ratio > 0 else -1)
             return axis + abs(mp.mpf(mesh.ratio)) * away, forward, away
         angle = self.angle(X, mesh.i)
-        slope = (run_of(mesh.law, angle + STEP, n) - run_of(mesh.law, angle - STEP, n)) / (2 * STEP)
+        slope = (run_of(mesh.law, angle + self.step, n) - run_of(mesh.law, angle - self.step, n)) / (2 * self.step)
         return axis - 1j * slope * forward, forward, None
 
     def pushing(self, J, X):
@@ -350,7 +354,9 @@ class Multibody:
         n, link = Digits(), self.strokes.link
         for slide in self.it.slides:
             if {slide.carrier, slide.runner} == {FRAME, link}:
-                speed = (self.slid(X + STEP * V, slide, n)[0] - self.slid(X - STEP * V, slide, n)[0]) / (2 * STEP)
+                speed = (self.slid(X + self.step * V, slide, n)[0] - self.slid(X - self.step * V, slide, n)[0]) / (
+                    2 * self.step
+                )
                 break
         else:
             speed = V[self.at_row[link] + 2]
@@ -369,8 +375,10 @@ class Multibody:
             return
         ends = []
         for name, at in ((spring.i, spring.at_i), (spring.j, spring.at_j)):
-            (x, z), (more, ahead), (less, behind) = (self.pose(Y, name) for Y in (X, X + STEP * V, X - STEP * V))
-            ends.append((x + at * z, (more + at * ahead - less - at * behind) / (2 * STEP), at * z))
+            (x, z), (more, ahead), (less, behind) = (
+                self.pose(Y, name) for Y in (X, X + self.step * V, X - self.step * V)
+            )
+            ends.append((x + at * z, (more + at * ahead - less - at * behind) / (2 * self.step), at * z))
         way = ends[1][0] - ends[0][0]
         length = abs(way)
         along = way / length

@@ -43,9 +43,8 @@ CLASSES = [
 @pytest.fixture
 def many_digits(monkeypatch):
     """Differences in the reference so fine that they are right at 1e-14 from a dead position."""
-    for name, value in (("DIGITS", 120), ("STEP", mp.mpf(10) ** -45), ("BEND", mp.mpf(10) ** -35)):
-        monkeypatch.setattr(multibody, name, value)
-    monkeypatch.setattr(multibody.Multibody, "rounds", 9)
+    for name, value in (("digits", 120), ("step", mp.mpf(10) ** -45), ("bend", mp.mpf(10) ** -35), ("rounds", 9)):
+        monkeypatch.setattr(multibody.Multibody, name, value)
     yield
     mp.mp.dps = 60
 

@@ -43,6 +43,7 @@ SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
 ROUNDINGS = 2  # of longdouble, in units of u_wide kappa
 TRIALS, SPREAD = 5, 3  # with shaken data; a bound in units of the largest change that they make
+LOST = 0.1  # of the largest value of its kind: where a unit of the last place makes so much, trials tell no bound
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
 CLOSE = 2.0**-7  # of the square of the margin, where it is near one
 LEAST = 2.0**-56  # of a length: steps below that are rounding in longdouble too
@@ -247,6 +248,7 @@ def _judge(
             bound = 2 * away + U * y + ROUNDINGS * fine * kappa
         else:
             bound = SPREAD * spread[key] + 4 * U * largest[kind(key)]
+            bound = np.where(spread[key] > LOST * largest[kind(key)], np.nan, bound)
         with np.errstate(invalid="ignore"):
             bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         found.bound[key][chosen] = np.where(np.isfinite(y), bound, np.nan)

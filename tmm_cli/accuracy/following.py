@@ -32,7 +32,7 @@ class Closure(Protocol):
 
 
 def close(closure: Closure, X: Real, q: Real, tolerance: float) -> Real:
-    """Newton's method, each position until its gaps are within the tolerance, or are rounding."""
+    """Newton's method, each position until its gaps are within the tolerance, or are rounding; else it is nan."""
     active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
     for _ in range(ROUNDS):
         gaps = closure.gaps(X, q)
@@ -42,6 +42,9 @@ def close(closure: Closure, X: Real, q: Real, tolerance: float) -> Real:
             break
         step = solve(closure.matrix(X, q), -gaps)
         X, last = np.where(active[:, None], X + step, X), size
+    if np.any(active):
+        size = np.max(np.abs(closure.gaps(X, q)), axis=-1)
+        X = np.where((active & ~(size <= max(tolerance, ROUNDING)))[:, None], np.nan, X)
     return X
 
 

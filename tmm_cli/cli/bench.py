@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from tmm_cli.cli import bench_accuracy, bench_savings, bench_speed
+from tmm_cli.cli import bench_accuracy, bench_savings, bench_speed, bench_stability
 
 app = typer.Typer(
     name="bench",
@@ -16,3 +16,4 @@ app = typer.Typer(
 app.command("accuracy")(bench_accuracy.accuracy)
 app.command("savings")(bench_savings.savings)
 app.command("speed")(bench_speed.speed)
+app.command("stability")(bench_stability.stability)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 
-FILES = ("common", "structure", "results", "warnings", "drawings", "accuracy", "speed", "bench")
+FILES = ("common", "structure", "results", "warnings", "drawings", "accuracy", "speed", "bench", "stability")
 
 
 @cache

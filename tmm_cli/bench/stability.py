@@ -1,0 +1,296 @@
+"""`tmm bench stability`: what every method says as it comes near what kills it, and whether it says so.
+
+An answer is wrong when it is off by more than 1e-6 of the largest value, or by 10 times what the method itself states
+(Newton's tolerance, the 5 % of the drawing board); the product's own when it is off by more than its own bound. A
+method says so by raising, by nan, or by not converging; ours by a bound that is wide enough too.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_cli.accuracy import textbook
+from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity
+from tmm_cli.accuracy.digits import bare, bounds
+from tmm_cli.accuracy.methods import METHODS
+from tmm_cli.bench.families import BY_NAME
+from tmm_cli.bench.truths import Known, known
+from tmm_cli.refused import Refused
+from tmm_cli.vectors import Real
+
+OURS = "tmm"
+WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
+FIVE = 0.05  # what the drawing board states
+WIDE, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
+TRUE = 1e-40  # of the largest value: what is not known of the truth
+UNIT = 2.0**-53  # no value in float64 is nearer to the truth by right than this share of it
+SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
+WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
+NAIVE = (
+    Method("cosines", "cosines", textbook.cosines), Method("freudenstein", "freudenstein", textbook.freudenstein),
+)  # fmt: skip
+RIVALS: tuple[Method, ...] = (*METHODS, *NAIVE)
+
+Verdict = Literal["right", "said", "wrong", "astray"]
+Solver = Callable[[Real], Answers]
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One method in one scene: the errors of its answers (shares of the largest), and what to think of it.
+
+    astray: wrong because it is in another assembly; why: how it said so. For ours, widths: bound over true error of
+    every number, nan where there is no bound.
+    """
+
+    method: str
+    verdict: Verdict
+    errors: dict[Quantity, float]
+    why: str = ""
+    bound: float = float("nan")
+    widths: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method at one distance: of so many scenes how many it answers rightly, says that it cannot, gets wrong.
+
+    errors: the largest of the answers it gave; astray are among the wrong ones; bound: the largest of ours, a share
+    of the largest value.
+    """
+
+    family: str
+    method: str
+    distance: float
+    scenes: int
+    right: int
+    said: int
+    wrong: int
+    astray: int
+    errors: dict[Quantity, float]
+    bound: float = float("nan")
+    why: tuple[str, ...] = ()
+
+    @property
+    def error(self) -> float:
+        """The worst of all quantities; nan when it gave none."""
+        found = [error for error in self.errors.values() if not np.isnan(error)]
+        return max(found, default=float("nan"))
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The whole measurement. widths: of all bounds of ours, over the true errors."""
+
+    rows: tuple[Row, ...]
+    widths: tuple[float, ...]
+    reduced: bool
+    absent: tuple[str, ...] = ()
+
+    @property
+    def families(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row.family for row in self.rows))
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row.method for row in self.rows))
+
+    def of(self, family: str, method: str) -> list[Row]:
+        """Rows from the harmless distance to the worst."""
+        return [row for row in self.rows if (row.family, row.method) == (family, method)]
+
+    def lies(self, family: str, method: str) -> float | None:
+        """The distance at which a method first gives a wrong answer without saying so; None when it never does."""
+        return next((row.distance for row in self.of(family, method) if row.wrong), None)
+
+    @property
+    def sharp(self) -> float:
+        """Share of our bounds that are at most 100 times the true error."""
+        return float(np.mean(np.array(self.widths) <= WIDE)) if self.widths else float("nan")
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Where the product misses its targets."""
+        lies = [
+            f"{row.family}: {row.wrong} of {row.scenes} outside their bounds at {row.distance:g}"
+            for row in self.rows if row.method == OURS and row.wrong
+        ]  # fmt: skip
+        if self.widths and not self.sharp >= TARGET:
+            lies.append(f"{self.sharp:.1%} of the bounds are within {WIDE:g} times the true error, target {TARGET:.0%}")
+        return tuple(lies)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON: an error that was not given is null."""
+        rows = [
+            vars(row) | {"errors": {q: _plain(e) for q, e in row.errors.items()}, "bound": _plain(row.bound)}
+            for row in self.rows
+        ]
+        lies = {f: {m: self.lies(f, m) for m in self.methods if self.of(f, m)} for f in self.families}
+        return {
+            "rows": rows, "first_lie": lies, "bounds": len(self.widths), "sharp": _plain(self.sharp),
+            "reduced": self.reduced, "absent": list(self.absent), "failures": list(self.failures),
+        }  # fmt: skip
+
+    def to_csv(self) -> str:
+        """A line a family, method and distance."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(
+            ["family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound"]
+        )
+        for row in self.rows:
+            found = ["" if np.isnan(e) else f"{e:.3g}" for e in (*(row.errors[q] for q in QUANTITIES), row.bound)]
+            counts = [row.scenes, row.right, row.said, row.wrong, row.astray]
+            writer.writerow([row.family, row.method, f"{row.distance:g}", *counts, *found])
+        return stream.getvalue()
+
+
+def _plain(value: float) -> float | None:
+    return None if np.isnan(value) else float(f"{min(value, 1e300):.3g}")
+
+
+def measure(
+    families: Sequence[str] = tuple(BY_NAME),
+    *,
+    reduced: bool = False,
+    methods: Iterable[Method] | None = None,
+    own: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Stability:
+    """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
+    fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in NAIVE]
+    chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
+    rows: list[Row] = []
+    widths: list[float] = []
+    absent: dict[str, None] = {}
+    for family in families:
+        progress(family)
+        some = (SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED) if reduced else (None, 1)
+        shots: dict[tuple[str, float], list[Shot]] = {}
+        for at, case, solvers in _prepared(known(family, *some), chosen, absent):
+            mine = (ours(case, at),) if own else ()
+            for shot in (*mine, *(_shoot(method, solver, at) for method, solver in solvers.items())):
+                shots.setdefault((shot.method, float(at.distance)), []).append(shot)
+                widths += shot.widths
+        rows += [_row(family, *key, found) for key, found in shots.items()]
+    return Stability(tuple(rows), tuple(widths), reduced, tuple(absent))
+
+
+def _prepared(
+    scenes: Iterable[Known], methods: tuple[Method, ...], absent: dict[str, None]
+) -> Iterator[tuple[Known, Case, dict[Method, Solver | Exception]]]:
+    """Scenes with what is made ready of their linkage, once where it is the same at all distances."""
+    for _, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
+        of_one = list(group)
+        case = Case.of(of_one[0].scene.linkage)
+        solvers: dict[Method, Solver | Exception] = {}
+        for method in methods:
+            try:
+                with np.errstate(all="ignore"):
+                    solvers[method] = method.prepare(case)
+            except NotImplementedError as error:
+                absent[f"{method.name}: {of_one[0].family.name}: {error}"] = None
+            except (ArithmeticError, ValueError, Refused, np.linalg.LinAlgError) as error:
+                solvers[method] = error
+        for at in of_one:
+            yield at, case, solvers
+
+
+def limit(method: Method) -> float:
+    """The share of the largest value beyond which an answer of the method is wrong."""
+    stated = FIVE if method.family == "board" else TIMES * (method.setting or 0.0) if method.family == "newton" else 0.0
+    return max(WRONG, stated)
+
+
+def _shoot(method: Method, solver: Solver | Exception, at: Known) -> Shot:
+    nothing: dict[Quantity, float] = dict.fromkeys(QUANTITIES, float("nan"))
+    try:
+        if isinstance(solver, Exception):
+            raise solver
+        with np.errstate(all="ignore"):
+            found = solver(np.array([at.scene.q]))
+    except (ArithmeticError, ValueError, IndexError, AssertionError, Refused, np.linalg.LinAlgError) as error:
+        return Shot(method.name, "said", nothing, type(error).__name__)
+    values = {quantity: _watched(found, quantity, at) for quantity in QUANTITIES}
+    if not all(np.isfinite(value) for value in values.values() if value is not None):
+        return Shot(method.name, "said", nothing, "nan")
+    errors = {
+        quantity: nothing[quantity] if value is None else _off(value, quantity, at)
+        for quantity, value in values.items()
+    }
+    if not max(error for error in errors.values() if not np.isnan(error)) > limit(method):
+        return Shot(method.name, "right", errors)
+    place, true = values["positions"], at.exact["positions"]
+    astray = place is not None and at.other is not None and abs(place - at.other) < abs(place - true)
+    return Shot(method.name, "astray" if astray else "wrong", errors)
+
+
+def _off(value: Any, quantity: Quantity, at: Known) -> float:
+    return float(abs(value - at.exact[quantity]) / at.largest[quantity])
+
+
+def _watched(found: Answers, quantity: Quantity, at: Known) -> Any:
+    series = found.series(quantity)
+    name = {"reactions": at.scene.pair, "balancing": "balancing"}.get(quantity, at.scene.point)
+    return None if series is None else series[name][0]
+
+
+def ours(case: Case, at: Known) -> Shot:
+    """What the product prints, and its bounds: a value outside its own is a lie; without a bound none is printed."""
+    q = np.array([at.scene.q])
+    results = bare(case.linkage, q, case.structure, case.kernels)
+    values, digits = bounds(results)
+    assert results.reactions is not None
+    reaction = results.reactions.of(at.scene.pair)
+    sense = 1 if reaction.on == reaction.pair.j else -1
+    keys: dict[Quantity, tuple[str, str]] = {
+        "positions": ("x", at.scene.point), "velocities": ("v", at.scene.point), "accelerations": ("a", at.scene.point),
+        "reactions": ("force", at.scene.pair), "balancing": ("balancing", case.linkage.driver.link),
+    }  # fmt: skip
+    errors: dict[Quantity, float] = {}
+    widths: list[float] = []
+    within, given, widest = True, True, 0.0
+    for quantity, key in keys.items():
+        true = at.exact[quantity]
+        total = 0.0
+        parts = (("x", true.real), ("y", true.imag)) if np.iscomplexobj(true) else (("", true),)
+        for component, exact in parts:
+            mine, bound = values[*key, component][0], float(digits.bound[*key, component][0])
+            if not (np.isfinite(mine) and np.isfinite(bound)):
+                given, total = False, float("nan")
+                continue
+            off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
+            within = within and off <= bound + TRUE * at.largest[quantity]
+            floor = max(off, UNIT * abs(float(exact)), TRUE * at.largest[quantity])
+            widths.append(bound / floor if bound else 1.0)  # a part that is nothing for certain
+            total += off * off
+            widest = max(widest, bound / at.largest[quantity])
+        errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
+    if not within:
+        return Shot(OURS, "wrong", errors, "", widest, tuple(widths))
+    if not given:
+        return Shot(OURS, "said", errors, "nan", widest or float("nan"), tuple(widths))
+    far = max(errors.values()) > WRONG  # the bound says it
+    return Shot(OURS, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
+
+
+def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
+    errors: dict[Quantity, float] = {}
+    for quantity in QUANTITIES:
+        given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
+        errors[quantity] = max(given, default=float("nan"))
+    count = {
+        verdict: sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong", "astray")
+    }
+    wide = [shot.bound for shot in shots if not np.isnan(shot.bound)]
+    return Row(
+        family, method, distance, len(shots), count["right"], count["said"], count["wrong"] + count["astray"],
+        count["astray"], errors, max(wide, default=float("nan")), tuple(sorted({s.why for s in shots if s.why})),
+    )  # fmt: skip

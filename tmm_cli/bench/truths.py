@@ -1,0 +1,77 @@
+"""The scenes of `tmm bench stability` with their answers in 50 digits, which ship with the package."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.accuracy.case import QUANTITIES, Quantity
+from tmm_cli.bench.families import BY_NAME, Family, Numbers, Scene
+
+KEYS: dict[Quantity, str] = {
+    "positions": "position", "velocities": "velocity", "accelerations": "acceleration", "reactions": "reaction",
+    "balancing": "balancing",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Known:
+    """A scene and what is true there, longdouble: of its watched point and pair. other: its place in another assembly.
+
+    largest: what errors are counted in, the larger of the value here and in the harmless scene of the same numbers.
+    """
+
+    family: Family
+    seed: int
+    distance: Decimal
+    scene: Scene
+    exact: Mapping[Quantity, Any]
+    largest: Mapping[Quantity, float]
+    other: Any
+
+
+@dataclass(frozen=True)
+class Seed:
+    """Numbers of a family's linkage, and the answers at every distance."""
+
+    numbers: Numbers
+    scenes: tuple[Mapping[str, Any], ...]
+
+
+@cache
+def seeds(family: str) -> tuple[Seed, ...]:
+    """What the file of a family holds."""
+    text = (files("tmm_cli.bench") / "data" / "stability" / f"{family}.json").read_text(encoding="utf-8")
+    return tuple(
+        Seed({key: Decimal(value) for key, value in seed["numbers"].items()}, tuple(seed["scenes"]))
+        for seed in json.loads(text)["seeds"]
+    )
+
+
+def value(content: Any) -> Any:
+    """A number or a vector of the file in longdouble."""
+    if isinstance(content, str):
+        return np.longdouble(content)
+    return np.longdouble(content[0]) + 1j * np.longdouble(content[1])
+
+
+def known(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Known]:
+    """All scenes of a family, or of its first so many seeds; every second distance and so on, the last one always."""
+    of = BY_NAME[family]
+    for number, seed in enumerate(seeds(family)[:chosen]):
+        exact = [{quantity: value(scene[key]) for quantity, key in KEYS.items()} for scene in seed.scenes]
+        for k, scene in enumerate(seed.scenes):
+            if k % every and k != len(seed.scenes) - 1:
+                continue
+            of_all = [exact[k], exact[0]] if of.unit in ("rad", "share") else [exact[k]]
+            largest = {quantity: max(float(abs(one[quantity])) for one in of_all) for quantity in QUANTITIES}
+            distance = Decimal(scene["distance"])
+            other = None if scene["other"] is None else value(scene["other"])
+            yield Known(of, number, distance, of.scene(seed.numbers, distance), exact[k], largest, other)
