@@ -13,7 +13,7 @@ from random_linkages import TYPES, linkage
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.batch import everything, prepare
+from tmm_cli.batch import CHECKS, everything, prepare
 from tmm_cli.stack import NotAlikeError, varying
 from tmm_cli.structure.assur import analyse
 from tmm_cli.tape import DependsOnData, record
@@ -44,7 +44,7 @@ def agree(one, other, tolerance=1e-12):
 def plainly(batch, q):
     """The same by the ordinary stages, one linkage after another."""
     found = dict(replace(batch, program=None, checks=None)(q))
-    return {name: value for name, value in found.items() if name not in ("placed", "moving")}
+    return {name: value for name, value in found.items() if name not in CHECKS}
 
 
 @given(st.integers(0, 2**32 - 1), KINDS)
@@ -57,6 +57,7 @@ def test_a_tape_plays_what_the_stages_do(seed, kinds):
     sound, alone = batch.sound(q), dict(replace(batch, program=None, checks=None)(q))
     assert np.array_equal(sound["placed"], alone["placed"])
     assert np.array_equal(sound["moving"], alone["moving"])
+    assert np.allclose(sound["margin"], alone["margin"], rtol=1e-9)
     if np.all(alone["moving"]):
         agree({n: batch(q)[n] for n in batch(q)}, plainly(batch, q), 1e-9)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from tmm_cli.tape import Outputs, Program, record
 from tmm_cli.vectors import Real
 
 Asked = Callable[[Motion, Reactions | None], Mapping[str, Any]]
+CHECKS = ("placed", "moving", "margin")
 TIME = Law(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
 
 
@@ -82,7 +84,11 @@ class Batch:
         return self._one_by_one(q) if self.program is None else self.program(*self.columns, q)
 
     def sound(self, q: Real) -> Outputs | Mapping[str, Real]:
-        """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`."""
+        """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`.
+
+        `margin` is the least distance of a group from a dead position, 1 at best: a result has lost about as many of
+        its 16 digits as it has zeros. What these results are in truth is told by `solve`, with bounds, not here.
+        """
         return self._one_by_one(q) if self.checks is None else self.checks(*self.columns, q)
 
     def _one_by_one(self, q: Real) -> Mapping[str, Real]:
@@ -126,8 +132,8 @@ def prepare(
 
     axes = (*[1] * len(columns), 3 if own_places else 2)
     whole = record(stages, *axes, data=dict(enumerate(columns)))
-    checks = whole.only("placed", "moving")
-    values = whole.only(*(name for name in whole.outputs if name not in ("placed", "moving")))
+    checks = whole.only(*CHECKS)
+    values = whole.only(*(name for name in whole.outputs if name not in CHECKS))
     return Batch(linkages, structure, kernels, asked, forces, strokes, values, checks, tuple(columns))
 
 
@@ -145,4 +151,5 @@ def _solved(
     }
     motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
     reactions = react(motion, structure, applied(motion, strokes)) if forces else None
-    return {**asked(motion, reactions), "placed": motion.placed, "moving": motion.moving}
+    margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
+    return {**asked(motion, reactions), "placed": motion.placed, "moving": motion.moving, "margin": margin}
