@@ -9,7 +9,7 @@ from tmm_cli.accuracy.case import Answers, Case
 from tmm_cli.batch import prepare as batch_of
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.motion import Motion
-from tmm_cli.vectors import Real, Vector
+from tmm_cli.vectors import Real
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
@@ -27,15 +27,12 @@ def prepare(case: Case) -> Callable[[Real], Answers]:
     if batch.program is None:
         raise NotImplementedError("groups that are found by iteration cannot be written on a tape")
 
+    kinds = ("positions", "velocities", "accelerations", "reactions")
+    names = {kind: [name for name in batch.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
+
     def at(q: Real) -> Answers:
         found = batch(q)
-
-        def of(kind: str) -> dict[str, Vector]:
-            start = f"{kind}."
-            return {name.removeprefix(start): found[name] for name in found if name.startswith(start)}
-
-        return Answers(
-            of("positions"), of("velocities"), of("accelerations"), of("reactions"), found["balancing"]
-        )  # fmt: skip
+        x, v, a, forces = ({name[len(kind) + 1 :]: found[name] for name in own} for kind, own in names.items())
+        return Answers(x, v, a, forces, found["balancing"])
 
     return at

@@ -51,7 +51,10 @@ class Outputs(Mapping[str, Array]):
     def __getitem__(self, name: str) -> Array:
         if self.names[name][1] is None:
             return self.part(name)
-        return self.part(name) + 1j * self.part(name, True)
+        real, imag = self.part(name), self.part(name, True)
+        found = np.empty(real.shape, dtype=complex)
+        found.real, found.imag = real, imag
+        return found
 
 
 @dataclass(frozen=True)
