@@ -70,7 +70,9 @@ class Trusted:
     def _of(self, part: str, keys: list[Hashable]) -> Real | None:
         values = getattr(self.digits, part)
         nothing = np.full(len(self.chosen), np.nan)
-        found = np.empty((self.count, len(keys)), dtype=float if self.count < LONG else np.float32)  # two figures tell all
+        found = np.empty(
+            (self.count, len(keys)), dtype=float if self.count < LONG else np.float32
+        )  # two figures tell all
         for k, key in enumerate(keys):
             found[:, k] = self._everywhere(part, values.get(key, nothing))
         return found.ravel()
