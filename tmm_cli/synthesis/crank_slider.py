@@ -26,8 +26,8 @@ W: Final = "synthesis_crank_slider"
 
 @dataclass(frozen=True)
 class Asked:
-    """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two of ratio L and nu, L and k,
-    pressure (largest angle, rad) and nu, pressure and k. Floats or arrays; None: not given.
+    """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
+    k, pressure (largest angle, rad) and nu, pressure and k, e (m) and k. Floats or arrays; None: not given.
     """
 
     stroke: Any = None
@@ -37,6 +37,7 @@ class Asked:
     nu: Any = None
     k: Any = None
     pressure: Any = None
+    e: Any = None
 
 
 @dataclass(frozen=True)
@@ -130,11 +131,22 @@ def shortest(theta: Any, pressure: Any) -> Any:
     return np.where(good, w * c / np.sqrt((1 - s * w) * (1 + s * w)), np.nan)
 
 
+def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
+    """L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
+
+    (l + r)(l - r) sin(theta) = H e is twice the triangle's area; the law of cosines gives the sums of the squares.
+    """
+    tangent = np.tan(theta / 2)
+    return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
+
+
 def find(asked: Asked) -> Found:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
-    height = asked.stroke if asked.stroke is not None else pi(1.0 * asked.speed) * asked.speed / asked.crank_speed
+    height = _stroke(asked)
     theta = None if asked.k is None else theta_of(asked.k)
-    if asked.ratio is not None:
+    if asked.e is not None:
+        length = ratio_of_offset(height, asked.e, theta)
+    elif asked.ratio is not None:
         length = np.asarray(asked.ratio)
     elif theta is not None:
         length = shortest(theta, asked.pressure)
@@ -147,11 +159,33 @@ def find(asked: Asked) -> Found:
         half = np.sin(theta / 2)
         h = 2 * np.sqrt(1 + (length - 1) * (length + 1) * half * half)
     r = height / h
+    if asked.e is not None:
+        nu = asked.e / r
     scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
     return Found(
         r, length * r, nu * r, height, length, nu, h, theta, k_of(theta), np.arcsin((1 + nu) / length), nu * scale,
         (scale - 1) * (nu != 0),
     )  # fmt: skip
+
+
+def _stroke(asked: Asked) -> Any:
+    """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
+    if asked.stroke is not None:
+        return np.asarray(asked.stroke)
+    return pi(1.0 * asked.speed) * asked.speed / asked.crank_speed
+
+
+def _refuse_offset(e: float, height: float, theta: float) -> None:
+    """The crank's pivot lies on the circle between B2 and the normal through B2: 0 < e < H cot(theta)."""
+    if not e > 0:
+        raise Infeasible("e", f"{W}.e_zero", f"{W}.e_more")
+    if theta == 0:
+        raise Infeasible("k", f"{W}.e_without", f"{W}.e_needs")
+    if theta >= np.pi / 2:
+        raise Infeasible("k", f"{W}.k_never", f"{W}.k_never_most", {"k": (3.0, "number")})
+    if not np.tan(theta) * e < height:
+        values = {"e": (height / np.tan(theta), "length"), "k": (float(k_of(np.arctan2(height, e))), "number")}
+        raise Infeasible("e", f"{W}.e_above", f"{W}.e_most", values)
 
 
 def refuse(asked: Asked) -> None:
@@ -172,6 +206,8 @@ def refuse(asked: Asked) -> None:
             "nu", f"{W}.nu_above", f"{W}.nu_most", {"nu": (length - 1, "number"), "ratio": (nu + 1, "number")}
         )
     theta = None if k is None else theta_of(k)
+    if asked.e is not None and theta is not None:
+        _refuse_offset(asked.e, float(_stroke(asked)), float(theta))
     if length is not None and theta is not None and not theta < largest_theta(length):
         most = float(k_of(largest_theta(length)))
         longest = float(1 / np.tan(theta / 2) ** 2)
@@ -200,7 +236,7 @@ def solve(asked: Asked) -> Outcome:
     """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
     refuse(asked)
     found = find(asked)
-    kinds = {"stroke": "length", "speed": "speed", "crank_speed": "angular speed", "pressure": "angle"}
+    kinds = {"stroke": "length", "speed": "speed", "crank_speed": "angular speed", "pressure": "angle", "e": "length"}
     given = tuple(
         Value(name, value, kinds.get(name, "number"), f"{W}.{name}")
         for name, value in vars(asked).items() if value is not None

@@ -163,7 +163,7 @@ def _four_bar(asked: FourBar, given: tuple[Value, ...]) -> Outcome:
         rest = float(sum(links.values()) - links[longest])
         raise Infeasible(longest, f"{W}.open", f"{W}.closing", {"most": (rest, "length"), "link": (longest, "word")})
     change = int(found.kind) >= 8
-    given += tuple(Value("", f"l{getattr(asked, name)}", "word", f"{W}.{name}") for name in ("frame", "driver"))
+    given += tuple(Value(name, None, "word", f"{W}.{name}", f"l{getattr(asked, name)}") for name in ("frame", "driver"))
     values = [
         Value("", None, "word", f"{W}.kind", f"{W}.{TYPES[int(found.kind)]}"),
         Value("", found.excess, "length", f"{W}.excess"),

@@ -101,7 +101,7 @@ def _not_on(block: Block, late: set[str], units: UnitSystem) -> None:
     for key, value in block:
         if isinstance(value, str) and key not in ("task",) and (used := Parser(value[:200], known, units).names()):
             raise ProblemError(
-                "this rests on what the synthesis finds", path=(key,), found=", ".join(used),
+                "this rests on what the synthesis finds", path=(key,), found=", ".join(map(quote, used)),
                 allowed="parameters that do not",
             )  # fmt: skip
 

@@ -15,10 +15,10 @@ from tmm_cli.synthesis.crank_slider import Asked
 
 WANTS = {
     "stroke": LENGTH, "speed": SPEED, "crank_speed": ANGULAR_SPEED,
-    "ratio": NUMBER, "nu": NUMBER, "k": NUMBER, "pressure": ANGLE,
+    "ratio": NUMBER, "nu": NUMBER, "k": NUMBER, "pressure": ANGLE, "e": LENGTH,
 }  # fmt: skip
 STROKES = (("stroke",), ("speed", "crank_speed"))
-PAIRS = (("ratio", "nu"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"))
+PAIRS = (("ratio", "nu"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
 
 
 class Shape(Block):
@@ -34,6 +34,7 @@ class Shape(Block):
     pressure: Value | None = Field(
         default=None, description="largest pressure angle allowed: the shortest rod that keeps it is found"
     )
+    e: Value | None = Field(default=None, description="offset of the guide from the crank's axis")
 
 
 def asked(shape: Shape, sense: Sense) -> Asked:
