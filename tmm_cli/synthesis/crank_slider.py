@@ -273,7 +273,7 @@ def construction(found: Found) -> Construction:
     segments = [
         Segment(complex(min(0.0, near) - 0.1 * height, -e), complex(far + 0.15 * height, -e), "axis"),
         Segment(a, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
-        Segment(a, pin2, "link2", "r"), Segment(pin2, b2, "link2", "l"),
+        Segment(pin2, a, "link2", "r"), Segment(a, b2, "link2", "l − r"),
     ]  # fmt: skip
     arcs = [Arc(a, r, 0.0, 2 * np.pi, "dashed")]
     spots = [
