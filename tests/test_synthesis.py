@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 from test_commands import ROOT, tmm
 from test_synthesis_crank_slider import LINKAGE, MET
 
 from tmm_cli import load
+from tmm_cli.draw.synthesis import diagram
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis.construction import Diagram, Line
 
 
 def refusal(text):
@@ -149,3 +153,15 @@ def test_explain_says_where_parameters_come_from():
 
 def test_a_file_without_a_synthesis_imports_nothing_of_it():
     assert load(str(ROOT / "problems" / "shaper.yaml")).synthesis is None
+
+
+def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
+    axis = ("synthesis_crank_slider.pressure", "angle")
+    line = Line("synthesis_crank_slider.pressure", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
+    dots = Line("synthesis_crank_slider.k", np.array([0.15]), np.array([1.0]), dots=True)
+    drawn = Diagram("family", "synthesis.extremes", ("synthesis_crank_slider.stroke", "length"), axis, (line, dots))
+    figure = diagram("A task", drawn, UnitSystem())
+    (axes,) = figure.axes
+    assert axes.get_ylabel() == "largest pressure angle lambda, deg" and axes.get_xlabel() == "stroke H, mm"
+    assert list(axes.lines[0].get_xdata()) == pytest.approx([100, 200])
+    assert list(axes.lines[0].get_ydata()) == pytest.approx([0, 180])

@@ -88,7 +88,7 @@ def _write(
     with Staged(folder) as staged:
         for table in tables(found, measured, units, 15):
             staged.write(f"{table.name}.csv", csv_text(table, units))
-        for name, picture in files(names[1], found.outcome, results):
+        for name, picture in files(names[1], found.outcome, results, units):
             staged.write(name, (picture,))
         staged.write("synthesis.json", (json_bytes(to_json(names[0], found, measured)),))
     return folder

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tmm_cli.cycle import DENSE
 from tmm_cli.draw.scheme import BOX, HINGE, beyond, mechanism, moving_points, skeleton, support, trajectory
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, THIN, Sheet, picture, scale_text
+from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, MM, REACTION, THIN, Sheet, picture, scale_text
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results, at_positions
-from tmm_cli.synthesis.construction import Arc, Construction, Spot
+from tmm_cli.plans.record import LANDSCAPE
+from tmm_cli.problem.dimensions import KINDS, Dimension
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis.construction import Arc, Construction, Diagram, Spot
 from tmm_cli.synthesis.record import Outcome
 from tmm_cli.words import say
 
@@ -23,17 +27,18 @@ STYLES = {  # colour, width, line
 ARC = 181  # places along an arc
 
 
-def files(title: str, outcome: Outcome, results: Results | None) -> Iterable[tuple[str, bytes]]:
+def files(title: str, outcome: Outcome, results: Results | None, units: UnitSystem) -> Iterable[tuple[str, bytes]]:
     """Every sheet as PNG and SVG."""
-    for stem, figure in sheets(title, outcome, results):
+    for stem, figure in sheets(title, outcome, results, units):
         for kind in ("png", "svg"):
             yield f"{stem}.{kind}", picture(figure, kind)
 
 
-def sheets(title: str, outcome: Outcome, results: Results | None) -> Iterable[tuple[str, Figure]]:
-    """The construction, if the task has one, and the extreme positions, if there is a mechanism with strokes."""
-    if outcome.construction is not None:
-        yield "synthesis-construction", construction(title, outcome.construction).finish()
+def sheets(title: str, outcome: Outcome, results: Results | None, units: UnitSystem) -> Iterable[tuple[str, Figure]]:
+    """What the task draws, and the extreme positions, if there is a mechanism with strokes."""
+    for drawn in outcome.drawings:
+        figure = diagram(title, drawn, units) if isinstance(drawn, Diagram) else construction(title, drawn).finish()
+        yield f"synthesis-{drawn.name}", figure
     if results is not None and results.strokes is not None and results.strokes.strokes:
         yield "synthesis-extremes", extremes(results).finish()
 
@@ -54,11 +59,44 @@ def construction(title: str, drawn: Construction) -> Sheet:
         sheet.line(places, colour, width, line, z=1.2)
         if arc.name:
             sheet.label(arc.name, places[len(places) // 2], 10, "#7a3d99", "italic")
+    for curve in drawn.curves:
+        colour, width, line = STYLES[curve.style]
+        places = [sheet.on(p) for p in curve.places]
+        sheet.line(places, colour, width, line, z=1.3)
+        if curve.name:
+            sheet.label(curve.name, places[len(places) // 2], 10, "#7a3d99", "italic")
     for spot in drawn.spots:
         _spot(sheet, spot)
     for note in (scale_text("l", sheet.mu, "m/mm"), *map(say, drawn.notes)):
         sheet.note(note)
     return sheet
+
+
+def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
+    """Curves over one quantity, in the units of the file."""
+    figure = Figure(figsize=(LANDSCAPE[0] * MM, LANDSCAPE[1] * MM))
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.1, 0.11, 0.85, 0.74))
+    figure.text(0.04, 0.95, title[:90], fontsize=12, weight="bold", va="top", parse_math=False)
+    figure.text(0.04, 0.91, say(drawn.title), fontsize=9, color="#404040", va="top", parse_math=False)
+    (x_words, x_kind), (y_words, y_kind) = drawn.x, drawn.y
+    across, up = KINDS[x_kind].dimension, KINDS[y_kind].dimension
+    for number, line in enumerate(drawn.lines):
+        x, y = (
+            np.asarray(values, dtype=float) / units.factor(kind) for values, kind in ((line.x, across), (line.y, up))
+        )
+        style = {"ls": "none", "marker": "o", "ms": 4} if line.dots else {"lw": 1.4}
+        axes.plot(x, y, color=(DARK, LOAD, INERTIA, REACTION)[number % 4], label=say(line.words), **style)
+    axes.set_xlabel(_axis(x_words, across, units), parse_math=False)
+    axes.set_ylabel(_axis(y_words, up, units), parse_math=False)
+    axes.grid(color=GREY, lw=0.4)
+    if len(drawn.lines) > 1:
+        axes.legend(fontsize=9)
+    return figure
+
+
+def _axis(words: str, dimension: Dimension, units: UnitSystem) -> str:
+    return ", ".join(part for part in (say(words), units.symbol(dimension)) if part)
 
 
 def _along(arc: Arc) -> list[complex]:

@@ -24,7 +24,7 @@ def tables(
     outcome = found.outcome
     yield _values("synthesis-asked", say("synthesis.asked", task=found.task), outcome.asked, {}, units, digits)
     source = say("synthesis.source", source=say(outcome.source))
-    notes = (*outcome.notes, source)
+    notes = (*map(say, outcome.notes), source)
     yield _values("synthesis-found", say("synthesis.found"), outcome.found, found.names, units, digits, notes)
     if measured:
         yield _measured(measured, units, digits)

@@ -258,7 +258,7 @@ def solve(asked: Asked) -> Outcome:
         demands.append(
             Demand(f"{W}.{name}", float(getattr(found, name)), kind, measure, getattr(asked, name) is not None)
         )
-    return Outcome(given, lengths + more + printed, f"{W}.source", tuple(demands), construction(found))
+    return Outcome(given, lengths + more + printed, f"{W}.source", tuple(demands), (construction(found),))
 
 
 def construction(found: Found) -> Construction:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tmm_cli.synthesis.construction import Construction
+    from tmm_cli.synthesis.construction import Construction, Diagram
 
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
@@ -47,14 +47,15 @@ class Demand:
 class Outcome:
     """What a task gives. parameters: what the linkage may use, by name; source: key of the words on the formula.
 
-    asked, found: what is shown; demands: what is measured; construction: how a student draws it.
+    asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
+    notes: keys of words below what was found.
     """
 
     asked: tuple[Value, ...]
     found: tuple[Value, ...]
     source: str
     demands: tuple[Demand, ...] = ()
-    construction: Construction | None = None
+    drawings: tuple[Construction | Diagram, ...] = ()
     notes: tuple[str, ...] = field(default=())
 
     @property
@@ -66,12 +67,17 @@ class Outcome:
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
-    key: which of what was given is at fault; reason: key of the words, with `values` in their places; nearest: words
-    and values of what could be met. Values are (number in SI, kind).
+    key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
+    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind).
     """
 
     def __init__(
-        self, key: str, reason: str, nearest: str, values: Mapping[str, tuple[Any, Kind]] | None = None
+        self,
+        key: str | tuple[str | int, ...],
+        reason: str,
+        nearest: str,
+        values: Mapping[str, tuple[Any, Kind]] | None = None,
     ) -> None:
-        self.key, self.reason, self.nearest, self.values = key, reason, nearest, dict(values or {})
+        self.path = (key,) if isinstance(key, str) else key
+        self.reason, self.nearest, self.values = reason, nearest, dict(values or {})
         super().__init__(reason)

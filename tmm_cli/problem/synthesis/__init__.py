@@ -1,6 +1,7 @@
 """The block `synthesis:` of a problem file: shape and sense, one file a task (see tmm_cli.synthesis).
 
-A task's file has `Shape(Block)`, its keys, and `asked(shape, sense)`, which makes the task's record of them.
+A task's file has `Shape(Block)`, its keys, and `asked(shape, sense)`, which makes the task's record of them; and
+`parameters(shape)`, kinds by name, where what is found depends on what is asked.
 """
 
 from __future__ import annotations

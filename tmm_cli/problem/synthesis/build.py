@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from pydantic import BaseModel
 
 from tmm_cli.problem.arithmetic import Parser
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -35,7 +36,7 @@ def with_synthesis(block: Block, raw: Mapping[str, object], units: UnitSystem) -
             raise _refused(error, block, units) from None
     except ProblemError as error:
         raise error.at("synthesis") from None
-    kinds = task(block.task).PARAMETERS
+    kinds = _standard(block)
     found = {
         names[name]: Quantity(_plain(value.value), KINDS[kinds[name]].dimension)
         for name, value in outcome.parameters.items() if name in names
@@ -55,9 +56,16 @@ def _parameters(
         raise error.at("parameters") from None
 
 
+def _standard(block: Block) -> Mapping[str, str]:
+    """Names and kinds of what the task finds; they may depend on what is asked."""
+    told = getattr(reader(block.task), "parameters", None)
+    found: Mapping[str, str] = task(block.task).PARAMETERS if told is None else told(block)
+    return found
+
+
 def _names(block: Block, raw: Mapping[str, object]) -> dict[str, str]:
     """Standard names of what is found, and those that the file gives them."""
-    standard = task(block.task).PARAMETERS
+    standard = _standard(block)
     for name, other in block.names.items():
         path = ("synthesis", "names", name)
         if name not in standard:
@@ -98,10 +106,10 @@ def _resting(raw: Mapping[str, object], found: set[str], units: UnitSystem) -> s
 def _not_on(block: Block, late: set[str], units: UnitSystem) -> None:
     """What is asked cannot rest on what is found."""
     known = dict.fromkeys(late, Quantity(0.0))
-    for key, value in block:
-        if isinstance(value, str) and key not in ("task",) and (used := Parser(value[:200], known, units).names()):
+    for path, text in _texts(block):
+        if path[0] not in ("task", "names") and (used := Parser(plain_text(text[:200]), known, units).names()):
             raise ProblemError(
-                "this rests on what the synthesis finds", path=(key,), found=", ".join(map(quote, used)),
+                "this rests on what the synthesis finds", path=path, found=", ".join(map(quote, used)),
                 allowed="parameters that do not",
             )  # fmt: skip
 
@@ -115,9 +123,27 @@ def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError
 
     values = {name: shown(*value) for name, value in error.values.items()}
     return ProblemError(
-        say(error.reason, **values), path=(error.key,), found=quote(getattr(block, error.key, None)),
+        say(error.reason, **values), path=error.path, found=quote(_at(block, error.path)),
         allowed=say(error.nearest, **values),
     )  # fmt: skip
+
+
+def _at(block: Any, path: tuple[str | int, ...]) -> Any:
+    for step in path:
+        block = block[step] if isinstance(step, int) or isinstance(block, dict) else getattr(block, step, None)
+    return block
+
+
+def _texts(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every text of a block with its place in it."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list | tuple):
+        for number, item in enumerate(value):
+            yield from _texts(item, (*path, number))
+    elif isinstance(value, dict | BaseModel):
+        for key, item in value.items() if isinstance(value, dict) else value:
+            yield from _texts(item, (*path, key))
 
 
 def _plain(value: Any) -> Any:
