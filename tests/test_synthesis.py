@@ -15,6 +15,7 @@ from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis import TASKS
 from tmm_cli.synthesis.construction import Diagram, Line
 
 
@@ -165,3 +166,16 @@ def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
     assert axes.get_ylabel() == "largest pressure angle lambda, deg" and axes.get_xlabel() == "stroke H, mm"
     assert list(axes.lines[0].get_xdata()) == pytest.approx([100, 200])
     assert list(axes.lines[0].get_ydata()) == pytest.approx([0, 180])
+
+
+def test_the_schema_for_editors_knows_the_keys_of_every_task():
+    schema = json.loads(tmm("schema").stdout)
+    assert schema["else"]["properties"]["synthesis"]["anyOf"] == [{"$ref": "#/$defs/Synthesis"}]
+    tasks = {part["properties"]["task"]["const"]: part["properties"] for part in schema["$defs"]["Synthesis"]["anyOf"]}
+    assert set(tasks) == set(TASKS)
+    assert {"stroke", "k", "ratio", "names"} <= set(tasks["crank-slider"])
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_task_is_told_of_in_the_readme(task):
+    assert f"- `{task}`" in (ROOT / "README.md").read_text(encoding="utf-8")

@@ -148,7 +148,7 @@ def _synthesis(found: Any) -> Any:
     return shaped(found)
 
 
-Synthesis = Annotated[Any, BeforeValidator(_synthesis), WithJsonSchema({"$comment": "Synthesis"})]
+Synthesis = Annotated[Any, BeforeValidator(_synthesis), WithJsonSchema({"anyOf": [{"$comment": "Synthesis"}]})]
 
 
 class Mass(Strict):

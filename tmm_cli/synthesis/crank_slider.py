@@ -301,4 +301,5 @@ def construction(found: Found) -> Construction:
         arcs.append(Arc(centre, radius, start, end, "bold"))
         turned = float(np.angle(b1)), float(np.angle(b2))
         arcs.append(Arc(a, 0.8 * near, min(turned), max(turned), "thin", "θ"))
-    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), notes)
+    title = f"{W}.construction" if theta > 0.01 else f"{W}.ends"
+    return Construction(title, tuple(segments), tuple(arcs), tuple(spots), notes)

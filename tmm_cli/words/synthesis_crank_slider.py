@@ -20,6 +20,7 @@ WORDS: dict[str, str] = {
     "l - r, angle theta = pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l",
     "synthesis_crank_slider.construction": "Extreme positions of the slider, and the circle on which B1B2 is seen "
     "under theta",
+    "synthesis_crank_slider.ends": "Extreme positions of the slider",
     "synthesis_crank_slider.angles": "dashed: OB1B2 = OB2B1 = 90° − θ",
     "synthesis_crank_slider.positive": "there is no such motion",
     "synthesis_crank_slider.more_than_zero": "more than zero",
