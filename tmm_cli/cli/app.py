@@ -13,7 +13,7 @@ import typer
 
 from tmm_cli import __version__
 
-COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes")
+COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis")
 GROUPS = ("bench",)  # commands that have commands of their own, in `app`
 
 

@@ -50,6 +50,11 @@ def build(tree: Tree, *, extended: bool = False) -> Problem:
             "a chain given by pairs alone has no dimensions: there is only its structure", path=("structure",),
             allowed="tmm structure, tmm run, tmm check", key=True,
         ).located(tree.file, tree)  # fmt: skip
+    if "synthesis" in tree.data and "links" not in tree.data:
+        raise ProblemError(
+            "there is no linkage that could use what is found", path=("synthesis",),
+            allowed="tmm synthesis, or links and a driver", key=True,
+        ).located(tree.file, tree)  # fmt: skip
     try:
         shape = schema.File.model_validate(tree.data)
     except ValidationError as error:
@@ -71,10 +76,16 @@ class _Builder:
             units = _extended_units(shape.units) if extended else UnitSystem(shape.units)
         except ProblemError as error:
             raise error.at("units") from None
-        try:
-            parameters = resolve_parameters(shape.parameters, units)
-        except ProblemError as error:
-            raise error.at("parameters") from None
+        self.synthesis = None
+        if shape.synthesis is not None:
+            from tmm_cli.problem.synthesis.build import with_synthesis  # few files have it
+
+            parameters, self.synthesis = with_synthesis(shape.synthesis, shape.parameters, units)
+        else:
+            try:
+                parameters = resolve_parameters(shape.parameters, units)
+            except ProblemError as error:
+                raise error.at("parameters") from None
         self.sense = Sense(parameters, units)
 
     def problem(self) -> Problem:
@@ -99,7 +110,8 @@ class _Builder:
         return Problem(
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage,
             build_request(shape, driver, self.sense), self.sense.units,
-            limit, shape.description, file, allowed, given, self.tree, partial(build, self.tree, extended=True),
+            limit, shape.description, file, allowed, given, self.tree, self.synthesis,
+            partial(build, self.tree, extended=True),
         )  # fmt: skip
 
     def meshes(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> tuple[Mesh, ...]:

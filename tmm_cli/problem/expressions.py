@@ -13,7 +13,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
 from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.units import ANGLE, Dimension, Quantity, UnitError, UnitSystem, plain_text
 
 MAX_LENGTH: Final = 200
@@ -61,17 +61,24 @@ def evaluate_quantity(
     return found
 
 
-def resolve_parameters(raw: Mapping[str, object], units: UnitSystem) -> dict[str, Quantity]:
-    """Parameters, each of which may be arithmetic on others, in any order."""
-    found: dict[str, Quantity] = {}
+def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
+    """Refuse what cannot be the name of a parameter."""
+    if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
+        raise ProblemError(
+            "this cannot be the name of a parameter", path=path, found=quote(name),
+            allowed="letters, figures and _, a letter first", key=key,
+        )  # fmt: skip
+    if name in FUNCTIONS or name == "pi":
+        raise ProblemError("this name is taken by arithmetic", path=path, found=quote(name), key=key)
+
+
+def resolve_parameters(
+    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, Quantity] | None = None
+) -> dict[str, Quantity]:
+    """Parameters, each of which may be arithmetic on others, in any order, and on those that are given already."""
+    found: dict[str, Quantity] = dict(given or {})
     for name in raw:
-        if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
-            raise ProblemError(
-                "this cannot be the name of a parameter", path=(name,), found=quote(name),
-                allowed="letters, figures and _, a letter first", key=True,
-            )  # fmt: skip
-        if name in FUNCTIONS or name == "pi":
-            raise ProblemError("this name is taken by arithmetic", path=(name,), found=quote(name), key=True)
+        check_parameter(name, (name,))
     known = dict.fromkeys(raw, Quantity(0.0))
     needs = {
         name: Parser(plain_text(source[:MAX_LENGTH]), known, units).names() if isinstance(source, str) else []

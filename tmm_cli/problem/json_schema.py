@@ -7,6 +7,8 @@ from typing import Any
 from tmm_cli.problem.schema import File, OnLine, Output, Tabulated
 from tmm_cli.problem.schema_chain import SpatialFile
 from tmm_cli.problem.schema_more import Cam, Friction, Gear, Rack, Spring
+from tmm_cli.problem.synthesis import reader
+from tmm_cli.synthesis import TASKS
 
 
 def file_schema() -> dict[str, Any]:
@@ -18,6 +20,13 @@ def file_schema() -> dict[str, Any]:
         for name, definition in inner.pop("$defs", {}).items():
             definitions.setdefault(name, definition)
         definitions.setdefault(model.__name__, inner)
+    tasks = [reader(task).Shape for task in TASKS]
+    for shape in tasks:
+        inner = shape.model_json_schema(by_alias=True)
+        for name, definition in inner.pop("$defs", {}).items():
+            definitions.setdefault(name, definition)
+    shapes = [{k: v for k, v in s.model_json_schema(by_alias=True).items() if k != "$defs"} for s in tasks]
+    definitions["Synthesis"] = {"anyOf": shapes}
     whole = {
         "$defs": schema.pop("$defs"),
         "if": {"required": ["structure"]},

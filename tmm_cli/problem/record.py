@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.problem.units import UnitSystem
+
+if TYPE_CHECKING:
+    from tmm_cli.synthesis.record import Outcome
+
+
+@dataclass(frozen=True)
+class Synthesised:
+    """What the block `synthesis` of a file gave; names: of its parameters, standard name to that in the file."""
+
+    task: str
+    outcome: Outcome
+    names: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -32,4 +44,5 @@ class Problem:
     pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
     limits_set: tuple[bool, bool] = (False, False)
     source: Any = field(default=None, compare=False, repr=False)
+    synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

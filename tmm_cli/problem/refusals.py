@@ -110,7 +110,7 @@ def _meant(errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree) -> li
 def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> ProblemError:
     data = _at(tree.data, path)
     if kind == "extra_forbidden":
-        names = _keys(path[:-1])
+        names = _keys(path[:-1], tree)
         if len(path) == 1 and "structure" in tree.data:
             names = list(schema_chain.SpatialFile.model_fields)
         key = str(path[-1])
@@ -118,7 +118,7 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
             "unknown key", path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
         )
     if kind == "missing":
-        return ProblemError(f"the key `{path[-1]}` is missing", path=path, allowed=_describe(path))
+        return ProblemError(f"the key `{path[-1]}` is missing", path=path, allowed=_describe(path, tree))
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
         return ProblemError(
@@ -127,7 +127,7 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
         )  # fmt: skip
     hint = decimal_comma_hint(tree, path)
     message = WORDS.get(kind) or _limits(kind, context) or str(context["msg"])
-    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path))
+    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path, tree))
 
 
 def _at(data: Any, path: Path) -> Any:
@@ -154,22 +154,26 @@ def _limits(kind: str, context: dict[str, Any]) -> str | None:
     return None
 
 
-def _model(path: Path) -> type[BaseModel] | None:
+def _model(path: Path, tree: Tree) -> type[BaseModel] | None:
+    if path[:1] == ("synthesis",):
+        from tmm_cli.problem.synthesis import model as inside
+
+        return inside(tree.data["synthesis"], path[1:])
     for pattern, model in MODELS:
         if len(pattern) == len(path) and all(p is ANY or p == s for p, s in zip(pattern, path, strict=True)):
             return model
     return None
 
 
-def _keys(path: Path) -> list[str]:
-    model = _model(path) or schema.OnLine
+def _keys(path: Path, tree: Tree) -> list[str]:
+    model = _model(path, tree) or schema.OnLine
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
-def _describe(path: Path) -> str | None:
+def _describe(path: Path, tree: Tree) -> str | None:
     while path and isinstance(path[-1], int):  # an item is described with its list
         path = path[:-1]
-    model = _model(path[:-1]) if path else None
+    model = _model(path[:-1], tree) if path else None
     if model is None:
         return None
     for name, field in model.model_fields.items():

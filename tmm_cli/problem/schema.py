@@ -142,6 +142,15 @@ Spring = Annotated[Any, BeforeValidator(_shaped("Spring")), WithJsonSchema({"$co
 Friction = Annotated[Any, BeforeValidator(_shaped("Friction")), WithJsonSchema({"$comment": "Friction"})]
 
 
+def _synthesis(found: Any) -> Any:
+    from tmm_cli.problem.synthesis import shaped
+
+    return shaped(found)
+
+
+Synthesis = Annotated[Any, BeforeValidator(_synthesis), WithJsonSchema({"anyOf": [{"$comment": "Synthesis"}]})]
+
+
 class Mass(Strict):
     """Mass properties of a link."""
 
@@ -232,6 +241,7 @@ class File(Strict):
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
+    synthesis: Synthesis = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)

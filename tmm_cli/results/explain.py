@@ -21,6 +21,10 @@ from tmm_cli.words import say
 def explain(results: Results) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation."""
     problem = results.problem
+    if problem.synthesis is not None and problem.synthesis.names:
+        from tmm_cli.results.synthesis import parameters
+
+        yield parameters(problem.synthesis, problem.units)
     yield _points(problem)
     if problem.linkage.slides:
         yield _slides(problem)

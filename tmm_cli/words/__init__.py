@@ -9,12 +9,16 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 
-FILES = ("common", "structure", "results", "warnings", "drawings", "accuracy", "speed", "bench", "stability")
+FILES = (
+    "common", "structure", "results", "warnings", "drawings", "accuracy", "speed", "bench", "stability", "synthesis",
+)  # fmt: skip
+OF_TASKS = "synthesis_"  # files that are named by their keys, one a task of synthesis
 
 
 @cache
 def _text(key: str) -> str:
-    for name in FILES:
+    own = key.partition(".")[0]
+    for name in (own,) if own.startswith(OF_TASKS) else FILES:
         words: dict[str, str] = import_module(f"{__name__}.{name}").WORDS
         if key in words:
             return words[key]

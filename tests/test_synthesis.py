@@ -1,0 +1,181 @@
+"""The block `synthesis` of a problem file: parameters, refusals, the command; tasks have tests of their own."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from test_commands import ROOT, tmm
+from test_synthesis_crank_slider import LINKAGE, MET
+
+from tmm_cli import load
+from tmm_cli.draw.synthesis import diagram
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis import TASKS
+from tmm_cli.synthesis.construction import Diagram, Line
+
+
+def refusal(text):
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(f"tmm: 1\nsynthesis: {text}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
+    return str(caught.value).partition(": ")[2]
+
+
+REFUSED = {
+    "{task: crank-slider, stroke: 120, k: 1.5, ratio: 40}":
+        "synthesis.k: the crank does not turn fully: k is too large for L = 40\n  found:   1.5\n"
+        "  allowed: k less than 1.22181, or ratio less than 9.47214",
+    "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}":
+        "synthesis.k: the crank does not turn fully: k is too large for L = 2\n  found:   3.5\n"
+        "  allowed: k less than 2.28854",
+    "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}":
+        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n"
+        "  allowed: 1 or more; 1.25 for the same strokes",
+    "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}":
+        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n"
+        "  allowed: pressure 31.148 deg or more, or k 1.09234 or less",
+    "{task: crank-slider, stroke: 120, k: 3, pressure: 80}":
+        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n"
+        "  allowed: k less than 3",
+    "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}":
+        "synthesis.pressure: a largest pressure angle is more than zero and less than a right angle\n  found:   95\n"
+        "  allowed: 30 deg is usual for a sliding link",
+    "{task: crank-slider, stroke: 120, nu: 2, ratio: 2.5}":
+        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n"
+        "  allowed: nu less than 1.5, or ratio more than 3",
+    "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}":
+        "synthesis.nu: the offset is a distance\n  found:   -1\n"
+        "  allowed: 0 or more; turn the drawing over for the other side",
+    "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}":
+        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n"
+        "  allowed: more than 1 + nu = 1 + 0.2",
+    "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}":
+        "synthesis.stroke: there is no such motion\n  found:   0\n  allowed: more than zero",
+    "{task: crank-slider, stroke: 50, e: 80, k: 1.5}":
+        "synthesis.e: the crank does not turn fully: the offset is too large for this stroke and k\n  found:   80\n"
+        "  allowed: e less than 68.8191 mm, or k less than 1.43252",
+    "{task: crank-slider, stroke: 50, e: 20, k: 1}":
+        "synthesis.k: with an offset k is more than 1\n  found:   1\n  allowed: more than 1; or ratio and nu: 0",
+    "{task: crank-slider, stroke: 50, e: 0, k: 1}":
+        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n"
+        "  allowed: more than zero; or ratio and nu: 0",
+    "{task: crank-slider, stroke: 20, k: 1.1}":
+        "synthesis: these keys do not determine a crank-slider\n  found:   k\n"
+        "  allowed: ratio and nu; or ratio and k; or pressure and nu; or pressure and k; or e and k",
+    "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}":
+        "synthesis.strok: unknown key\n  found:   'strok'\n"
+        "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
+    "{task: crank-slidr, stroke: 20}":
+        "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
+    "{stroke: 20}": "synthesis.task: the key `task` is missing\n",
+    "3": "synthesis: keys with values are wanted\n  found:   3\n"
+         "  allowed: a task whose answer becomes parameters: {task: ...}",
+    "{task: crank-slider, stroke: 20 kg, k: 1.1, ratio: 3}":
+        "synthesis.stroke: a length is wanted here\n  found:   '20 kg', a mass (20 kg)\n"
+        "  allowed: a length, e.g. 110 mm or 0.11 m",
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {R: OA}}":
+        "synthesis.names.R: the synthesis crank-slider finds nothing of that name\n  found:   'R'\n"
+        "  allowed: r, l, e\n  did you mean 'r'?",
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: l}}":
+        "synthesis.names: r and l of the synthesis have the same name\n  found:   'l'\n  allowed: different names",
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: 2a}}":
+        "synthesis.names.r: this cannot be the name of a parameter\n  found:   '2a'\n"
+        "  allowed: letters, figures and _, a letter first",
+    "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}":
+        "parameters.e: the parameter e is given by hand, and the synthesis crank-slider finds it (its e)\n"
+        "  found:   3\n  allowed: one of the two; another name: synthesis: {names: {e: ...}}",
+    "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}":
+        "synthesis.stroke: this rests on what the synthesis finds\n  found:   'H'\n  allowed: parameters that do not",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_cannot_be_is_refused_with_the_reason_and_what_could(text):
+    assert refusal(text).startswith(REFUSED[text])
+
+
+def test_parameters_that_rest_on_the_answer_and_those_that_it_rests_on():
+    text = "{task: crank-slider, stroke: H, ratio: L, nu: 0}\nparameters: {H: 2*a, a: 30, L: 3, AS: AB/2, AB: l}"
+    found = build(
+        read_text(f"tmm: 1\nsynthesis: {text}\n{LINKAGE.format(speed=1.0)}".replace("-e]", "-AS + AB/2]"), "x")
+    )
+    assert abs(found.linkage.links["2"].points["B"]) == pytest.approx(0.09, rel=1e-15)
+
+
+@pytest.fixture(scope="module")
+def press(tmp_path_factory):
+    out = tmp_path_factory.mktemp("out")
+    return tmm("synthesis", ROOT / "problems" / "press-synthesis.yaml", "-o", out), out / "press-synthesis"
+
+
+def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_construction(press):
+    done, folder = press
+    assert done.returncode == 0, done.stderr
+    for part in ("Asked: crank-slider", "stroke H   120", "58.80621953", "relative difference", "Source: triangle"):
+        assert part in done.stdout
+    names = {path.name for path in folder.iterdir()}
+    drawings = {f"synthesis-{name}.{kind}" for name in ("construction", "extremes") for kind in ("png", "svg")}
+    tables = {f"synthesis-{name}.csv" for name in ("asked", "found", "measured")}
+    assert names == drawings | tables | {"synthesis.json"}
+    result = json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))
+    assert result["met"] is True and set(result["parameters"]) == {"OA", "AB", "e"}
+    assert max(m["difference"] for m in result["measured"]) < MET
+
+
+def test_a_mechanism_that_does_something_else_fails(tmp_path):
+    text = (ROOT / "problems" / "press-synthesis.yaml").read_text(encoding="utf-8")
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(text.replace("length: AB}", "length: AB + 1 mm}"), encoding="utf-8")
+    done = tmm("synthesis", bad)
+    assert done.returncode == 1
+    assert "warning: k: wanted 1.08, measured 1.07" in done.stderr
+
+
+def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
+    file = tmp_path / "alone.yaml"
+    file.write_text("tmm: 1\nsynthesis: {task: crank-slider, stroke: 100, ratio: 3, nu: 0}\n", encoding="utf-8")
+    done = tmm("synthesis", file, "--json")
+    assert done.returncode == 0 and json.loads(done.stdout)["parameters"]["r"] == pytest.approx(0.05)
+    assert json.loads(done.stdout)["measured"] is None
+    done = tmm("run", file)
+    assert done.returncode == 2 and "there is no linkage that could use what is found" in done.stderr
+    done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
+    assert done.returncode == 2 and "this file has no synthesis" in done.stderr
+
+
+def test_explain_says_where_parameters_come_from():
+    told = tmm("explain", ROOT / "problems" / "press-synthesis.yaml").stdout
+    assert "Parameters found by synthesis" in told and "Asked: crank-slider" in told
+
+
+def test_a_file_without_a_synthesis_imports_nothing_of_it():
+    assert load(str(ROOT / "problems" / "shaper.yaml")).synthesis is None
+
+
+def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
+    axis = ("synthesis_crank_slider.pressure", "angle")
+    line = Line("synthesis_crank_slider.pressure", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
+    dots = Line("synthesis_crank_slider.k", np.array([0.15]), np.array([1.0]), dots=True)
+    drawn = Diagram("family", "synthesis.extremes", ("synthesis_crank_slider.stroke", "length"), axis, (line, dots))
+    figure = diagram("A task", drawn, UnitSystem())
+    (axes,) = figure.axes
+    assert axes.get_ylabel() == "largest pressure angle lambda, deg" and axes.get_xlabel() == "stroke H, mm"
+    assert list(axes.lines[0].get_xdata()) == pytest.approx([100, 200])
+    assert list(axes.lines[0].get_ydata()) == pytest.approx([0, 180])
+
+
+def test_the_schema_for_editors_knows_the_keys_of_every_task():
+    schema = json.loads(tmm("schema").stdout)
+    assert schema["else"]["properties"]["synthesis"]["anyOf"] == [{"$ref": "#/$defs/Synthesis"}]
+    tasks = {part["properties"]["task"]["const"]: part["properties"] for part in schema["$defs"]["Synthesis"]["anyOf"]}
+    assert set(tasks) == set(TASKS)
+    assert {"stroke", "k", "ratio", "names"} <= set(tasks["crank-slider"])
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_task_is_told_of_in_the_readme(task):
+    assert f"- `{task}`" in (ROOT / "README.md").read_text(encoding="utf-8")

@@ -1,0 +1,152 @@
+"""Parameters of a file with a synthesis: those that it rests on, those that it finds, those that rest on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from tmm_cli.problem.arithmetic import Parser
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.expressions import check_parameter, resolve_parameters
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.sense import Sense
+from tmm_cli.problem.synthesis import Block, reader
+from tmm_cli.problem.units import KINDS, Quantity, UnitSystem, plain_text
+from tmm_cli.synthesis import task
+from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.words import say
+
+Parameters = dict[str, Quantity]
+
+
+def with_synthesis(block: Block, raw: Mapping[str, object], units: UnitSystem) -> tuple[Parameters, Synthesised]:
+    """All parameters of the file, and what was found. Raises ProblemError."""
+    names = _names(block, raw)
+    late = _resting(raw, set(names.values()), units)
+    early = _parameters({name: raw[name] for name in raw if name not in late}, units)
+    try:
+        _not_on(block, late, units)
+        asked = reader(block.task).asked(block, Sense(early, units))
+        try:
+            outcome = task(block.task).solve(asked)
+        except Infeasible as error:
+            raise _refused(error, block, units) from None
+    except ProblemError as error:
+        raise error.at("synthesis") from None
+    kinds = _standard(block)
+    found = {
+        names[name]: Quantity(_plain(value.value), KINDS[kinds[name]].dimension)
+        for name, value in outcome.parameters.items() if name in names
+    }  # fmt: skip
+    known = early | found
+    return known | _parameters({name: raw[name] for name in late}, units, known), Synthesised(
+        block.task, outcome, names
+    )
+
+
+def _parameters(
+    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, Quantity] | None = None
+) -> Parameters:
+    try:
+        return resolve_parameters(raw, units, given)
+    except ProblemError as error:
+        raise error.at("parameters") from None
+
+
+def _standard(block: Block) -> Mapping[str, str]:
+    """Names and kinds of what the task finds; they may depend on what is asked."""
+    told = getattr(reader(block.task), "parameters", None)
+    found: Mapping[str, str] = task(block.task).PARAMETERS if told is None else told(block)
+    return found
+
+
+def _names(block: Block, raw: Mapping[str, object]) -> dict[str, str]:
+    """Standard names of what is found, and those that the file gives them."""
+    standard = _standard(block)
+    for name, other in block.names.items():
+        path = ("synthesis", "names", name)
+        if name not in standard:
+            raise ProblemError(
+                f"the synthesis {block.task} finds nothing of that name", path=path, found=quote(name),
+                allowed=", ".join(standard) or "it finds no parameters", near=nearest(name, standard), key=True,
+            )  # fmt: skip
+        check_parameter(other, path, key=False)
+    names = {name: block.names.get(name, name) for name in standard}
+    taken: dict[str, str] = {}
+    for name, other in names.items():
+        if other in taken:
+            raise ProblemError(
+                f"{taken[other]} and {name} of the synthesis have the same name", path=("synthesis", "names"),
+                found=quote(other), allowed="different names",
+            )  # fmt: skip
+        taken[other] = name
+        if other in raw:
+            raise ProblemError(
+                f"the parameter {other} is given by hand, and the synthesis {block.task} finds it (its {name})",
+                path=("parameters", other), found=quote(raw[other]),
+                allowed=f"one of the two; another name: synthesis: {{names: {{{name}: ...}}}}", key=True,
+            )  # fmt: skip
+    return names
+
+
+def _resting(raw: Mapping[str, object], found: set[str], units: UnitSystem) -> set[str]:
+    """Parameters given by hand that rest on what is found, at first hand or through others."""
+    known = dict.fromkeys([*raw, *found], Quantity(0.0))
+    needs = {name: set(Parser(plain_text(source[:200]), known, units).names())
+             for name, source in raw.items() if isinstance(source, str)}  # fmt: skip
+    late: set[str] = set()
+    while more := {name for name, used in needs.items() if used & (found | late)} - late:
+        late |= more
+    return late
+
+
+def _not_on(block: Block, late: set[str], units: UnitSystem) -> None:
+    """What is asked cannot rest on what is found."""
+    known = dict.fromkeys(late, Quantity(0.0))
+    for path, text in _texts(block):
+        if path[0] not in ("task", "names") and (used := Parser(plain_text(text[:200]), known, units).names()):
+            raise ProblemError(
+                "this rests on what the synthesis finds", path=path, found=", ".join(map(quote, used)),
+                allowed="parameters that do not",
+            )  # fmt: skip
+
+
+def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError:
+    def shown(value: Any, kind: str) -> str:
+        if kind == "word":
+            return str(value)
+        dimension = KINDS[kind].dimension
+        return f"{units.from_si(float(value), dimension):.6g} {units.symbol(dimension)}".rstrip()
+
+    values = {name: shown(*value) for name, value in error.values.items()}
+    return ProblemError(
+        say(error.reason, **values), path=error.path, found=quote(_at(block, error.path)),
+        allowed=say(error.nearest, **values),
+    )  # fmt: skip
+
+
+def _at(block: Any, path: tuple[str | int, ...]) -> Any:
+    for step in path:
+        block = block[step] if isinstance(step, int) or isinstance(block, dict) else getattr(block, step, None)
+    return block
+
+
+def _texts(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Every text of a block with its place in it."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list | tuple):
+        for number, item in enumerate(value):
+            yield from _texts(item, (*path, number))
+    elif isinstance(value, dict | BaseModel):
+        for key, item in value.items() if isinstance(value, dict) else value:
+            yield from _texts(item, (*path, key))
+
+
+def _plain(value: Any) -> Any:
+    """A Python float, or a number of more digits as it is."""
+    number = np.asarray(value)[()]
+    return float(number) if number.dtype == np.float64 else number

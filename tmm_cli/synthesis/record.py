@@ -1,0 +1,83 @@
+"""What every synthesis gives: values, what the mechanism must show when it is analysed, and how it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tmm_cli.synthesis.construction import Construction, Diagram
+
+Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
+
+
+@dataclass(frozen=True)
+class Value:
+    """A quantity of a task (SI, rad). words: the key of its name; text: the key of what it is, for a word."""
+
+    name: str
+    value: Any
+    kind: Kind
+    words: str
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What must come back when the mechanism is analysed: value (SI, rad), and how it is measured on the Results.
+
+    asked: by the file; else it is what the synthesis foretells. A measure gives nan where the mechanism has no such
+    quantity. at: the least size that counts in the relative difference, for a value that may be zero.
+    """
+
+    words: str
+    value: float
+    kind: Kind
+    measure: Callable[[Any], float]
+    asked: bool = True
+    at: float = 0.0
+
+    def difference(self, measured: float) -> float:
+        """Relative to what is wanted, or absolute where that is zero."""
+        return abs(measured - self.value) / (max(abs(self.value), self.at) or 1.0)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a task gives. parameters: what the linkage may use, by name; source: key of the words on the formula.
+
+    asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
+    notes: keys of words below what was found.
+    """
+
+    asked: tuple[Value, ...]
+    found: tuple[Value, ...]
+    source: str
+    demands: tuple[Demand, ...] = ()
+    drawings: tuple[Construction | Diagram, ...] = ()
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def parameters(self) -> dict[str, Value]:
+        """Found values by name."""
+        return {value.name: value for value in self.found if value.name}
+
+
+class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
+    """A task that no mechanism meets.
+
+    key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
+    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind).
+    """
+
+    def __init__(
+        self,
+        key: str | tuple[str | int, ...],
+        reason: str,
+        nearest: str,
+        values: Mapping[str, tuple[Any, Kind]] | None = None,
+    ) -> None:
+        self.path = (key,) if isinstance(key, str) else key
+        self.reason, self.nearest, self.values = reason, nearest, dict(values or {})
+        super().__init__(reason)
