@@ -24,6 +24,10 @@ Quantity = Literal["positions", "velocities", "accelerations", "reactions", "bal
 QUANTITIES: tuple[Quantity, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")
 
 
+class Unable(Exception):  # noqa: N818 - no error, but what a method says of itself
+    """A method has no way to compute this linkage."""
+
+
 @dataclass(frozen=True, eq=False)
 class Case:
     """A linkage that is assembled, and how it is driven; lower pairs only.

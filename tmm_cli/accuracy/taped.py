@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from tmm_cli.accuracy.case import Answers, Case
+from tmm_cli.accuracy.case import Answers, Case, Unable
 from tmm_cli.batch import prepare as batch_of
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.motion import Motion
@@ -13,7 +13,7 @@ from tmm_cli.vectors import Real
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
-    """Writes the tape. Raises NotImplementedError for groups that are found by iteration."""
+    """Writes the tape. Raises Unable for groups that are found by iteration."""
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
         assert plan is not None
@@ -25,7 +25,7 @@ def prepare(case: Case) -> Callable[[Real], Answers]:
 
     batch = batch_of(case.linkage, asked, strokes=case.strokes)
     if batch.program is None:
-        raise NotImplementedError("groups that are found by iteration cannot be written on a tape")
+        raise Unable("groups that are found by iteration cannot be written on a tape")
 
     kinds = ("positions", "velocities", "accelerations", "reactions")
     names = {kind: [name for name in batch.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}

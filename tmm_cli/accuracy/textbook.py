@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Answers, Case
+from tmm_cli.accuracy.case import Answers, Case, Unable
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import Real, cross, unit
 
@@ -111,7 +111,7 @@ def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
 
 
 def recognised(case: Case) -> FourBar | Slider:
-    """The mechanism; NotImplementedError where there is no formula for it in the book."""
+    """The mechanism; Unable where there is no formula for it in the book."""
     linkage = case.linkage
     driver, types = linkage.driver, [group.type for group in case.structure.groups]
     w = driver.sense * driver.rate
@@ -130,7 +130,7 @@ def recognised(case: Case) -> FourBar | Slider:
             else:
                 D = next(h.point for h in linkage.hinges if {FRAME, b} <= set(h.links))
                 return FourBar(pivot, local(FRAME, D), crank, rod, abs(local(b, last) - local(b, D)), w)
-    raise NotImplementedError("the textbook has formulas for a four-bar and a central crank-slider only")
+    raise Unable("the textbook has formulas for a four-bar and a central crank-slider only")
 
 
 def _prepare(case: Case, which: Callable[[FourBar | Slider], Angles]) -> Callable[[Real], Answers]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli import __version__
-from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, errors
+from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, Unable, errors
 from tmm_cli.accuracy.methods import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.vectors import Real
@@ -116,7 +116,7 @@ def measure(
         for method in (*chosen, *rivals):
             try:
                 solvers[method] = method.prepare(true.case)
-            except NotImplementedError as error:
+            except Unable as error:
                 absent.append(f"{method.name}: {name}: {error}")
         worst = {method: errors(solver(true.q), true.exact) for method, solver in solvers.items()}
         times = by_turns({m: s for m, s in solvers.items() if m.timed}, places(true.case, COUNT), repeats)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.accuracy.case import Unable
 from tmm_cli.batch import Batch, everything, prepare
 from tmm_cli.bench.accuracy import CLOCK, machine
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
@@ -229,7 +230,7 @@ def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tupl
             case = reference(mechanism.name).case
             try:
                 solver = method.prepare(case)
-            except NotImplementedError as error:
+            except Unable as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
             q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360

@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tmm_cli.accuracy import textbook
-from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity
+from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, Unable
 from tmm_cli.accuracy.digits import bare, bounds
 from tmm_cli.accuracy.methods import METHODS
 from tmm_cli.bench.families import BY_NAME
@@ -195,7 +195,7 @@ def _prepared(
             try:
                 with np.errstate(all="ignore"):
                     solvers[method] = method.prepare(case)
-            except NotImplementedError as error:
+            except Unable as error:
                 absent[f"{method.name}: {of_one[0].family.name}: {error}"] = None
             except (ArithmeticError, ValueError, Refused, np.linalg.LinAlgError) as error:
                 solvers[method] = error

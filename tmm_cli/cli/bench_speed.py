@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import typer
-
-from tmm_cli.cli.bench_accuracy import Out, Reduced
-from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, Json, console, emit_json, say
+from tmm_cli.cli.bench_common import Out, Reduced, finish
+from tmm_cli.cli.common import Json, say
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from matplotlib.figure import Figure
 
     from tmm_cli.bench.speed import Speed
+    from tmm_cli.results.table import Table
 
 
 def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
@@ -21,42 +21,21 @@ def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> N
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
     from tmm_cli.bench.speed import measure
-    from tmm_cli.words import say as word
 
     measured = measure(reduced=reduced, progress=say)
-    if as_json:
-        emit_json(measured.to_dict())
-    else:
-        _show(measured)
-    if out is not None:
-        try:
-            say(word("speed.written", files=_write(measured, out)))
-        except OSError as error:
-            say(f"error: {error.filename or out}: {error.strerror}")
-            raise typer.Exit(BAD_INPUT) from None
-    for line in measured.absent:
-        say(line)
-    for failure in measured.failures:
-        say(word("speed.missed", what=failure))
-    if not measured.failures:
-        say(word("speed.met"))
-    raise typer.Exit(CHECK_FAILED if measured.failures else OK)
+    finish("speed", measured, lambda: _tables(measured), lambda: _charts(measured), out, as_json=as_json)
 
 
-def _show(measured: Speed) -> None:
+def _tables(measured: Speed) -> Iterator[Table]:
     from tmm_cli.bench.speed import RIVALS
-    from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.table import Column, Table
-    from tmm_cli.results.terminal import show
     from tmm_cli.words import say as word
 
-    def table(name: str, rows: list[tuple[str, ...]], *headers: str) -> None:
-        columns = tuple(
-            Column(word(f"speed.{header}"), [row[k] for row in rows]) for k, header in enumerate(headers)
-        )  # fmt: skip
-        show(Table(name, word(f"speed.{name}_title"), columns), UnitSystem(), console())
+    def table(name: str, rows: list[tuple[str, ...]], *headers: str) -> Table:
+        columns = tuple(Column(word(f"speed.{header}"), [row[k] for row in rows]) for k, header in enumerate(headers))
+        return Table(name, word(f"speed.{name}_title"), columns)
 
-    table(
+    yield table(
         "races",
         [
             (r.mechanism, str(r.variants), str(r.positions), f"{r.ours:.0f}", f"{r.by_hand:.0f}", f"{r.ratio:.2f}",
@@ -64,7 +43,7 @@ def _show(measured: Speed) -> None:
         ],
         "mechanism", "variants", "positions", "ours", "by_hand", "ratio", "at_most", "preparing",
     )  # fmt: skip
-    table(
+    yield table(
         "growths",
         [
             (word(f"speed.{g.what}"), f"{g.numbers[0]} ... {g.numbers[-1]}",
@@ -73,7 +52,7 @@ def _show(measured: Speed) -> None:
         "what", "numbers", "milliseconds", "exponent",
     )  # fmt: skip
     if measured.rivals:
-        table(
+        yield table(
             "rivals",
             [
                 (r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.0f}", f"{RIVALS[r.name]:g}")
@@ -83,14 +62,7 @@ def _show(measured: Speed) -> None:
         )  # fmt: skip
 
 
-def _write(measured: Speed, folder: Path) -> str:
-    """speed.json and the chart; their names."""
+def _charts(measured: Speed) -> dict[str, Figure]:
     from tmm_cli.bench.chart_speed import chart
-    from tmm_cli.draw.sheet import picture
-    from tmm_cli.results.files import write_whole
-    from tmm_cli.results.text import json_bytes
 
-    contents = {"speed.json": json_bytes(measured.to_dict()), "speed.png": picture(chart(measured), "png")}
-    for name, content in contents.items():
-        write_whole(folder / name, content)
-    return ", ".join(str(folder / name) for name in contents)
+    return {"speed": chart(measured)}

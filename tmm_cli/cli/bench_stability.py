@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, Json, console, emit_json, say
+from tmm_cli.cli.bench_common import Out, Reduced, chosen, finish
+from tmm_cli.cli.common import Json, say
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from tmm_cli.bench.stability import Stability
+    from tmm_cli.results.table import Table
 
 Families = Annotated[
     list[str] | None,
     typer.Option("--family", metavar="NAME", help="This family only (may be repeated).", show_default=False),
-]
-Reduced = Annotated[bool, typer.Option("--reduced", help="Fewer methods, linkages and distances.")]
-Out = Annotated[
-    Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Write CSV, JSON, charts there.", show_default=False),
 ]
 
 
@@ -33,37 +32,16 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     from tmm_cli.bench.stability import WIDE, measure
     from tmm_cli.words import say as word
 
-    chosen = list(dict.fromkeys(family or BY_NAME))
-    for name in chosen:
-        if name not in BY_NAME:
-            say("error: " + word("stability.no_family", name=name, names=", ".join(BY_NAME)))
-            raise typer.Exit(BAD_INPUT)
-    measured = measure(chosen, reduced=reduced, progress=say)
-    if as_json:
-        emit_json(measured.to_dict())
-    else:
-        _show(measured)
-    if out is not None:
-        try:
-            say(word("stability.written", files=_write(measured, out)))
-        except OSError as error:
-            say(f"error: {error.filename or out}: {error.strerror}")
-            raise typer.Exit(BAD_INPUT) from None
-    for line in measured.absent:
-        say(line)
-    say(word("stability.sharp", count=len(measured.widths), share=f"{measured.sharp:.1%}", wide=f"{WIDE:g}"))
-    for failure in measured.failures:
-        say(word("stability.missed", what=failure))
-    if not measured.failures:
-        say(word("stability.met"))
-    raise typer.Exit(CHECK_FAILED if measured.failures else OK)
+    measured = measure(chosen(family, BY_NAME, "stability.no_family"), reduced=reduced, progress=say)
+    sharp = word("stability.sharp", count=len(measured.widths), share=f"{measured.sharp:.1%}", wide=f"{WIDE:g}")
+    finish(
+        "stability", measured, lambda: _tables(measured), lambda: _charts(measured), out, as_json=as_json, more=[sharp]
+    )
 
 
-def _show(measured: Stability) -> None:
+def _tables(measured: Stability) -> Iterator[Table]:
     """The table of first lies: a row a method, a column a family."""
-    from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.table import Column, Table
-    from tmm_cli.results.terminal import show
     from tmm_cli.words import say as word
 
     def first(family: str, method: str) -> str:
@@ -74,19 +52,10 @@ def _show(measured: Stability) -> None:
 
     columns = [Column(word("stability.method"), list(measured.methods))]
     columns += [Column(family, [first(family, method) for method in measured.methods]) for family in measured.families]
-    show(Table("stability", word("stability.title"), tuple(columns)), UnitSystem(), console())
+    yield Table("stability", word("stability.title"), tuple(columns))
 
 
-def _write(measured: Stability, folder: Path) -> str:
-    """stability.csv, stability.json and the charts; their names."""
+def _charts(measured: Stability) -> dict[str, Figure]:
     from tmm_cli.bench.stability_chart import charts
-    from tmm_cli.draw.sheet import picture
-    from tmm_cli.results.files import write_whole
-    from tmm_cli.results.text import json_bytes
 
-    contents = {"stability.csv": measured.to_csv().encode(), "stability.json": json_bytes(measured.to_dict())}
-    for number, figure in enumerate(charts(measured), 1):
-        contents[f"stability-{number}.png"] = picture(figure, "png")
-    for name, content in contents.items():
-        write_whole(folder / name, content)
-    return ", ".join(str(folder / name) for name in contents)
+    return {f"stability-{number}": figure for number, figure in enumerate(charts(measured), 1)}

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Answers, Case, Method
+from tmm_cli.accuracy.case import Answers, Case, Method, Unable
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import move
 from tmm_cli.vectors import Real, Vector, cross, unit
@@ -22,7 +22,7 @@ SAME = 1e-6  # of the linkage's size
 def prepare(case: Case) -> Callable[[Real], Answers]:
     """Its `solve_dynamics` for places q at equal steps, two more at the ends, whose values it loses.
 
-    Raises NotImplementedError.
+    Raises Unable.
     """
     model = _Model(case)
     acting: dict[tuple[float, float, int], list[tuple[str, complex, Vector, Real]]] = {}
@@ -52,7 +52,7 @@ class _Model:
 
         driver = case.linkage.driver
         if driver.kind != "turn" or case.linkage.others:
-            raise NotImplementedError("the driver must be one crank here")
+            raise Unable("the driver must be one crank here")
         kinepy.units.set_unit_system(kinepy.units.SI)
         self.case, self.system = case, kinepy.System()
         self.solids: dict[str, Any] = {FRAME: self.system.ground}
@@ -83,7 +83,7 @@ class _Model:
             try:
                 self.system.compile()
             except Exception as error:
-                raise NotImplementedError(f"it does not compile this: {type(error).__name__}") from None
+                raise Unable(f"it does not compile this: {type(error).__name__}") from None
         self._choose()
 
     def _choose(self) -> None:
@@ -98,7 +98,7 @@ class _Model:
             found = self.positions()
             if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.points):
                 return
-        raise NotImplementedError("it does not solve this linkage")
+        raise Unable("it does not solve this linkage")
 
     def load(self, acting: list[tuple[str, complex, Vector, Real]]) -> None:
         """Loads of the task, instead of those before."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Answers, Case, Method
+from tmm_cli.accuracy.case import Answers, Case, Method, Unable
 from tmm_cli.linkage import FRAME
 from tmm_cli.motion import move
 from tmm_cli.structure.assur import Group, Pair
@@ -15,14 +15,14 @@ from tmm_cli.vectors import Real, unit
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
-    """Its fastest route, `step_fast_with_kinematics`, for places q at equal steps. Raises NotImplementedError."""
+    """Its fastest route, `step_fast_with_kinematics`, for places q at equal steps. Raises Unable."""
     from pylinkage.actuators import Crank
     from pylinkage.components import Ground
     from pylinkage.simulation import Linkage
 
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
-        raise NotImplementedError("a crank is the only driver")
+        raise Unable("a crank is the only driver")
     start = move(case.linkage, case.kernels, np.array([case.start]), case.law)
     places = {point: complex(start.named(point).x[0]) for point in case.points}
     parts: dict[str, Any] = {}
@@ -31,7 +31,7 @@ def prepare(case: Case) -> Callable[[Real], Answers]:
     arm = case.linkage.links[driver.link].points
     ends = [point for point in arm if point != driver.joint]
     if len(ends) != 1:
-        raise NotImplementedError("a crank has one end")
+        raise Unable("a crank has one end")
     radius = abs(arm[ends[0]] - arm[driver.joint])
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
     extra: list[Any] = []
@@ -68,14 +68,14 @@ def _add(group: Group, case: Case, parts: dict[str, Any], extra: list[Any], plac
 
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
-        raise NotImplementedError(f"it has no group {group.title} of type {group.type or 'of class III'}")
+        raise Unable(f"it has no group {group.title} of type {group.type or 'of class III'}")
     point = group.inner[0].point
     x, y = places[point].real, places[point].imag
 
     def reach(pair: Pair) -> tuple[Any, float]:
         own = pair.i if pair.i in group.links else pair.j
         if pair.point not in parts:
-            raise NotImplementedError(f"{group.title} hangs on a point that is not a joint before")
+            raise Unable(f"{group.title} hangs on a point that is not a joint before")
         return parts[pair.point], float(abs(local(own, pair.point) - local(own, point)))
 
     turning = [pair for pair in group.outer if pair.kind == "R"]
@@ -85,7 +85,7 @@ def _add(group: Group, case: Case, parts: dict[str, Any], extra: list[Any], plac
         return
     slide = next(pair.slide for pair in group.outer if pair.slide is not None)
     if slide.carrier != FRAME or slide.at != local(slide.runner, point):
-        raise NotImplementedError("it knows guides through hinges only")
+        raise Unable("it knows guides through hinges only")
     one, r = reach(turning[0])
     guide = [slide.through, slide.through + unit(slide.direction)]
     ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(guide)]
