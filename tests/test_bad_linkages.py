@@ -159,7 +159,7 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, title, description, units, parameters, points, guides, links, driver, gears, racks, "
+        "  allowed: tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, racks, "
         "cams, springs, friction, sketch, masses, loads, gravity, output, positions, checks\n"
         "  did you mean 'gears'?",
     ),
