@@ -51,7 +51,7 @@ def test_references_are_what_sixty_digits_say(name, k):
         assert content[quantity].keys() == expected[quantity].keys()
         for key, value in expected[quantity].items():
             written = mp.mpc(*(mp.mpf(part) for part in content[quantity][key][k]))
-            assert abs(written - value) <= mp.mpf(10) ** -48 * abs(value) + mp.mpf(10) ** -30
+            assert abs(written - value) <= mp.mpf(10) ** -48 * abs(value) + mp.mpf(10) ** -45
     assert abs(mp.mpf(content["balancing"][k]) - expected["balancing"]) <= mp.mpf(10) ** -48 * abs(
         expected["balancing"]
     )

@@ -123,7 +123,10 @@ def test_the_plate_goes_on_without_turning(kind):
 
 
 def test_beside_a_dead_position_velocities_are_as_good_as_the_numbers_are():
-    """At a distance h the last bit u of the numbers moves a place by u/h and a velocity by u/h^2."""
+    """At a distance h the last bit u of the numbers moves a place by u/h and a velocity by u/h^2.
+
+    Nearer than some hundredths it is the last bit of extended precision, where the machine has it.
+    """
     it = plate(DRAG_LINK)
     at = [float(q) + off for q in it.dead() for h in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 2e-7) for off in (-h, h)]
     motion = results_of(it.problem(positions={"at": at}), "kinematics").motion
@@ -131,7 +134,7 @@ def test_beside_a_dead_position_velocities_are_as_good_as_the_numbers_are():
     for k, q in enumerate(at):
         exact = mp.diff(it.swing, mp.mpf(q))
         off = float(min(abs(q - dead) for dead in it.dead()))
-        lost = 50 * float(np.finfo(np.longdouble).eps) / off
+        lost = 50 * float(np.finfo(np.longdouble).eps) / off if off < 5e-3 else float(np.finfo(float).eps) / off
         assert abs(motion.poses["3"].z[k] - 1) < 1e-15 + lost
         assert abs(motion.first["4"].w[k] - exact) < (1e-14 + lost / off) * abs(exact)
 
