@@ -159,8 +159,8 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, racks, "
-        "cams, springs, friction, sketch, masses, loads, gravity, output, positions, checks\n"
+        "  allowed: tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, "
+        "racks, cams, springs, friction, sketch, masses, loads, gravity, output, positions, checks\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (
