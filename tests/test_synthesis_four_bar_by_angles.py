@@ -1,0 +1,230 @@
+"""Four-bars by pairs of angles: the pairs come back on the motion of the mechanism, and what cannot be is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tmm_cli import solve
+from tmm_cli.batch import prepare
+from tmm_cli.linkage import Sketch
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis import four_bar_by_angles as task
+from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.freudenstein import Bars, solutions
+
+LINKAGE = """
+points: {A: [0, 0], D: [l4, 0]}
+links:
+  1: {points: [A, B], length: l1}
+  2: {points: [B, C], length: l2}
+  3: {points: [D, C], length: l3}
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: phi1, C: [l4 + l3*cos(psi1), l3*sin(psi1)]}
+output: 3
+positions: {count: 4, from: phi1}
+"""
+MET = 1e-12
+COUNT = 1000
+
+
+def problem(block):
+    return build(read_text(f"tmm: 1\nsynthesis: {{task: four-bar-by-angles, {block}}}\n{LINKAGE}", "x.yaml"))
+
+
+def random_tasks(count, seed, least=0.35):
+    """Random four-bars, `count` pairs of their angles each, from their zero angles, on one assembly and in order.
+
+    The transmission angle (rad) is nowhere less than `least` on the way, so that the output is well defined.
+    """
+    rng, kept = np.random.default_rng(seed), []
+    while sum(len(k[0]) for k in kept) < COUNT:
+        l1, l3 = rng.uniform(0.3, 2.5, (2, 4 * COUNT))
+        phi0, first = rng.uniform(-np.pi, np.pi, (2, 4 * COUNT))
+        steps = rng.uniform(0.2, 0.6, (count - 1, 4 * COUNT))
+        l2 = np.abs(1 + l3 * np.exp(1j * first) - l1 * np.exp(1j * phi0))
+        side = np.sign(((1 + l3 * np.exp(1j * first) - l1 * np.exp(1j * phi0)).conj()
+                                            * l3 * np.exp(1j * first)).imag)  # fmt: skip
+        phi = np.concatenate([np.zeros((1, 4 * COUNT)), np.cumsum(steps, 0)])
+        fine = phi[-1] * np.linspace(0, 1, 200)[:, None]
+
+        def angle(turn, l1=l1, l2=l2, l3=l3, phi0=phi0, side=side):
+            way = l1 * np.exp(1j * (phi0 + turn)) - 1
+            cosine = (l3**2 + np.abs(way) ** 2 - l2**2) / (2 * l3 * np.abs(way))
+            inner = (l2**2 + l3**2 - np.abs(way) ** 2) / (2 * l2 * l3)
+            return np.angle(way * np.exp(-1j * side * np.arccos(np.clip(cosine, -1, 1)))), inner
+
+        good = (np.abs(angle(fine)[1]) < np.cos(least)).all(0)
+        psi = angle(phi)[0]
+        good &= np.abs(np.angle(np.exp(1j * (psi[0] - first)))) < 1e-9  # the other assembly is another mechanism
+        psi = np.unwrap(psi, axis=0)
+        kept.append([x[..., good].T for x in (phi, psi - first, l1, l2, l3, phi0, first)])
+    return [np.concatenate(parts)[:COUNT] for parts in zip(*kept, strict=True)]
+
+
+def on_mechanism(bars, phi, psi):
+    """Output angles (tasks, pairs) less psi0, of many four-bars of unit frame, measured on the motion of linkages."""
+    first = problem("pairs: [[30, 60], [60, 75], [90, 100]], l4: 1 m").linkage
+    numbers = [np.asarray(x, dtype=float) for x in vars(bars).values()]
+    linkages = []
+    for (l1, l2, l3, phi0, psi0), a, b in zip(zip(*numbers, strict=True), phi[:, 0], psi[:, 0], strict=True):
+        links = first.links | {
+            "0": replace(first.links["0"], points={"A": 0j, "D": 1 + 0j}),
+            "1": replace(first.links["1"], points={"A": 0j, "B": complex(l1)}),
+            "2": replace(first.links["2"], points={"B": 0j, "C": complex(l2)}),
+            "3": replace(first.links["3"], points={"D": 0j, "C": complex(l3)}),
+        }
+        c = complex(1 + l3 * np.exp(1j * (psi0 + b)))
+        linkages.append(replace(first, links=links, sketch=Sketch(float(phi0 + a), {"C": c})))
+    # the first linkage's assembly holds for all of a batch: two batches, by the side on which C lies
+    b0, c0 = (np.asarray(x, complex) for x in bars.pins(phi[:, 0], psi[:, 0]))
+    left = ((1 - b0).conj() * (c0 - b0)).imag > 0
+    found = np.empty(phi.shape)
+    for side in (left, ~left):
+        numbers_of = np.flatnonzero(side)
+        at = prepare([linkages[k] for k in numbers_of], forces=False, own_places=True)
+        angles = phi[side] + numbers[3][side, None]
+        found[side] = np.angle((at(angles)["C.x"] - 1) * np.exp(-1j * (psi[side] + numbers[4][side, None])))
+    return found + psi
+
+
+def comes_back(phi, psi, bars):
+    assert on_mechanism(bars, phi, psi) == pytest.approx(psi, rel=0, abs=MET)
+
+
+def nearest_root(found, l1, l3):
+    """Of all roots that of the mechanism from which the task was made."""
+    gap = np.abs(found.l1 / l1[:, None] - 1) + np.abs(found.l3 / l3[:, None] - 1)
+    best = np.nanargmin(np.asarray(gap, dtype=float), axis=1)
+    return Bars(*(np.take_along_axis(x, best[:, None], axis=1)[:, 0] for x in vars(found).values()))
+
+
+@pytest.mark.parametrize(("count", "free"), [(3, ()), (4, ("phi0",)), (4, ("psi0",)), (5, ("phi0", "psi0"))])
+def test_pairs_come_back_and_the_mechanism_of_the_task_is_among_the_roots(count, free):
+    phi, psi, l1, l2, l3, phi0, psi0 = random_tasks(count, count + len(free))
+    given_phi = phi if "phi0" in free else phi + phi0[:, None]
+    given_psi = psi if "psi0" in free else psi + psi0[:, None]
+    zeros = {name: None if name in free else 0.0 for name in ("phi0", "psi0")}
+    found = nearest_root(solutions(given_phi, given_psi, **zeros), l1, l3)
+    for value, truth in ((found.l1, l1), (found.l2, l2), (found.l3, l3)):
+        assert np.asarray(value, float) == pytest.approx(truth, rel=2e-4)  # how sharply near pairs tell the lengths
+    comes_back(given_phi, given_psi, found)
+
+
+@pytest.mark.parametrize(("count", "zeros"), [(3, (0.0, 0.0)), (4, (None, 0.0)), (4, (0.0, None)), (5, (None, None))])
+def test_what_is_chosen_passes_all_pairs_on_one_assembly(count, zeros):
+    phi, psi, _, _, _, phi0, psi0 = random_tasks(count, 7)
+    phi = phi if zeros[0] is None else phi + phi0[:, None]
+    psi = psi if zeros[1] is None else psi + psi0[:, None]
+    every = solutions(phi, psi, *zeros)
+    taken, rows = [], []
+    for k in range(COUNT):
+        asked = task.Asked(tuple(phi[k]), tuple(psi[k]), {"l4": 1.0}, *zeros)
+        here = [every[k, j] for j in range(every.l1.shape[1]) if task._real(every[k, j])]
+        at = task.chosen(asked, here)
+        if at >= 0 and task.quality(here[at], asked).least > 0.2:
+            taken.append(here[at])
+            rows.append(k)
+    assert len(rows) > 0.97 * COUNT
+    bars = Bars(*(np.array([getattr(one, name) for one in taken]) for name in ("l1", "l2", "l3", "phi0", "psi0")))
+    comes_back(phi[rows], psi[rows], bars)
+
+
+def test_two_pairs_and_the_ratio_of_two_links_come_back():
+    phi, psi, l1, _, l3, phi0, psi0 = random_tasks(2, 2)
+    phi, psi, taken = phi + phi0[:, None], psi + psi0[:, None], []
+    for k in range(COUNT):
+        lengths = [{"l1": l1[k], "l4": 1.0}, {"l3": l3[k], "l4": 1.0}, {"l1": l1[k], "l3": l3[k]}][k % 3]
+        asked = task.Asked(tuple(phi[k]), tuple(psi[k]), lengths)
+        ways = task.through(asked)
+        taken.append(min(ways, key=lambda one: abs(one.l1 - l1[k]) + abs(one.l3 - l3[k])))
+        assert float(taken[-1].l1) == pytest.approx(l1[k], rel=1e-8)
+    bars = Bars(*(np.array([getattr(one, name) for one in taken]) for name in ("l1", "l2", "l3", "phi0", "psi0")))
+    comes_back(phi, psi, bars)
+
+
+def test_two_pairs_alone_get_the_best_transmission():
+    asked = task.Asked((0.5, 1.4), (1.0, 1.6), {"l4": 1.0})
+    (best,) = task.through(asked)
+    least = task.quality(best, asked).least
+    for ratio in np.linspace(0.11, 9, 300):
+        for other in task.through(replace(asked, lengths={"l1": ratio, "l4": 1.0})):
+            mark = task.quality(other, asked)
+            assert mark.defect or mark.reversed or mark.least <= least + 1e-9
+
+
+@pytest.mark.parametrize("block", [
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100", "pairs: [[30, 60], [80, 90]], l4: 100, l1: 40",
+    "pairs: [[30, 60], [80, 90]], l1: 100", "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l1: 100",
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], phi0: 20, l3: 100",
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l2: 100, choose: crank",
+    "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], l4: 100",
+    "function: sin(x), x: [0, 90], input: [0, 90], output: [0, 60], points: 5, l4: 100",
+    "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], l4: 100",
+])  # fmt: skip
+def test_the_ordinary_stages_measure_what_was_asked(block):
+    found = problem(block)
+    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    assert len(every) >= 4
+    for m in every:
+        assert m.difference <= MET, m
+
+
+def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
+    outcome = problem("function: log10(x), x: [1, 2], input: [45, 105], output: [0, 90], l4: 100").synthesis.outcome
+    asked = [v.value for v in outcome.asked if v.words.endswith(("input1", "input2", "input3"))]
+    assert np.degrees(asked) == pytest.approx(75 - 30 * np.cos(np.radians([30, 90, 150])), rel=1e-14)
+    curve, points = outcome.drawings[1].lines
+    assert np.interp(points.x, curve.x, curve.y) == pytest.approx(0, abs=1e-5)
+    largest = next(v.value for v in outcome.found if v.words.endswith(".error"))
+    assert largest == np.max(np.abs(curve.y)) and np.degrees(largest) == pytest.approx(2.364325, rel=1e-6)
+
+
+REFUSED = {
+    "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100":
+        "synthesis.pairs[2]: the input turns back: pair 3 cannot be reached after pair 2 in order\n"
+        "  found:   a list of 2\n  allowed: input angles that only grow, or only fall; pair 2 has 80 deg",
+    "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100":
+        "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other assembly\n"
+        "  found:   a list of 2\n  allowed: the last output angle 82.728 deg; or defects: keep",
+    "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100":
+        "synthesis.pairs[3]: no four-bar passes through these pairs\n"
+        "  found:   a list of 2\n  allowed: the last output angle 22.3152 deg",
+    "pairs: [[30, 60], [80, 90], [120, 100]]":
+        "synthesis: one length gives the size of the four-bar\n  found:   none\n  allowed: one of l1, l2, l3, l4",
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l4: 100, phi0: 10":
+        "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0",
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2":
+        "synthesis.choose: there is no solution of this number\n  found:   2\n  allowed: 1 to 1",
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
+        "synthesis.l4: there is no such link\n  found:   -100\n  allowed: more than zero",
+    "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
+        "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
+    "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100":
+        "synthesis.x: the function has no values there, or the same at both ends\n",
+    "l4: 100": "synthesis: these keys do not determine a four-bar\n  found:   none\n"
+        "  allowed: pairs; or function (or table), x, input, output",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("block", REFUSED)
+def test_what_cannot_be_is_refused_with_the_reason_and_what_can(block):
+    with pytest.raises(ProblemError) as caught:
+        problem(block)
+    assert str(caught.value).partition(": ")[2].startswith(REFUSED[block])
+
+
+def test_the_nearest_output_angle_that_is_told_is_good_and_one_that_is_nearer_is_not():
+    problem("pairs: [[30, 60], [80, 60], [120, 82.728]], l4: 100")
+    with pytest.raises(ProblemError, match="branch defect"):
+        problem("pairs: [[30, 60], [80, 60], [120, 82.729]], l4: 100")
+
+
+def test_a_branch_defect_that_is_kept_shows_on_the_mechanism():
+    found = problem("pairs: [[30, 60], [80, 60], [120, 100]], l4: 100, defects: keep")
+    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    assert not all(m.met for m in every)
