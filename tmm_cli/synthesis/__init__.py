@@ -15,6 +15,7 @@ TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name
     "crank-slider": "crank_slider",
     "grashof": "grashof",
     "four-bar-by-angles": "four_bar_by_angles",
+    "coupler-positions": "coupler_positions",
 }
 
 

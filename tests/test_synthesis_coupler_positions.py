@@ -1,0 +1,233 @@
+"""Four-bars by positions of their coupler: every position comes back on the motion, and what cannot be is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tmm_cli import solve
+from tmm_cli.batch import prepare
+from tmm_cli.linkage import Sketch
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis.burmester import Dyads, Poses, beside, by_turn, centre, marks
+from tmm_cli.synthesis.check import measured
+
+LINKAGE = """
+points: {A: [Ax, Ay], D: [Dx, Dy]}
+links:
+  1: {points: [A, B], length: l1}
+  2: {points: [B, C], length: l2, also: {P: [Px, Py]}}
+  3: {points: [D, C], length: l3}
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: phi1, C: [Cx, Cy]}
+output: 3
+"""
+MET = 1e-12
+COUNT = 1000
+
+
+def problem(block):
+    return build(read_text(f"tmm: 1\nsynthesis: {{task: coupler-positions, {block}}}\n{LINKAGE}", "x.yaml"))
+
+
+def random_tasks(count, seed, least=0.35):
+    """Positions (m, rad) of the couplers of random four-bars, from `count` angles of their cranks in order, on one
+    assembly, with a transmission angle (rad) of `least` or more all the way; pivots and pins (in the coupler's axes).
+    """
+    rng, kept, many = np.random.default_rng(seed), [], 4 * COUNT
+    while sum(len(k[0]) for k in kept) < COUNT:
+        a, d, p = rng.uniform(-1, 1, (3, many)) + 1j * rng.uniform(-1, 1, (3, many))
+        l1, l2, l3 = rng.uniform(0.3, 2.0, (3, many))
+        turned, start = rng.uniform(-np.pi, np.pi, (2, many))
+        side = rng.choice([-1.0, 1.0], many)
+        steps = rng.choice([-1.0, 1.0], many) * rng.uniform(0.25, 0.7, (count - 1, many))
+        phi = start + np.concatenate([np.zeros((1, many)), np.cumsum(steps, 0)])
+
+        def coupler(phi, a=a, d=d, l1=l1, l2=l2, l3=l3, side=side):
+            b = a + l1 * np.exp(1j * phi)
+            way = d - b
+            inner = (l2**2 + l3**2 - np.abs(way) ** 2) / (2 * l2 * l3)
+            cosine = (l2**2 + np.abs(way) ** 2 - l3**2) / (2 * l2 * np.abs(way))
+            return b, np.angle(way) + side * np.arccos(np.clip(cosine, -1, 1)), inner
+
+        fine = phi[0] + (phi[-1] - phi[0]) * np.linspace(0, 1, 200)[:, None]
+        good = (np.abs(coupler(fine)[2]) < np.cos(least)).all(0) & (np.abs(d - a) > 0.3)
+        b, angle, _ = coupler(phi)
+        angle = angle + turned
+        places = b + p * np.exp(1j * angle)
+        moves = np.abs(np.angle(np.exp(1j * (angle[1] - angle[0])))) > 0.05
+        rows = (places, angle, a, d, -p, -p + l2 * np.exp(-1j * turned))
+        kept.append([x[..., good & moves].T for x in rows])
+    return [np.concatenate(parts)[:COUNT] for parts in zip(*kept, strict=True)]
+
+
+def on_mechanism(poses, one, other):
+    """Places and angles of the couplers (tasks, positions) on the motion of linkages in double precision."""
+    block = "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]"
+    first = problem(block).linkage
+    a, d, m, n = (np.asarray(x, complex) for x in (one.pivot, other.pivot, one.pin, other.pin))
+    b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (one, other))
+    linkages = []
+    for k in range(len(a)):
+        span = n[k] - m[k]
+        local = -m[k] * span.conjugate() / abs(span)
+        l1, l3 = abs(b[k, 0] - a[k]), abs(c[k, 0] - d[k])
+        links = first.links | {
+            "0": replace(first.links["0"], points={"A": complex(a[k]), "D": complex(d[k])}),
+            "1": replace(first.links["1"], points={"A": 0j, "B": complex(l1)}),
+            "2": replace(first.links["2"], points={"B": 0j, "C": complex(abs(span)), "P": complex(local)}),
+            "3": replace(first.links["3"], points={"D": 0j, "C": complex(l3)}),
+        }
+        linkages.append(replace(first, links=links, sketch=Sketch(float(np.angle(b[k, 0] - a[k])), {"C": c[k, 0]})))
+    phi = np.angle(b - a[:, None])
+    left = ((d[:, None] - b).conj() * (c - b)).imag[:, 0] > 0  # a batch is assembled as its first linkage is
+    places, angles = np.empty(b.shape, complex), np.empty(b.shape)
+    for side in (left, ~left):
+        at = prepare([linkages[k] for k in np.flatnonzero(side)], forces=False, own_places=True)(phi[side])
+        places[side] = at["P.x"]
+        angles[side] = np.angle((at["C.x"] - at["B.x"]) / (n - m)[side, None])
+    return places, angles
+
+
+def comes_back(places, angles, one, other):
+    poses = Poses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
+    found, turned = on_mechanism(poses, one, other)
+    size = np.maximum(1.0, np.abs(np.asarray(one.pivot - other.pivot, complex)))[:, None]
+    assert np.max(np.abs(found - places) / size) < MET
+    assert np.max(np.abs(np.angle(np.exp(1j * (turned - angles))))) < MET
+
+
+def exact(places, angles):
+    return Poses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
+
+
+def test_three_positions_come_back_from_pins_and_from_pivots():
+    places, angles, a, d, m, n = random_tasks(3, 3)
+    poses = exact(places, angles)
+    by_pins = [Dyads(centre(poses.on_frame(pin)), pin) for pin in (m, n)]
+    by_pivots = [Dyads(pivot, centre(poses.in_plane(pivot))) for pivot in (a, d)]
+    for found in (by_pins, by_pivots, (by_pins[0], by_pivots[1])):
+        for dyads, pivot, pin in zip(found, (a, d), (m, n), strict=True):
+            assert np.max(np.abs(dyads.pivot - pivot)) < 1e-6 and np.max(np.abs(dyads.pin - pin)) < 1e-6
+        comes_back(places, angles, *found)
+
+
+def test_two_positions_come_back_from_pins_or_pivots_and_lengths():
+    places, angles, a, d, m, n = random_tasks(2, 2)
+    poses, found = exact(places, angles), []
+    for pivot, pin, by_pin in ((a, m, True), (d, n, False)):
+        length = np.abs(poses.on_frame(pin)[:, 0] - pivot)
+        ends, third, given = (poses.on_frame(pin), pivot, pin) if by_pin else (poses.in_plane(pivot), pin, pivot)
+        way = ends[:, 1] - ends[:, 0]
+        side = np.sign((np.conj(way) * (third - ends[:, 0])).imag)
+        other = beside(ends, length, side)
+        assert np.max(np.abs(other - third)) < 1e-6
+        found.append(Dyads(other, given) if by_pin else Dyads(given, other))
+    comes_back(places, angles, *found)
+
+
+def test_four_positions_come_back_from_the_turns_of_both_links():
+    places, angles, a, d, m, n = random_tasks(4, 4)
+    poses, found = exact(places, angles), []
+    for pivot, pin in ((a, m), (d, n)):
+        arm = np.asarray(poses.on_frame(pin) - pivot[:, None], complex)
+        turn = np.angle(arm[:, 1] / arm[:, 0])
+        ways = [by_turn(poses, turn, branch) for branch in (0, 1)]
+        gaps = [np.nan_to_num(np.asarray(np.abs(w.pivot - pivot), float), nan=9.0) for w in ways]
+        second = gaps[1] < gaps[0]
+        one = Dyads(*(np.where(second, y, x) for x, y in ((w[0], w[1]) for w in (
+            [x.pivot for x in ways], [x.pin for x in ways]))))  # fmt: skip
+        assert np.max(np.minimum(*gaps)) < 1e-3  # how sharply near positions tell the pivot
+        found.append(one)
+    comes_back(places, angles, *found)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_positions_that_a_four_bar_took_in_order_have_no_defect_and_others_are_named(count):
+    places, angles, a, d, m, n = random_tasks(count, 10 + count)
+    one, other = Dyads(a, m), Dyads(d, n)
+    there = marks(exact(places, angles), one, other)
+    assert np.all(there.defect == 0) and np.all(there.least > 0.34)
+    if count == 4:
+        mixed = [0, 2, 1, 3]
+        turned = marks(exact(places[:, mixed], angles[:, mixed]), one, other)
+        assert np.mean(turned.defect == 2) > 0.9 and np.all(turned.defect[np.abs(there.way) < np.pi] == 2)
+
+
+FOUR = "[[0, 0, 0], [60, 40, 15], [110, 100, 35], [130, 170, 60]]"
+
+
+@pytest.mark.parametrize("block", [
+    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]",
+    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [0, 120], C: [50, 0]",
+    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 60",
+    f"positions: {FOUR}", f"positions: {FOUR}, AB_turn: -12",
+])  # fmt: skip
+def test_the_ordinary_stages_measure_what_was_asked(block):
+    found = problem(block)
+    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    assert len(every) >= 7
+    for m in every:
+        assert m.difference <= MET, m
+
+
+def test_every_place_of_the_curves_guides_through_four_positions():
+    poses = exact([0, 0.06 + 0.04j, 0.11 + 0.1j, 0.13 + 0.17j], np.radians([0, 15, 35, 60]))
+    for branch in (0, 1):
+        dyads = by_turn(poses, np.linspace(-3.1, 3.1, 400), branch)
+        radii = np.abs(poses.on_frame(dyads.pin) - dyads.pivot[:, None])
+        good = np.isfinite(radii).all(-1) & (radii[:, 0] < 10)
+        assert good.sum() > 50 and np.ptp(radii[good], axis=1) == pytest.approx(0, abs=1e-13)
+
+
+def test_the_best_transmission_on_the_curves_is_not_beaten_by_random_links_of_them():
+    found = problem(f"positions: {FOUR}").synthesis.outcome
+    least = next(v.value for v in found.found if v.words.endswith("transmission"))
+    poses = exact([0, 0.06 + 0.04j, 0.11 + 0.1j, 0.13 + 0.17j], np.radians([0, 15, 35, 60]))
+    size, rng = 0.17**2 + 0.13**2, np.random.default_rng(1)
+    dyads = [by_turn(poses, rng.uniform(-np.pi, np.pi, 20_000), branch) for branch in rng.integers(0, 2, 2)]
+    there = marks(poses, *dyads)
+    (a, m), (d, n) = ((x.pivot, x.pin) for x in dyads)
+    arms = [np.abs(poses.on_frame(x.pin)[..., 0] - x.pivot) for x in dyads]
+    fair = np.all([(x > 0.15 * size**0.5) & (x < 2 * size**0.5) for x in (*arms, np.abs(a - d), np.abs(m - n))], 0)
+    good = fair & (there.defect == 0)
+    assert good.sum() > 5 and np.max(there.least[good]) <= least + 1e-4
+
+
+REFUSED = {
+    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60":
+        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB more than 36.0555 mm",
+    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]":
+        "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
+        "  found:   a list of 2\n  allowed: another B, or a slider instead of the link",
+    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
+        "synthesis: these keys do not determine AB with 3 positions\n  found:   AB, B\n  allowed: B; or A",
+    "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
+        "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
+    "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
+        "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
+        "  found:   a list of 2\n  allowed: another B",
+    "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
+        "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
+        "  allowed: different positions",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("block", REFUSED)
+def test_what_cannot_be_is_refused_with_the_reason_and_what_can(block):
+    with pytest.raises(ProblemError) as caught:
+        problem(block)
+    assert str(caught.value).partition(": ")[2].startswith(REFUSED[block])
+
+
+def test_the_nearest_turn_that_is_told_has_a_link():
+    for turn in range(-175, 180, 10):
+        try:
+            problem(f"positions: {FOUR}, AB_turn: {turn}, defects: keep")
+        except ProblemError as error:
+            told = str(error).partition("allowed: ")[2].partition(" deg")[0]
+            problem(f"positions: {FOUR}, AB_turn: {told}, defects: keep")

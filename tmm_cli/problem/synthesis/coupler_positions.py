@@ -1,0 +1,95 @@
+"""Four-bar by positions of its coupler: keys of the task."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
+
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema import Value, Vector
+from tmm_cli.problem.sense import Sense, planar
+from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.units import ANGLE, LENGTH
+from tmm_cli.synthesis.coupler_positions import Asked, Side
+
+
+def _pose(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
+        raise PydanticCustomError("pose", "a place and an angle [x, y, angle] are wanted")
+    return found
+
+
+Pose = Annotated[list[Value], BeforeValidator(_pose)]
+Where = Literal["left", "right"]
+DYADS = ("AB", "DC")
+
+
+class Shape(Block):
+    """A four-bar ABCD (AB drives) whose coupler takes 2, 3 or 4 positions."""
+
+    task: Literal["coupler-positions"]
+    positions: list[Pose] = Field(
+        min_length=2, max_length=4, description="[x, y, angle] of the coupler's axes, 2 to 4, in order"
+    )
+    B: Vector | None = Field(default=None, description="pin of AB in the coupler's axes; or its pivot A")
+    C: Vector | None = Field(default=None, description="pin of DC in the coupler's axes; or its pivot D")
+    A: Vector | None = Field(default=None, description="pivot of AB on the frame")
+    D: Vector | None = Field(default=None, description="pivot of DC on the frame")
+    AB: Value | None = Field(default=None, description="length, with two positions")
+    DC: Value | None = Field(default=None, description="length, with two positions")
+    AB_side: Where = Field(default="left", description="of the way from place 1 to 2, with two positions")
+    DC_side: Where = "left"
+    AB_turn: Value | None = Field(default=None, description="turn of AB from 1 to 2, with four; best transmission")
+    DC_turn: Value | None = Field(default=None, description="turn of DC from 1 to 2, with four; best transmission")
+    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links of that turn")
+    DC_branch: Literal[1, 2] = 1
+    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
+
+
+def asked(shape: Shape, sense: Sense) -> Asked:
+    """The task in SI. Raises ProblemError."""
+    count = len(shape.positions)
+    poses = [
+        (
+            planar(*(sense.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
+            sense.number(pose[2], ANGLE, ("positions", k, 2)),
+        )
+        for k, pose in enumerate(shape.positions)
+    ]
+    for k in range(count):
+        if poses[k] in poses[:k]:
+            raise ProblemError(
+                "this position is there already", path=("positions", k), found=f"position {poses.index(poses[k]) + 1}",
+                allowed="different positions",
+            )  # fmt: skip
+    sides = {name: side for name in DYADS if (side := _side(shape, sense, name, count)) is not None}
+    places, angles = zip(*poses, strict=True)
+    return Asked(tuple(places), tuple(angles), sides, shape.defects == "keep")
+
+
+def _side(shape: Shape, sense: Sense, name: str, count: int) -> Side | None:
+    """What is given of a dyad, which must be just what the count of positions needs."""
+    pivot, pin, turn = name[0], name[1], f"{name}_turn"
+    given = {key for key in (pivot, pin, name, turn) if getattr(shape, key) is not None}
+    good = {
+        2: ({pivot, name}, {pin, name}), 3: ({pivot}, {pin}), 4: ({turn}, set[str]()),
+    }[count]  # fmt: skip
+    if given not in good:
+        wanted = {2: f"{pin} and {name}; or {pivot} and {name}", 3: f"{pin}; or {pivot}", 4: f"{turn}, or nothing"}
+        raise ProblemError(
+            f"these keys do not determine {name} with {count} positions", found=", ".join(sorted(given)) or "none",
+            allowed=wanted[count], key=True,
+        )  # fmt: skip
+    if not given:
+        return None
+    found: dict[str, Any] = {
+        field: sense.vector(getattr(shape, key), LENGTH, (key,))
+        for field, key in (("pivot", pivot), ("pin", pin)) if key in given
+    }  # fmt: skip
+    if name in given:
+        found["length"] = sense.positive(getattr(shape, name), LENGTH, (name,))
+    if turn in given:
+        found["turn"] = sense.number(getattr(shape, turn), ANGLE, (turn,))
+    return Side(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)

@@ -1,0 +1,140 @@
+"""Pivots that guide a plane through 2, 3 or 4 positions: centres of circles through the places of one of its points.
+
+Positions: places P (complex, m) of the plane's origin and angles theta (rad) of its axis. A dyad AB has its pivot A on
+the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point curve and A on
+the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); by the turn beta2 of AB from position 1 to 2,
+    W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,  W = AB, Z = BP in position 1, alpha_j = theta_j - theta_1,
+whose determinant is a closed four-bar of the unknown turns (G. N. Sandor, A. G. Erdman, Advanced Mechanism
+Design 2, 1984). Extended precision throughout; leading axes are many dyads or tasks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+EXACT: Final = np.longdouble
+COMPLEX: Final = np.clongdouble
+DEFECTS: Final = ("", "branch", "turns_back", "locks")
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Places (m) and angles (rad), positions on the last axis."""
+
+    places: Any
+    angles: Any
+
+    def on_frame(self, local: Any) -> Any:
+        """Places of points of the plane, positions on a last axis more."""
+        return self.places + np.asarray(local, COMPLEX)[..., None] * unit(self.angles)
+
+    def in_plane(self, fixed: Any) -> Any:
+        """Points of the frame in the plane's axes, in every position."""
+        return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit(-np.asarray(self.angles))
+
+
+@dataclass(frozen=True)
+class Dyads:
+    """Pivots on the frame and pins in the plane (m, complex)."""
+
+    pivot: Any
+    pin: Any
+
+    def __getitem__(self, at: Any) -> Dyads:
+        return Dyads(np.asarray(self.pivot)[at], np.asarray(self.pin)[at])
+
+
+def unit(angle: Any) -> Any:
+    """e^(i angle) in extended precision."""
+    angle = np.asarray(angle, EXACT)
+    return np.cos(angle) + 1j * np.sin(angle)
+
+
+def centre(places: Any) -> Any:
+    """Centre of the circle through three places (last axis); infinite or nan where they lie on a line."""
+    first, second = places[..., 1] - places[..., 0], places[..., 2] - places[..., 0]
+    with np.errstate(all="ignore"):
+        area = (np.conj(first) * second).imag
+        square = (first * np.conj(first)).real * second - (second * np.conj(second)).real * first
+        return places[..., 0] - 1j * square / (2 * area)
+
+
+def beside(places: Any, radius: Any, side: float) -> Any:
+    """The point at a distance from two places (last axis), to the left (1) or right (-1) of the way between them."""
+    way = places[..., 1] - places[..., 0]
+    half = np.abs(way) / 2
+    with np.errstate(all="ignore"):
+        height = np.sqrt((radius - half) * (radius + half))
+    return (places[..., 0] + places[..., 1]) / 2 + 1j * side * height * way / (2 * half)
+
+
+def by_turn(poses: Poses, turn: Any, branch: int) -> Dyads:
+    """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none."""
+    places, angles = np.asarray(poses.places, COMPLEX), np.asarray(poses.angles, EXACT)
+    d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
+    d2, d3, d4 = (
+        a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1], a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
+        a[..., 0] * d[..., 1] - a[..., 1] * d[..., 0],
+    )  # fmt: skip
+    second = unit(turn)
+    rest = d2 + d3 + d4 - d2 * second
+    with np.errstate(all="ignore"):
+        cosine = (np.abs(rest) ** 2 + np.abs(d3) ** 2 - np.abs(d4) ** 2) / (2 * np.abs(rest) * np.abs(d3))
+        sine = np.sqrt((1 - cosine) * (1 + cosine)) * (1 if branch == 0 else -1)
+        third = rest / np.abs(rest) * (cosine + 1j * sine) * np.abs(d3) / d3
+        least = (second - 1) * a[..., 1] - (third - 1) * a[..., 0]
+        w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least
+        z = ((second - 1) * d[..., 1] - (third - 1) * d[..., 0]) / least
+    pin = -z * unit(-angles[..., 0])
+    return Dyads(places[..., 0] - z - w, pin)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Of four-bars ABCD driven by AB: number of the defect in DEFECTS, least transmission angle (rad) on the way from
+    the first to the last position, the sense of turning, the way (rad, signed), the angle of AB from AD in position 1
+    and that (from AD) where transmission is least.
+    """
+
+    defect: Any
+    least: Any
+    way: Any
+    start: Any
+    worst: Any
+
+
+def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
+    """Marks of the four-bars of dyads AB and DC (broadcast together)."""
+    b, c = poses.on_frame(first.pin), poses.on_frame(second.pin)
+    a, d = np.asarray(first.pivot)[..., None], np.asarray(second.pivot)[..., None]
+    b, c, a, d = (np.asarray(x, complex) for x in (b, c, a, d))
+    with np.errstate(all="ignore"):
+        l1, l2, l3, l4 = (np.abs(x)[..., 0] for x in (b - a, c - b, c - d, d - a))
+        phi = np.angle((b - a) / (d - a))
+        steps = np.mod(np.diff(phi, axis=-1), 2 * np.pi)
+        sides = np.sign(((c - b) * np.conj(c - d)).imag)
+    branch = np.any(sides != sides[..., :1], axis=-1)
+    found = []
+    for way in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
+        low, high = phi[..., 0] + np.minimum(way, 0), phi[..., 0] + np.maximum(way, 0)
+        places = [low, high]
+        for line in (0.0, np.pi):
+            there = line + 2 * np.pi * np.ceil((low - line) / (2 * np.pi))
+            places.append(np.where(there <= high, there, low))
+        with np.errstate(all="ignore"):
+            cosines = [(l2**2 + l3**2 - l1**2 - l4**2 + 2 * l1 * l4 * np.cos(x)) / (2 * l2 * l3) for x in places]
+        size = np.abs(np.stack(cosines, -1))
+        worst = np.argmax(np.where(np.isnan(size), np.inf, size), -1)[..., None]
+        largest = np.take_along_axis(size, worst, -1)[..., 0]
+        where = np.take_along_axis(np.stack(places, -1), worst, -1)[..., 0]
+        locks = ~(largest < 1)
+        turned = np.abs(way) >= 2 * np.pi
+        defect = np.where(branch, 1, np.where(turned, 2, np.where(locks, 3, 0)))
+        found.append((defect, np.arccos(np.clip(largest, 0, 1)), way, where))
+    one, other = found
+    better = (one[0] < other[0]) | ((one[0] == other[0]) & (one[1] >= other[1]))
+    defect, least, way, where = (np.where(better, x, y) for x, y in zip(one, other, strict=True))
+    return Marks(defect, least, way, phi[..., 0], where)

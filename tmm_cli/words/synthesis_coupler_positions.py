@@ -1,0 +1,59 @@
+"""Words of the synthesis of a four-bar by positions of its coupler."""
+
+_W = "synthesis_coupler_positions"
+
+WORDS: dict[str, str] = {
+    f"{_W}.l1": "driver l1 = AB",
+    f"{_W}.l2": "coupler l2 = BC",
+    f"{_W}.l3": "follower l3 = DC",
+    f"{_W}.l4": "frame l4 = AD",
+    f"{_W}.phi1": "angle of AB in position 1",
+    f"{_W}.AB": "length AB",
+    f"{_W}.DC": "length DC",
+    f"{_W}.AB_turn": "turn of AB from position 1 to 2",
+    f"{_W}.DC_turn": "turn of DC from position 1 to 2",
+    f"{_W}.transmission": "least transmission angle on the way",
+    f"{_W}.way": "turn of AB from the first to the last position",
+    f"{_W}.defect": "defects",
+    f"{_W}.sound": "none: all positions on one assembly, reached in order",
+    f"{_W}.branch": "branch: some positions are on the other assembly",
+    f"{_W}.turns_back": "order: the driver must turn back between positions",
+    f"{_W}.locks": "circuit: the driver locks on the way",
+    f"{_W}.source_2": "pivots on the bisector of the two places of a pin, at the link's length",
+    f"{_W}.source_3": "pivots in the centre of the circle through the three places of a pin; pins for given pivots "
+    "likewise, the coupler held (inversion)",
+    f"{_W}.source_4": "pins on the circle-point curve and pivots on the centre-point curve of four positions "
+    "(Burmester), by W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1",
+    f"{_W}.construction": "Pivots on the bisectors of the places of the pins",
+    f"{_W}.construction_4": "Four positions: pivots on the centre-point curve, pins on the circle-point curve",
+    f"{_W}.bisectors": "dashed: bisectors",
+    f"{_W}.curves": "bold: centre points m; dashed: circle points k1, in position 1",
+    f"{_W}.still": "{point} does not move between these positions, or not against the coupler: it is the pole",
+    f"{_W}.elsewhere": "another {point}",
+    f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",
+    f"{_W}.off_line": "another {point}, or a slider instead of the link",
+    f"{_W}.short": "{name} does not reach both places",
+    f"{_W}.longer": "{name} more than {length}",
+    f"{_W}.no_turn": "no link through the four positions turns by this angle from the first to the second",
+    f"{_W}.nearest_turn": "{turn}",
+    f"{_W}.other_positions": "other positions",
+    f"{_W}.no_curve": "Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)",
+    f"{_W}.has_branch": "branch defect: some positions are on the other assembly of the four-bar",
+    f"{_W}.has_turns_back": "order defect: AB does not reach the positions in order by turning one way",
+    f"{_W}.has_locks": "circuit defect: AB locks on the way between the positions",
+    f"{_W}.swap": "DC as the driver (exchange A with D and B with C), or defects: keep",
+    f"{_W}.sides": "AB_side: {one}, DC_side: {other}; or defects: keep",
+    f"{_W}.other_points": "other points, or defects: keep",
+}
+for _point, _text in {
+    "A": "pivot A",
+    "D": "pivot D",
+    "C": "pin C in position 1",
+    "P": "P of the coupler, from B",
+}.items():
+    WORDS |= {f"{_W}.{_point}{_axis}": f"{_text}: {_axis}" for _axis in "xy"}
+for _point, _text in {"A": "pivot A", "D": "pivot D", "B": "B in the coupler", "C": "C in the coupler"}.items():
+    WORDS |= {f"{_W}.{_point}_{_axis}": f"{_text}: {_axis}" for _axis in "xy"}
+for _number in range(1, 5):
+    WORDS |= {f"{_W}.{_axis}{_number}": f"position {_number}: {_axis} of P" for _axis in "xy"}
+    WORDS[f"{_W}.angle{_number}"] = f"position {_number}: angle of the coupler"
