@@ -163,9 +163,10 @@ FOUR = "[[0, 0, 0], [60, 40, 15], [110, 100, 35], [130, 170, 60]]"
 
 @pytest.mark.parametrize("block", [
     "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]",
-    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [0, 120], C: [50, 0]",
+    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [-150, 150], C: [50, 0]",
+    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [0, 300], D: [-50, 300]",
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 60",
-    f"positions: {FOUR}", f"positions: {FOUR}, AB_turn: -12",
+    f"positions: {FOUR}", f"positions: {FOUR}, AB_turn: 10", f"positions: {FOUR}, DC_turn: 40, DC_branch: 2",
 ])  # fmt: skip
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block)
@@ -211,6 +212,12 @@ REFUSED = {
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
         "  found:   a list of 2\n  allowed: another B",
+    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right":
+        "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
+        "  found:   a list of 2\n  allowed: DC as the driver (exchange A with D and B with C), or defects: keep",
+    f"positions: {FOUR}, AB_turn: 20":
+        "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
+        "  found:   a list of 4\n  allowed: other points, or defects: keep",
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
         "  allowed: different positions",
