@@ -217,7 +217,14 @@ REFUSED = {
         "  found:   a list of 2\n  allowed: DC as the driver (exchange A with D and B with C), or defects: keep",
     f"positions: {FOUR}, AB_turn: 20":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 4\n  allowed: other points, or defects: keep",
+        "  found:   a list of 4\n  allowed: other points or turns, or defects: keep",
+    "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
+        "synthesis.C: B and C are one point: that is no four-bar\n  found:   a list of 2\n  allowed: two points",
+    "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
+        "synthesis.C: B and C are one point: that is no four-bar\n",
+    "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]":
+        "synthesis.positions: Burmester's curves have no links of sensible length (0.15 to 2 times the size of the "
+        "task)\n  found:   a list of 4\n  allowed: other positions",
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
         "  allowed: different positions",
@@ -238,3 +245,17 @@ def test_the_nearest_turn_that_is_told_has_a_link():
         except ProblemError as error:
             told = str(error).partition("allowed: ")[2].partition(" deg")[0]
             problem(f"positions: {FOUR}, AB_turn: {told}, defects: keep")
+
+
+def test_more_digits_come_from_more_digits():
+    found = problem(f"positions: {FOUR}, AB_turn: 10, DC_turn: 5").extended().linkage
+    pivots = [np.clongdouble(found.links["0"].points[name]) for name in "AD"]
+    local = found.links["2"].points
+    turns = np.longdouble("3.14159265358979323846264338327950288") / 180 * np.array([0, 15, 35, 60])
+    poses = Poses(np.array([0, 60 + 40j, 110 + 100j, 130 + 170j], np.clongdouble) / 1000, turns)
+    if np.finfo(np.longdouble).eps > 1e-18:
+        return
+    for pivot, turn in zip(pivots, (10, 5), strict=True):
+        truth = by_turn(poses, turns[1] / 15 * turn, 0).pivot
+        assert abs(pivot - truth) < 1e-17
+    assert abs(local["C"].imag) == 0

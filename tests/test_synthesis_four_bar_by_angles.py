@@ -200,6 +200,9 @@ REFUSED = {
         "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2":
         "synthesis.choose: there is no solution of this number\n  found:   2\n  allowed: 1 to 1",
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2":
+        "synthesis.choose: branch defect: this solution has some pairs on its other assembly\n"
+        "  found:   2\n  allowed: another number; or choose: transmission; or defects: keep",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
         "synthesis.l4: there is no such link\n  found:   -100\n  allowed: more than zero",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":

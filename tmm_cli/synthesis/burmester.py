@@ -3,9 +3,10 @@
 Positions: places P (complex, m) of the plane's origin and angles theta (rad) of its axis. A dyad AB has its pivot A on
 the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point curve and A on
 the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); by the turn beta2 of AB from position 1 to 2,
-    W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,  W = AB, Z = BP in position 1, alpha_j = theta_j - theta_1,
-whose determinant is a closed four-bar of the unknown turns (G. N. Sandor, A. G. Erdman, Advanced Mechanism
-Design 2, 1984). Extended precision throughout; leading axes are many dyads or tasks.
+    W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,
+W = AB and Z = BP in position 1, alpha_j = theta_j - theta_1; its determinant is a closed four-bar of the unknown turns
+(G. N. Sandor, A. G. Erdman, Advanced Mechanism Design 2, 1984). Extended precision throughout; leading axes are many
+dyads or tasks.
 """
 
 from __future__ import annotations

@@ -169,12 +169,16 @@ def _refuse(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
                 if int(marks(asked.poses, dyad(tried, "AB"), dyad(tried, "DC")).defect) == 0:
                     values = {"one": (first, "word"), "other": (second, "word")}
                     raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.sides", values)
-    raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.other_points")
+    free = len(asked.places) == 4 and not asked.sides
+    raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.{'other_positions' if free else 'other_points'}")
 
 
 def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
     one, other = both(asked)
+    for key, names, gap in (("C", "B and C", one.pin - other.pin), ("D", "A and D", one.pivot - other.pivot)):
+        if not abs(gap) > SAME * asked.size:
+            raise Infeasible(key, f"{W}.one_point", f"{W}.two_points", {"names": (names, "word")})
     mark = marks(asked.poses, one, other)
     defect = DEFECTS[int(mark.defect)]
     if defect and not asked.keep:

@@ -221,6 +221,8 @@ def solve(asked: Asked) -> Outcome:
     if at >= len(found):
         raise Infeasible("choose", f"{W}.number", f"{W}.numbers", {"count": (str(len(found)), "word")})
     one, mark = found[at], quality(found[at], asked)
+    if mark.defect and not asked.keep:
+        raise Infeasible("choose", f"{W}.its_{mark.defect}", f"{W}.another")
     name = next(iter(asked.lengths))
     size = asked.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
     phi, psi = one.phi0 + asked.phi[0], one.psi0 + asked.psi[0]

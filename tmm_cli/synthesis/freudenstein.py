@@ -146,8 +146,8 @@ def bars(values: Any, phi: Any, psi: Any) -> Bars:
     with np.errstate(all="ignore"):
         l1, l3 = 1 / np.abs(p), 1 / np.abs(q)
         phi0, psi0 = _wrapped(phi0 + half * (p < 0)), _wrapped(psi0 + half * (q < 0))
-    b, c = Bars(l1, l1, l3, phi0, psi0).pins(phi[..., 0], psi[..., 0])
-    return Bars(l1, np.abs(c - b), l3, phi0, psi0)
+        b, c = Bars(l1, l1, l3, phi0, psi0).pins(phi[..., 0], psi[..., 0])
+        return Bars(l1, np.abs(c - b), l3, phi0, psi0)
 
 
 def solutions(phi: Any, psi: Any, phi0: float | None = 0.0, psi0: float | None = 0.0) -> Bars:

@@ -32,6 +32,8 @@ WORDS: dict[str, str] = {
     f"{_W}.elsewhere": "another {point}",
     f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",
     f"{_W}.off_line": "another {point}, or a slider instead of the link",
+    f"{_W}.one_point": "{names} are one point: that is no four-bar",
+    f"{_W}.two_points": "two points",
     f"{_W}.short": "{name} does not reach both places",
     f"{_W}.longer": "{name} more than {length}",
     f"{_W}.no_turn": "no link through the four positions turns by this angle from the first to the second",
@@ -43,7 +45,7 @@ WORDS: dict[str, str] = {
     f"{_W}.has_locks": "circuit defect: AB locks on the way between the positions",
     f"{_W}.swap": "DC as the driver (exchange A with D and B with C), or defects: keep",
     f"{_W}.sides": "AB_side: {one}, DC_side: {other}; or defects: keep",
-    f"{_W}.other_points": "other points, or defects: keep",
+    f"{_W}.other_points": "other points or turns, or defects: keep",
 }
 for _point, _text in {
     "A": "pivot A",

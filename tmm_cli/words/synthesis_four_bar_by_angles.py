@@ -48,6 +48,9 @@ WORDS: dict[str, str] = {
     f"{_W}.nearest_alone": "the last output angle {psi}",
     f"{_W}.other_alone": "other angles; nothing within 60 deg of the last output angle helps",
     f"{_W}.reversed": "a zero angle is half a turn from the given one: in the given sense there is no such link",
+    f"{_W}.its_branch": "branch defect: this solution has some pairs on its other assembly",
+    f"{_W}.its_locks": "order defect: the input of this solution locks on the way",
+    f"{_W}.another": "another number; or choose: transmission; or defects: keep",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
 }
