@@ -15,6 +15,8 @@ TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name
     "crank-slider": "crank_slider",
     "grashof": "grashof",
     "four-bar-by-k": "four_bar_by_k",
+    "slotted-lever": "slotted_lever",
+    "shaper": "shaper",
 }
 
 

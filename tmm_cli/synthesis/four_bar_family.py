@@ -1,4 +1,4 @@
-"""Drawings of the four-bars by k: the circles with their admissible arcs, link lengths and pressure angle along them."""
+"""Drawings of the four-bars by k: circles with their admissible arcs, link lengths and pressure angle along them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from tmm_cli.synthesis.construction import Arc, Construction, Curve, Diagram, Li
 
 W: Final = "synthesis_four_bar_by_k"
 SHEET: Final = 2.5  # how far from C1C2 an arc is drawn, in sizes of the mechanism
+ROOM: Final = 1.6  # the largest circle that has room whole, in the same
 LONGEST: Final = 4.0  # rods longer than this many of the chosen one (and of the rocker) are not on the diagrams
 
 
@@ -32,7 +33,8 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
     middle, size = (c1 + c2) / 2, float(max(asked.l3, found.l1 + found.l2, found.l4))
     arcs = [Arc(a, float(found.l1), 0.0, 2 * np.pi, "dashed")]
     theta, half = float(asked.theta), abs(c2 - c1) / 2
-    if theta > 0 and half / np.sin(theta) < size:
+    circles = theta > 0 and half / np.sin(theta) < ROOM * size
+    if circles:
         out = (middle - d) / abs(middle - d)
         for f in family:
             side = int(f.side)
@@ -48,9 +50,8 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
     for f in family:
         places = [complex(z) for z in f.a if abs(z - middle) < SHEET * size]
         curves.append(Curve(tuple(places), "bold"))
-    return Construction(
-        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.bold", f"{W}.angles"), tuple(curves)
-    )
+    notes = (f"{W}.bold", f"{W}.angles") if circles else (f"{W}.bold",)
+    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), notes, tuple(curves))
 
 
 def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Diagram]:

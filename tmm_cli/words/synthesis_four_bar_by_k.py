@@ -32,8 +32,8 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.choose_l4": "by the length of the frame",
     "synthesis_four_bar_by_k.choose_near": "nearest to a given place",
     "synthesis_four_bar_by_k.crank_turns": "crank turns fully (1: yes)",
-    "synthesis_four_bar_by_k.source": "circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); "
-    "l1 = (AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD",
+    "synthesis_four_bar_by_k.source": "circle through C1 and C2 on which C1C2 is seen under theta = "
+    "pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD",
     "synthesis_four_bar_by_k.construction": "Extreme positions of the rocker, and the circles on which C1C2 is seen "
     "under theta",
     "synthesis_four_bar_by_k.bold": "bold: where A may be",
