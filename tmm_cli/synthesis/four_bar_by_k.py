@@ -2,7 +2,8 @@
 
 C1C2 = 2 h is seen from A under theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's side of
 C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a place along the arc that theta = 0 does not spoil:
-    sin(beta + theta/2) = w sin(theta/2),  l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
+    sin(beta + theta/2) = w sin(theta/2),
+    l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
 The triangles A C1 D and A C2 D make the crank turn fully; both positions belong to one motion when C1 and C2 lie on one
 side of AD, so that the rocker does not pass its dead position, and AC2 > AC1 is the order of the positions:
     0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
@@ -11,6 +12,7 @@ Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
@@ -133,53 +135,60 @@ def places(asked: Asked, side: int, count: int = 400) -> Any:
     return np.unique(np.clip(np.concatenate((by_ratio, by_angle)), *ends))
 
 
+def _pressure(found: Found, _: Asked) -> Any:
+    return found.pressure
+
+
+def _away(found: Found, asked: Asked) -> Any:
+    return np.abs(found.a - asked.near)
+
+
+EQUATIONS: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {  # what vanishes at the pivot that is asked for
+    "l4": lambda found, asked: found.l4 - asked.l4,
+    "level": lambda found, asked: np.imag(found.a - asked.support),
+}
+
+
 def _crossings(asked: Asked, side: int, function: Any) -> list[Any]:
     """Where a function of what is found vanishes along an arc."""
     w = places(asked, side)
-    values = function(at(asked, w, side))
+    values = function(at(asked, w, side), asked)
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
     if not here.size:
         return []
-    return list(roots(lambda x: function(at(asked, x, side)), w[here], w[here + 1]))
+    return list(roots(lambda x: function(at(asked, x, side), asked), w[here], w[here + 1]))
 
 
 def _best(asked: Asked, side: int, function: Any) -> Any:
     """Where a function of what is found is least along an arc."""
     w = places(asked, side)
-    here = int(np.argmin(function(at(asked, w, side))))
+    here = int(np.argmin(function(at(asked, w, side), asked)))
     low, high = w[max(here - 1, 0)], w[min(here + 1, len(w) - 1)]
-    return least(lambda x: function(at(asked, x, side)), low, high)[0]
+    return least(lambda x: function(at(asked, x, side), asked), low, high)[0]
 
 
 def _plain(asked: Asked) -> Asked:
     """The same in ordinary precision, for searching; the answer is polished in that of the data."""
-    numbers = {n: float(v) for n, v in vars(asked).items() if n in ("l3", "psi1", "psi2", "k", "l4") and v is not None}
-    spots = {n: complex(v) for n, v in vars(asked).items() if n in ("support", "near") and v is not None}
-    return replace(asked, **numbers, **spots)
+    plain: dict[str, Any] = {
+        name: complex(value) if name in ("support", "near") else float(value)
+        for name, value in vars(asked).items() if value is not None and name not in ("choose", "sense")
+    }  # fmt: skip
+    return replace(asked, **plain)
 
 
 def choose(asked: Asked) -> Found:
     """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible."""
     plain = _plain(asked)
-    equation: Any = None
-    if asked.choose == "l4":
-
-        def equation(f: Found, task: Asked = plain) -> Any:
-            return f.l4 - task.l4
-    elif asked.choose == "level":
-
-        def equation(f: Found, task: Asked = plain) -> Any:
-            return np.imag(f.a - task.support)
-
+    equation = EQUATIONS.get(asked.choose)
     if equation is None:
-        goal = (lambda f: f.pressure) if asked.choose == "best" else (lambda f: np.abs(f.a - plain.near))
+        goal = _pressure if asked.choose == "best" else _away
         found = [(_best(plain, side, goal), side) for side in arcs(plain)]
     else:
-        goal = lambda f: f.pressure  # noqa: E731
+        goal = _pressure
         found = [(w, side) for side in arcs(plain) for w in _crossings(plain, side, equation)]
     if not found:
         _not_there(plain)
-    w, side = min(found, key=lambda one: float(goal(at(plain, *one))))
+    w, side = min(found, key=lambda one: float(goal(at(plain, *one), plain)))
     if equation is not None:
         for _ in range(3):  # the same in the precision of the data
             f = at(asked, w, side)
