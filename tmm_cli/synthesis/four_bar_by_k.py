@@ -26,7 +26,7 @@ from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, 
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.vectors import pi
 
-PARAMETERS: Final = {"l1": "length", "l2": "length", "l4": "length", "xA": "length", "yA": "length"}
+PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 W: Final = "synthesis_four_bar_by_k"
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
@@ -167,6 +167,12 @@ def _best(asked: Asked, side: int, function: Any) -> Any:
     return least(lambda x: function(at(asked, x, side), asked), low, high)[0]
 
 
+def inside(asked: Asked, w: Any, side: int) -> bool:
+    """Whether a place is not one of the ends of an arc."""
+    ends = places(asked, side)[[0, -1]]
+    return bool(ends[0] + 2 * (ends[0] - 1) < w < ends[1] * (1 - END))
+
+
 def _plain(asked: Asked) -> Asked:
     """The same in ordinary precision, for searching; the answer is polished in that of the data."""
     plain: dict[str, Any] = {
@@ -189,6 +195,10 @@ def choose(asked: Asked) -> Found:
     if not found:
         _not_there(plain)
     w, side = min(found, key=lambda one: float(goal(at(plain, *one), plain)))
+    if asked.choose == "near" and not inside(plain, w, side):
+        middle = at(plain, *((_best(plain, side, _pressure), side) if plain.k > 1 else (3.0, side)))
+        values = {"x": (middle.a.real, "length"), "y": (middle.a.imag, "length")}
+        raise Infeasible("near", f"{W}.near_end", f"{W}.near_inside", values)
     if equation is not None:
         for _ in range(3):  # the same in the precision of the data
             f = at(asked, w, side)
@@ -204,11 +214,11 @@ def _not_there(asked: Asked) -> None:
         offsets = np.concatenate([np.imag(at(asked, places(asked, s), s).a - asked.support) for s in arcs(asked)])
         nearest = float(offsets[np.argmin(np.abs(offsets))])
         raise Infeasible("choose", f"{W}.level_none", f"{W}.level_nearest", {"offset": (nearest, "length")})
-    values: dict[str, tuple[Any, str]] = {}
-    for number, side in enumerate(arcs(asked)):
-        ends = sorted([float(asked.l3), float(at(asked, places(asked, side)[-1], side).l4)])
-        values |= {f"low{number}": (ends[0], "length"), f"high{number}": (ends[1], "length")}
-    raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range{len(values) // 2}", values)
+    l3 = float(asked.l3)
+    ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
+    values = {"low": (min(ends), "length"), "high": (max(ends), "length"), "l3": (l3, "length")}
+    inner = min(ends) < l3 < max(ends)  # there A would be C1
+    raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
 
 
 def refuse(asked: Asked) -> None:
@@ -230,7 +240,7 @@ def refuse(asked: Asked) -> None:
         most = np.pi / 2 - half
         raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most", {"k": (float(k_of(most)), "number")})
     if theta == 0 and asked.choose == "best":
-        raise Infeasible("choose", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
+        raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
 
 
 def solve(asked: Asked) -> Outcome:
@@ -244,7 +254,9 @@ def solve(asked: Asked) -> Outcome:
     given.append(Value("", None, "word", f"{W}.choose", f"{W}.choose_{asked.choose}"))
     lengths = {"l1": f.l1, "l2": f.l2, "l4": f.l4, "xA": np.real(f.a), "yA": np.imag(f.a)}
     found = [Value(name, value, "length", f"{W}.{name}") for name, value in lengths.items()]
+    at_c2 = asked.support + asked.l3 * (np.cos(asked.psi2) + 1j * np.sin(asked.psi2)) - f.a
     found += [
+        Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", f"{W}.phi2"),
         Value("", asked.theta, "angle", f"{W}.theta"),
         Value("", f.beta, "angle", f"{W}.beta"),
         Value("", None, "word", f"{W}.side", f"{W}.side_{'beyond' if f.side > 0 else 'inside'}"),

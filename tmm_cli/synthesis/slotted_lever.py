@@ -19,7 +19,7 @@ from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
-PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length")
+PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
 
 
@@ -135,7 +135,9 @@ def solve(asked: Asked) -> Outcome:
         "yC": np.imag(f.c),
     }  # fmt: skip
     found = [Value(name, value, "length", f"{W}.{name}") for name, value in lengths.items()]
+    away = f.o - f.c
     found += [
+        Value("phi", np.arctan2(np.imag(away), np.real(away)), "angle", f"{W}.phi"),
         Value("", f.theta, "angle", f"{W}.theta"),
         Value("", f.frame - f.crank, "length", f"{W}.nearest"),
         Value("", f.frame + f.crank, "length", f"{W}.farthest"),

@@ -8,6 +8,7 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.lengths": "length",
     "synthesis_four_bar_by_k.xA": "pivot A of the crank, x",
     "synthesis_four_bar_by_k.yA": "pivot A of the crank, y",
+    "synthesis_four_bar_by_k.phi2": "crank at C2, in line with the coupler",
     "synthesis_four_bar_by_k.psi1": "rocker at C1 (crank over the coupler) psi1",
     "synthesis_four_bar_by_k.psi2": "rocker at C2 (crank in line with the coupler) psi2",
     "synthesis_four_bar_by_k.k": "k",
@@ -61,8 +62,10 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.best_others": "l4, near or supports level; a pressure angle of more than {pressure}",
     "synthesis_four_bar_by_k.level_none": "no pivot of the admissible arcs is as high as D",
     "synthesis_four_bar_by_k.level_nearest": "best transmission, l4 or near; at best A is {offset} higher than D",
+    "synthesis_four_bar_by_k.near_end": "the nearest place of the admissible arcs is an end of them, where the rocker "
+    "is dead",
+    "synthesis_four_bar_by_k.near_inside": "a place beside an arc, such as x = {x}, y = {y}",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
-    "synthesis_four_bar_by_k.l4_range1": "more than {low0} and less than {high0}",
-    "synthesis_four_bar_by_k.l4_range2": "more than {low0} and less than {high0}, or more than {low1} and less than "
-    "{high1}",
+    "synthesis_four_bar_by_k.l4_range": "more than {low} and less than {high}",
+    "synthesis_four_bar_by_k.l4_range_but": "more than {low} and less than {high}, other than {l3}",
 }

@@ -21,6 +21,7 @@ WORDS: dict[str, str] = {
     "synthesis_slotted_lever.yO": "hinge O of the crank, y",
     "synthesis_slotted_lever.xC": "hinge C of the lever, x",
     "synthesis_slotted_lever.yC": "hinge C of the lever, y",
+    "synthesis_slotted_lever.phi": "direction from C to O, of crank and lever when they are in line",
     "synthesis_slotted_lever.theta": "theta = B1CB2",
     "synthesis_slotted_lever.nearest": "stone from C, at least",
     "synthesis_slotted_lever.farthest": "stone from C, at most",

@@ -75,8 +75,9 @@ def _one_of(shape: Shape, sets: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
 
 def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
     for key, others in needs.items():
-        if getattr(shape, key) is not None and any(getattr(shape, other) is None for other in others):
+        lacking = [other for other in others if getattr(shape, other) is None]
+        if getattr(shape, key) is not None and lacking:
             raise ProblemError(
-                f"{key} goes with {' and '.join(others)} only", path=(key,), found=f"{key} without it",
-                allowed=f"{' and '.join(others)}, or no {key}", key=True,
+                f"{key} goes with {' and '.join(others)} only", path=(key,),
+                found=f"{key} without {' and '.join(lacking)}", allowed=f"{' and '.join(others)}, or no {key}", key=True,
             )  # fmt: skip
