@@ -348,3 +348,14 @@ def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
         assert choose(replace(one, choose="l4", l4=end - 1e-6)).l4 == pytest.approx(end - 1e-6, rel=1e-12)
     with pytest.raises(Infeasible):
         choose(replace(one, choose="l4", l4=end + 1e-6))
+
+
+def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
+    found = problem(", l4: 400", k=1)
+    outcome = found.synthesis.outcome
+    assert outcome.notes == ("synthesis_four_bar_by_k.line",)
+    for m in measured(outcome, solve(found, "kinematics")):
+        assert m.difference <= MET, m
+    assert refusal(", l4: 190", k=1) == (
+        ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: more than 200 mm"
+    )

@@ -243,7 +243,8 @@ REFUSED_LEVERS = {
     ),
     "CB: 500, k: 1.5, within: [450, 600]": (
         ".within: within these bounds the stone always passes B"
-        "\n  found:   a list of 2\n  allowed: a lower bound of 381.966 mm or less; or OC by itself, with the slot longer than CB"
+        "\n  found:   a list of 2\n  allowed: a lower bound of 381.966 mm or less; or OC by itself, "
+        "with the slot longer than CB"
     ),
     "CB: 500, k: 1.5, within: [300, 200]": (
         ".within: these are no bounds of a distance"

@@ -118,7 +118,9 @@ def at(asked: Asked, w: Any, side: Any) -> Found:
 
 
 def arcs(asked: Asked) -> list[int]:
-    """The sides whose arcs have pivots."""
+    """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
+    if asked.k == 1:
+        return [-1]
     way = 1 if asked.psi2 > asked.psi1 else -1
     return [side for side in SIDES if widest(asked, side) > 0 and asked.sense in (0, -side * way)]
 
@@ -215,6 +217,8 @@ def _not_there(asked: Asked) -> None:
         nearest = float(offsets[np.argmin(np.abs(offsets))])
         raise Infeasible("choose", f"{W}.level_none", f"{W}.level_nearest", {"offset": (nearest, "length")})
     l3 = float(asked.l3)
+    if asked.k == 1:
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length")})
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
     values = {"low": (min(ends), "length"), "high": (max(ends), "length"), "l3": (l3, "length")}
     inner = min(ends) < l3 < max(ends)  # there A would be C1
@@ -258,18 +262,12 @@ def solve(asked: Asked) -> Outcome:
     found += [
         Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", f"{W}.phi2"),
         Value("", asked.theta, "angle", f"{W}.theta"),
-        Value("", f.beta, "angle", f"{W}.beta"),
-        Value("", None, "word", f"{W}.side", f"{W}.side_{'beyond' if f.side > 0 else 'inside'}"),
-        Value("", None, "word", f"{W}.sense_is", f"{W}.{'ccw' if f.sense > 0 else 'cw'}"),
         Value("", f.pressure, "angle", f"{W}.pressure"),
     ]
     if asked.choose == "near":
         found.append(Value("", np.abs(f.a - asked.near), "length", f"{W}.away"))
-    for side in arcs(asked):
-        name = "beyond" if side > 0 else "inside"
-        last = at(_plain(asked), places(asked, side)[-1], side)
-        found.append(Value("", widest(asked, side), "angle", f"{W}.arc_{name}"))
-        found.append(Value("", last.l4 if asked.k > 1 else np.nan, "length", f"{W}.end_{name}"))
+    if asked.k > 1:
+        found += _on_arcs(asked, f)
     demands = [
         Demand(f"{W}.crank_turns", 1.0, "number", crank_turns, asked=False),
         Demand(f"{W}.k", float(asked.k), "number", ratio),
@@ -282,4 +280,20 @@ def solve(asked: Asked) -> Outcome:
     chosen = at(plain, float(f.w), f.side)
     family = [at(plain, places(plain, side), side) for side in arcs(plain)]
     drawings = (construction(plain, chosen, family), *diagrams(plain, chosen, family))
-    return Outcome(tuple(given), tuple(found), f"{W}.source", tuple(demands), drawings)
+    notes = () if asked.k > 1 else (f"{W}.line",)
+    return Outcome(tuple(given), tuple(found), f"{W}.source", tuple(demands), drawings, notes)
+
+
+def _on_arcs(asked: Asked, f: Found) -> list[Value]:
+    """Where the pivot stands, what that means for the crank, and how far the admissible arcs reach."""
+    values = [
+        Value("", f.beta, "angle", f"{W}.beta"),
+        Value("", None, "word", f"{W}.side", f"{W}.side_{'beyond' if f.side > 0 else 'inside'}"),
+        Value("", None, "word", f"{W}.sense_is", f"{W}.{'ccw' if f.sense > 0 else 'cw'}"),
+    ]
+    for side in arcs(asked):
+        name = "beyond" if side > 0 else "inside"
+        last = at(_plain(asked), places(asked, side)[-1], side)
+        values.append(Value("", widest(asked, side), "angle", f"{W}.arc_{name}"))
+        values.append(Value("", last.l4, "length", f"{W}.end_{name}"))
+    return values

@@ -59,7 +59,7 @@ def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Di
     most = LONGEST * max(float(found.l2), float(asked.l3))
     pressures, lengths = [], []
     for number, f in enumerate(family):
-        name = "beyond" if int(f.side) > 0 else "inside"
+        name = "line" if asked.k == 1 else "beyond" if int(f.side) > 0 else "inside"
         x = np.asarray(f.l2)
         kept = x <= most
         pressures.append(Line(f"{W}.pressure_{name}", x[kept], np.asarray(f.pressure)[kept]))

@@ -45,6 +45,9 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.pressure_beyond": "A beyond C1C2",
     "synthesis_four_bar_by_k.l4_inside": "frame l4, A on D's side of C1C2",
     "synthesis_four_bar_by_k.l4_beyond": "frame l4, A beyond C1C2",
+    "synthesis_four_bar_by_k.pressure_line": "A on the line C2C1 beyond C1",
+    "synthesis_four_bar_by_k.l4_line": "frame l4",
+    "synthesis_four_bar_by_k.line": "with k = 1 the circle is the line C1C2: A is any place of it beyond C1",
     "synthesis_four_bar_by_k.chosen": "chosen",
     "synthesis_four_bar_by_k.positive": "there is no such link",
     "synthesis_four_bar_by_k.more_than_zero": "more than zero",
@@ -67,5 +70,6 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.near_inside": "a place beside an arc, such as x = {x}, y = {y}",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "more than {low} and less than {high}",
+    "synthesis_four_bar_by_k.l4_range_line": "more than {low}",
     "synthesis_four_bar_by_k.l4_range_but": "more than {low} and less than {high}, other than {l3}",
 }

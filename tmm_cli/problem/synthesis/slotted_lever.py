@@ -79,5 +79,6 @@ def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
         if getattr(shape, key) is not None and lacking:
             raise ProblemError(
                 f"{key} goes with {' and '.join(others)} only", path=(key,),
-                found=f"{key} without {' and '.join(lacking)}", allowed=f"{' and '.join(others)}, or no {key}", key=True,
+                found=f"{key} without {' and '.join(lacking)}", allowed=f"{' and '.join(others)}, or no {key}",
+                key=True,
             )  # fmt: skip
