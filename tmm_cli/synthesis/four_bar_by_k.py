@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.roots import least, roots
+from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.four_bar_family import construction, diagrams
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
@@ -145,9 +145,29 @@ def _away(found: Found, asked: Asked) -> Any:
     return np.abs(found.a - asked.near)
 
 
-EQUATIONS: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {  # what vanishes at the pivot that is asked for
+def _rise(f: Found, asked: Asked) -> Any:
+    """Proportional to the rise of the sine of the largest pressure angle over w."""
+    half, theta, l3 = asked.swing / 2, asked.theta, asked.l3
+    h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
+    l1_rise = -f.w * (h * s / c) ** 2 / f.l1
+    l4_rise = np.real(np.conj(f.a - asked.support) * f.slope) / f.l4
+    found = []
+    for sign in (-1, 1):
+        reach = f.l4 + sign * f.l1
+        over = f.l2 * f.l2 + l3 * l3 - reach * reach
+        rise = 2 * (f.l2 * h - reach * (l4_rise + sign * l1_rise)) - over * h / f.l2
+        found.append((np.abs(over), np.sign(over) * rise))
+    (near, near_rise), (far, far_rise) = found
+    return np.where(near > far, near_rise, far_rise)[()]
+
+
+# what is least at the pivot that is asked for, and what vanishes there
+LEAST: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {"best": _pressure, "near": _away}
+EQUATIONS: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {
     "l4": lambda found, asked: found.l4 - asked.l4,
     "level": lambda found, asked: np.imag(found.a - asked.support),
+    "best": _rise,
+    "near": lambda found, asked: np.real(np.conj(found.a - asked.near) * found.slope),
 }
 
 
@@ -161,12 +181,14 @@ def _crossings(asked: Asked, side: int, function: Any) -> list[Any]:
     return list(roots(lambda x: function(at(asked, x, side), asked), w[here], w[here + 1]))
 
 
-def _best(asked: Asked, side: int, function: Any) -> Any:
-    """Where a function of what is found is least along an arc."""
+def _best(asked: Asked, side: int, choice: str) -> Any:
+    """Where something of what is found is least along an arc: where its slope vanishes, or an end of the arc."""
     w = places(asked, side)
-    here = int(np.argmin(function(at(asked, w, side), asked)))
-    low, high = w[max(here - 1, 0)], w[min(here + 1, len(w) - 1)]
-    return least(lambda x: function(at(asked, x, side), asked), low, high)[0]
+    here = int(np.argmin(LEAST[choice](at(asked, w, side), asked)))
+    if here in (0, len(w) - 1):
+        return w[here]
+    around = w[[here - 1]], w[[here + 1]]
+    return roots(lambda x: EQUATIONS[choice](at(asked, x, side), asked), *around)[0]
 
 
 def inside(asked: Asked, w: Any, side: int) -> bool:
@@ -187,27 +209,31 @@ def _plain(asked: Asked) -> Asked:
 def choose(asked: Asked) -> Found:
     """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible."""
     plain = _plain(asked)
-    equation = EQUATIONS.get(asked.choose)
-    if equation is None:
-        goal = _pressure if asked.choose == "best" else _away
-        found = [(_best(plain, side, goal), side) for side in arcs(plain)]
+    equation, goal = EQUATIONS[asked.choose], LEAST.get(asked.choose, _pressure)
+    if asked.choose in LEAST:
+        found = [(_best(plain, side, asked.choose), side) for side in arcs(plain)]
     else:
-        goal = _pressure
         found = [(w, side) for side in arcs(plain) for w in _crossings(plain, side, equation)]
     if not found:
         _not_there(plain)
     w, side = min(found, key=lambda one: float(goal(at(plain, *one), plain)))
-    if asked.choose == "near" and not inside(plain, w, side):
-        middle = at(plain, *((_best(plain, side, _pressure), side) if plain.k > 1 else (3.0, side)))
-        values = {"x": (middle.a.real, "length"), "y": (middle.a.imag, "length")}
-        raise Infeasible("near", f"{W}.near_end", f"{W}.near_inside", values)
-    if equation is not None:
-        for _ in range(3):  # the same in the precision of the data
-            f = at(asked, w, side)
-            away = f.a - asked.support
-            rate = np.real(np.conj(away) * f.slope) / f.l4 if asked.choose == "l4" else np.imag(f.slope)
-            w = w - equation(f, asked) / rate
+    if not inside(plain, w, side):
+        return _at_end(asked, w, side)
+    for _ in range(4):  # the same in the precision of the data
+        step = 1e-7 * (w - 1)
+        value, beyond = (equation(at(asked, x, side), asked) for x in (w, w + step))
+        w = w - step * value / (beyond - value)
     return at(asked, w, side)
+
+
+def _at_end(asked: Asked, w: Any, side: int) -> Found:
+    """At the ends of the arcs the rocker is dead; far away on an arc that is nearly straight it is not."""
+    plain = _plain(asked)
+    if asked.choose != "near":
+        return at(asked, w, side)
+    other = at(plain, _best(plain, side, "best") if plain.k > 1 else 3.0, side)
+    values = {"x": (other.a.real, "length"), "y": (other.a.imag, "length")}
+    raise Infeasible("near", f"{W}.near_end", f"{W}.near_inside", values)
 
 
 def _not_there(asked: Asked) -> None:
