@@ -21,6 +21,7 @@ from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
+STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,10 @@ def refuse(asked: Asked) -> None:
     if asked.k is not None and not asked.k > 1:
         values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number")}
         raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if asked.k < 1 else f"{W}.k_more", values)
-    if asked.swing is not None and not 0 < asked.swing < np.pi:
+    if asked.k is not None and not np.pi - asked.theta > STRAIGHT:
+        values = {"k": (float(k_of(np.pi - STRAIGHT)), "number")}
+        raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
+    if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
         raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed")
     for name, value in (("CB", asked.length), ("OC", asked.frame)):
         if value is not None and not value > 0:
