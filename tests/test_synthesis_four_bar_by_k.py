@@ -253,85 +253,33 @@ def refusal(more, **angles):
 
 
 REFUSED = [
-    (
-        ", near: [-300, -40]",
-        {},
-        ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
-        "a list of 2",
-        "a place beside an arc, such as x = 254.885 mm, y = 52.6479 mm",
-    ),
-    (
-        "",
-        {"k": 5},
-        ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position",
-        "5",
-        "k less than 4.76, or a swing of more than 60 deg",
-    ),
-    (
-        "",
-        {"k": 0.8},
-        ".k: k is the time of the working stroke over that of the idle one, the shorter",
-        "0.8",
-        "1 or more; 1.25 for the same strokes",
-    ),
-    (
-        "",
-        {"k": 1},
-        ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
-        "1",
-        "l4, near or supports level; a pressure angle of more than 27.5 deg",
-    ),
-    (
-        "",
-        {"psi2": "50 deg"},
-        ".psi2: a rocker swings by more than zero and less than 180 deg",
-        "'psi2'",
-        "psi2 other than psi1 = 50 deg, and less than 180 deg from it",
-    ),
-    (
-        ", l4: 900",
-        {},
-        ".l4: no pivot of the admissible arcs is at this distance from D",
-        "900",
-        "more than 200 mm and less than 672.67 mm",
-    ),
-    (
-        ", l4: 100",
-        {},
-        ".l4: no pivot of the admissible arcs is at this distance from D",
-        "100",
-        "more than 200 mm and less than 672.67 mm",
-    ),
-    (", l4: -3", {}, ".l4: there is no such link", "-3", "more than zero"),
-    (
-        ", l4: 900, turns: ccw",
-        {},
-        ".l4: no pivot of the admissible arcs is at this distance from D",
-        "900",
-        "more than 200 mm and less than 443.24 mm",
-    ),
-    (
-        ", turns: cw",
-        {"k": 2.6},
-        ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
-        "'cw'",
-        "the other sense, or k less than 2.06383",
-    ),
-    (
-        ", choose: supports level",
-        {"psi1": "80 deg", "psi2": "85 deg"},
-        ".choose: no pivot of the admissible arcs is as high as D",
-        "'supports level'",
-        "best transmission, l4 or near; at best A is 137.749 mm higher than D",
-    ),
-    (
-        ", l4: 300, choose: supports level",
-        {},
-        ": the pivot A is chosen in one way",
-        "choose and l4",
-        "one of choose, l4, near",
-    ),
-]
+    (", near: [-300, -40]", {},
+     ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
+     "a list of 2", "a place beside an arc, such as x = 254.885 mm, y = 52.6479 mm"),
+    ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position",
+     "5", "k less than 4.76, or a swing of more than 60 deg"),
+    ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
+     "0.8", "1 or more; 1.25 for the same strokes"),
+    ("", {"k": 1}, ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
+     "1", "l4, near or supports level; a pressure angle of more than 27.5 deg"),
+    ("", {"psi2": "50 deg"}, ".psi2: a rocker swings by more than zero and less than 180 deg",
+     "'psi2'", "psi2 other than psi1 = 50 deg, and less than 180 deg from it"),
+    (", l4: 900", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+     "900", "more than 200 mm and less than 672.67 mm"),
+    (", l4: 100", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+     "100", "more than 200 mm and less than 672.67 mm"),
+    (", l4: -3", {}, ".l4: there is no such link",
+     "-3", "more than zero"),
+    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+     "900", "more than 200 mm and less than 443.24 mm"),
+    (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
+     "'cw'", "the other sense, or k less than 2.06383"),
+    (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
+     ".choose: no pivot of the admissible arcs is as high as D",
+     "'supports level'", "best transmission, l4 or near; at best A is 137.749 mm higher than D"),
+    (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
+     "choose and l4", "one of choose, l4, near"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("more", "angles", "reason", "found", "allowed"), REFUSED)
@@ -359,3 +307,16 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     assert refusal(", l4: 190", k=1) == (
         ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: more than 200 mm"
     )
+
+
+def test_the_family_is_drawn_with_the_choice_on_it():
+    drawn = {d.name: d for d in problem("").synthesis.outcome.drawings}
+    assert set(drawn) == {"construction", "family-pressure", "family-lengths"}
+    theta = math.pi * 0.2 / 2.2
+    c1, c2 = (0.03 - 0.02j + 0.2 * np.exp(1j * math.radians(psi)) for psi in (50, 105))
+    assert len(drawn["construction"].curves) == 2
+    for curve in drawn["construction"].curves:
+        seen = [abs(np.angle((c2 - a) / (c1 - a))) for a in curve.places if abs(a - c1) > 1e-4]
+        assert seen == pytest.approx(np.full(len(seen), theta), rel=1e-9)
+    *both, chosen = drawn["family-pressure"].lines
+    assert float(chosen.y[0]) == pytest.approx(min(float(np.min(line.y)) for line in both), rel=1e-4)
