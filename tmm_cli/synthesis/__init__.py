@@ -16,6 +16,9 @@ TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name
     "grashof": "grashof",
     "four-bar-by-angles": "four_bar_by_angles",
     "coupler-positions": "coupler_positions",
+    "four-bar-by-k": "four_bar_by_k",
+    "slotted-lever": "slotted_lever",
+    "shaper": "shaper",
 }
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from tmm_cli.linkage import FRAME
+
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
 
@@ -43,3 +45,22 @@ def mean_speed(results: Results) -> float:
 def crank_turns(results: Results) -> float:
     """1 when the driver turns fully, else 0."""
     return float(results.way is not None and results.way.full)
+
+
+def end_angle(results: Results, near: float) -> float:
+    """The angle (rad) of a swinging output from its hinge on the frame, at the end of a stroke nearest to `near`.
+
+    It is that of the line from that hinge to the first other point of the link.
+    """
+    strokes, linkage = results.strokes, results.linkage
+    if strokes is None or not strokes.strokes or strokes.kind != "swing":
+        return NONE
+    points = linkage.links[strokes.link].points
+    fixed = next((h.point for h in linkage.hinges if {FRAME, strokes.link} <= set(h.links)), None)
+    other = next((name for name in points if name != fixed), None)
+    if fixed is None or other is None:
+        return NONE
+    arm = points[other] - points[fixed]
+    turn = math.atan2(arm.imag, arm.real)
+    ends = [turn + end - near for s in strokes.strokes for end in (s.low, s.low + s.run)]
+    return near + min((math.remainder(away, math.tau) for away in ends), key=abs)

@@ -1,0 +1,319 @@
+"""Slotted levers and crank shapers by k and their extreme positions: what was asked comes back, the rest is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_synthesis_crank_slider import MET
+
+from tmm_cli import solve
+from tmm_cli.batch import prepare
+from tmm_cli.linkage import FRAME, Sketch
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.roots import roots
+from tmm_cli.synthesis import shaper, slotted_lever
+from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.crank_slider import k_of
+
+LEVER = """
+points: {O: [xO, yO], C: [xC, yC]}
+links:
+  1: {points: [O, A], length: OA}
+  2: {points: [A], slides: {on: 3, along: CB}}
+  3: {points: [C, B], length: CB}
+driver: {link: 1, speed: 2 rad/s, turns: SENSE}
+sketch: {at: phi, B: [xC + CB*cos(phi), yC + CB*sin(phi)]}
+output: 3
+"""
+SHAPER = """
+points: {O: [0, 0], C: [0, -OC]}
+guides: {x: {through: [0, y], angle: 0}}
+links:
+  1: {points: [O, A], length: OA}
+  2: {points: [A], slides: {on: 3, along: CD}}
+  3: {points: [C, D], length: CD}
+  4: {points: [D, E], length: DE}
+  5: {points: [E], slides: {on: x}}
+driver: {link: 1, speed: 2 rad/s}
+sketch: {at: 90 deg, D: [0, CD - OC], E: [DE, y]}
+output: 5
+"""
+SIZE = 1000
+
+
+def lever(keys, sense="ccw"):
+    text = f"tmm: 1\nsynthesis: {{task: slotted-lever, {keys}}}\n{LEVER.replace('SENSE', sense)}"
+    return build(read_text(text, "x.yaml"))
+
+
+def shaping(keys):
+    return build(read_text(f"tmm: 1\nsynthesis: {{task: shaper, {keys}}}\n{SHAPER}", "x.yaml"))
+
+
+def random(seed, rows):
+    return np.random.default_rng(seed).random((rows, SIZE))
+
+
+def ends_of(motion, value, speed):
+    """Driver's places (SIZE,) where a quantity is largest and least: there its speed vanishes."""
+    scan = np.tile(np.linspace(0, 2 * np.pi, 361)[:-1], (SIZE, 1))
+    here = value(motion(scan))
+    for pick in (np.argmax, np.argmin):
+        q = np.take_along_axis(scan, pick(here, axis=1)[:, None], axis=1)
+        yield roots(lambda x: speed(motion(x)), q - scan[0, 1], q + scan[0, 1])
+
+
+def lever_comes_back(found, k, side):
+    """Swing, k, both places of B, and the sense of the crank, on the motion of many slotted levers."""
+    first = lever("CB: 300, swing: 40 deg, OC: 100").linkage
+    variants = []
+    for crank, length, o, c in zip(found.crank, found.lever, found.o, found.c, strict=True):
+        links = {
+            FRAME: replace(first.links[FRAME], points={"O": complex(o), "C": complex(c)}),
+            "1": replace(first.links["1"], points={"O": 0j, "A": complex(crank)}),
+            "3": replace(first.links["3"], points={"C": 0j, "B": complex(length)}),
+        }
+        turn = o - c
+        sketch = Sketch(float(np.angle(turn)), {"B": complex(c + length * turn / abs(turn))})
+        variants.append(replace(first, links=first.links | links, sketch=sketch))
+    motion = prepare(variants, forces=False, own_places=True)
+    c, axis = found.c[:, None], np.conj(found.o - found.c)[:, None]
+
+    def angle(m):
+        return np.angle((m["B.x"] - c) * axis)
+
+    left, right = ends_of(motion, angle, lambda m: m["3.omega"])
+    places = [motion(q)["B.x"][:, 0] for q in (left, right)]
+    for place, psi in zip(places[:: -1 if side > 0 else 1], (found.psi1, found.psi2), strict=True):
+        wanted = found.c + found.lever * np.exp(1j * psi)
+        assert np.max(np.abs(place - wanted) / (found.lever + np.abs(found.c))) < MET
+    swing = np.angle((places[0] - found.c) / (places[1] - found.c))
+    assert swing == pytest.approx(found.theta, rel=MET, abs=0)
+    way = np.mod(right - left, 2 * np.pi)[:, 0]  # counterclockwise, from the left end to the right one
+    slow = np.maximum(way, 2 * np.pi - way)
+    assert slow / (2 * np.pi - slow) == pytest.approx(k, rel=MET, abs=0)
+    assert np.all(way < np.pi)  # the slow stroke is that in which crank and lever turn alike
+    return places
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_k_and_two_places_of_the_end_come_back(side):
+    a = random(1, 7)
+    k = k_of(0.05 + 2.5 * a[0])
+    b1, b2 = a[1] - 0.5 + 1j * a[2], a[3] + 1 + 1j * a[4]
+    task = slotted_lever.Asked(b1=b1, b2=b2, k=k, side=side, frame=1.0)
+    longest = slotted_lever.find(task).longest
+    found = slotted_lever.find(replace(task, frame=longest * (0.05 + 0.94 * a[5])))
+    places = lever_comes_back(found, k, side)
+    for place, wanted in zip(places[:: -1 if side > 0 else 1], (b1, b2), strict=True):
+        assert np.max(np.abs(place - wanted) / (found.lever + np.abs(found.c))) < MET
+
+
+def test_swing_and_length_come_back_with_the_frame_within_bounds():
+    a = random(2, 6)
+    swing, length = 0.05 + 2.5 * a[0], 0.02 * 100 ** a[1]
+    within = (length * 0.1, length * (0.2 + a[2]))
+    task = slotted_lever.Asked(length=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within)
+    found = slotted_lever.find(task)
+    assert np.all((found.frame >= within[0]) & (found.frame <= within[1]))
+    assert np.all(found.frame + found.crank <= length * (1 + 1e-15))
+    longer = np.minimum(within[1], found.frame * (1 + 1e-9))
+    assert np.all((longer == found.frame) | (longer * (1 + np.sin(swing / 2)) > length))  # none longer would do
+    lever_comes_back(found, k_of(swing), -1)
+    assert np.all(slotted_lever.find(replace(task, choose="shortest")).frame == within[0])
+
+
+def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
+    a = random(3, 4)
+    theta, stroke = 0.2 + 1.9 * a[0], 0.01 * 200 ** a[3]
+    most, steepest = 1 / (1 + np.sin(theta / 2)), np.pi / 2 - theta / 2
+    task = shaper.Asked(
+        stroke=stroke, k=k_of(theta), frame_ratio=most * (0.05 + 0.9 * a[1]), pressure=steepest * (0.02 + 0.83 * a[2])
+    )
+    found = shaper.find(task)
+    first = shaping("stroke: 200, k: 1.4, frame_ratio: 0.5, rod_ratio: 0.4").linkage
+    variants = []
+    columns = (found.crank, found.frame, found.lever, found.rod, found.level)
+    for crank, frame, length, rod, level in zip(*columns, strict=True):
+        links = {
+            FRAME: replace(first.links[FRAME], points={"O": 0j, "C": complex(0, -frame)}),
+            "1": replace(first.links["1"], points={"O": 0j, "A": complex(crank)}),
+            "3": replace(first.links["3"], points={"C": 0j, "D": complex(length)}),
+            "4": replace(first.links["4"], points={"D": 0j, "E": complex(rod)}),
+        }
+        slides = tuple(replace(s, through=complex(0, level)) if s.carrier == FRAME else s for s in first.slides)
+        sketch = Sketch(math.pi / 2, {"D": complex(0, length - frame), "E": complex(rod, level)})
+        variants.append(replace(first, links=first.links | links, slides=slides, sketch=sketch))
+    motion = prepare(variants, forces=False, own_places=True)
+    far, near = ends_of(motion, lambda m: m["E.x"].real, lambda m: m["E.v"].real)
+    run = motion(far)["E.x"].real - motion(near)["E.x"].real
+    assert run[:, 0] == pytest.approx(stroke, rel=MET, abs=0)
+    way = np.mod(near - far, 2 * np.pi)[:, 0]
+    slow = np.maximum(way, 2 * np.pi - way)
+    assert slow / (2 * np.pi - slow) == pytest.approx(task.k, rel=MET, abs=0)
+    turned = np.linspace(0, 2 * np.pi, 361)
+    for q in (far, near, np.full((SIZE, 1), np.pi / 2)):  # the rod is as steep at the ends as in the middle
+        rod = motion(q)["E.x"] - motion(q)["D.x"]
+        assert np.abs(np.angle(rod))[:, 0] == pytest.approx(task.pressure, rel=MET, abs=0)
+    m = motion(np.tile(turned, (SIZE, 1)))
+    steep = np.max(np.abs(np.angle(m["E.x"] - m["D.x"])), axis=1)
+    assert np.all(steep <= task.pressure * (1 + 1e-9))
+
+
+def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
+    f = shaper.find(shaper.Asked(stroke=0.4, k=1.5, frame_ratio=0.5, rod_ratio=0.3))
+    heights = f.lever * np.cos(np.linspace(-1, 1, 2001) * f.theta / 2) - f.frame
+    levels = f.level + np.linspace(-0.1, 0.1, 401) * f.lever
+    largest = np.max(np.abs(np.arcsin((heights[:, None] - levels) / f.rod)), axis=0)
+    assert float(np.min(largest)) == pytest.approx(float(f.pressure), rel=1e-6)
+    assert float(levels[np.argmin(largest)]) == pytest.approx(float(f.level), abs=1e-3 * f.lever)
+
+
+def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
+    # OA = 110, OC = 350, CD = 650 mm: sin(theta/2) = OA/OC, H = 2 CD OA/OC
+    theta = 2 * math.asin(110 / 350)
+    f = shaper.find(shaper.Asked(stroke=1.3 * 110 / 350, k=float(k_of(theta)), frame=0.35, rod=0.21))
+    assert (f.crank, f.lever) == (pytest.approx(0.11, rel=1e-14), pytest.approx(0.65, rel=1e-14))
+
+
+@pytest.mark.parametrize("keys", [
+    "B1: [-150, 400], B2: [250, 450], k: 1.6, OC: 300", "B1: [-150, 400], B2: [250, 450], k: 1.6, C: left, OC: 300",
+    "CB: 500, k: 1.4, within: [100, 300]", "CB: 500, swing: 60 deg, support: [20, -300], axis: 120 deg, OC: 200",
+    "CB: 500, k: 1.4, within: [100, 300], choose: shortest",
+])  # fmt: skip
+@pytest.mark.parametrize("sense", ["cw", "ccw"])
+def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
+    found = lever(keys, sense)
+    results = solve(found, "kinematics")
+    for m in measured(found.synthesis.outcome, results):
+        assert m.difference <= MET, m
+    asks_left = "left" in keys
+    (slow,) = results.strokes.working
+    ends = {v.demand.words.rpartition(".")[2]: v.value for v in measured(found.synthesis.outcome, results)}
+    run = math.remainder(ends["psi2"] - ends["psi1"], math.tau)
+    told = (sense == "ccw") == asks_left  # the crank turns as told for a slow stroke from B1 to B2
+    assert slow.run == pytest.approx(run if told else -run, rel=1e-12)
+
+
+@pytest.mark.parametrize("keys", [
+    "stroke: 400, k: 1.5, OC: 350, DE: 200", "stroke: 400, k: 1.8, frame_ratio: 0.6, rod_ratio: 0.3",
+    "stroke: 90, k: 1.3, frame_ratio: 0.6, pressure: 4 deg",
+])  # fmt: skip
+def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
+    found = shaping(keys)
+    for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
+        assert m.difference <= MET, m
+
+
+def test_extended_precision_solves_the_task_in_extended_precision():
+    exact = shaping("stroke: 400, k: 1.5, OC: 350, DE: 200").extended().linkage
+    if np.finfo(np.longdouble).eps > 1e-18:
+        return
+    length = np.longdouble("0.2") * 2 / (np.sqrt(np.longdouble(5)) - 1) * 2  # sin(18 deg) = (sqrt 5 - 1)/4
+    assert abs(abs(exact.links["3"].points["D"]) / length - 1) < 1e-18
+
+
+def test_a_stone_that_passes_the_end_is_told():
+    outcome = lever("CB: 300, k: 1.5, OC: 280").synthesis.outcome
+    assert outcome.notes == ("synthesis_slotted_lever.passes",)
+    assert lever("CB: 300, k: 1.5, OC: 180").synthesis.outcome.notes == ()
+
+
+REFUSED_LEVERS = {
+    "CB: 500, k: 1e30, OC: 200": (
+        ".k: the lever of a crank that turns fully swings by less than 180 deg"
+        "\n  found:   1e+30\n  allowed: less than 6.28318e+06"
+    ),
+    "CB: 500, k: 1, OC: 200": (
+        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+        "\n  found:   1\n  allowed: more than 1"
+    ),
+    "CB: 500, k: 0.8, OC: 200": (
+        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+        "\n  found:   0.8\n  allowed: more than 1; 1.25 for the same strokes"
+    ),
+    "CB: 500, swing: 190 deg, OC: 200": (
+        ".swing: the lever of a crank that turns fully swings by less than 180 deg"
+        "\n  found:   '190 deg'\n  allowed: more than zero and less than 180 deg"
+    ),
+    "CB: 500, k: 1.3, OC: -2": (".OC: there is no such link\n  found:   -2\n  allowed: more than zero"),
+    "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (
+        ".B2: B1 and B2 are the same place\n  found:   a list of 2\n  allowed: a place other than B1"
+    ),
+    "CB: 500, k: 1.5, within: [450, 600]": (
+        ".within: within these bounds the stone always passes B"
+        "\n  found:   a list of 2\n  allowed: a lower bound of 381.966 mm or less; or OC by itself, "
+        "with the slot longer than CB"
+    ),
+    "CB: 500, k: 1.5, within: [300, 200]": (
+        ".within: these are no bounds of a distance"
+        "\n  found:   a list of 2\n  allowed: two lengths above zero, the smaller one first"
+    ),
+    "CB: 500, B1: [1, 2], k: 1.5, OC: 200": (
+        ": these keys do not determine a slotted lever\n  found:   B1, CB\n  allowed: B1 and B2; or CB"
+    ),
+    "CB: 500, k: 1.5, swing: 30, OC: 200": (
+        ": these keys do not determine a slotted lever\n  found:   k, swing\n  allowed: k; or swing"
+    ),
+    "CB: 500, k: 1.5, C: left, OC: 200": (
+        ".C: C goes with B1 and B2 only\n  found:   C without B1 and B2\n  allowed: B1 and B2, or no C"
+    ),
+    "CB: 500, k: 1.5, OC: 200, choose: shortest": (
+        ".choose: choose goes with within only\n  found:   choose without within\n  allowed: within, or no choose"
+    ),
+}
+REFUSED_SHAPERS = {
+    "stroke: 400, k: 1, OC: 350, DE: 200": (
+        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+        "\n  found:   1\n  allowed: more than 1"
+    ),
+    "stroke: -400, k: 1.5, OC: 350, DE: 200": (
+        ".stroke: there is no such motion\n  found:   -400\n  allowed: more than zero"
+    ),
+    "stroke: 400, k: 1.5, OC: 500, DE: 200": (
+        ".OC: the stone would pass the hinge D of the rod\n  found:   500\n  allowed: less than 494.427 mm"
+    ),
+    "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
+        ".frame_ratio: the stone would pass the hinge D of the rod\n  found:   0.8\n  allowed: less than 0.763932"
+    ),
+    "stroke: 400, k: 3, frame_ratio: 0.3, DE: 40": (
+        ".DE: the ram would turn back before the lever does: the rod is too steep there"
+        "\n  found:   40\n  allowed: more than 58.5786 mm"
+    ),
+    "stroke: 400, k: 3, frame_ratio: 0.3, rod_ratio: 0.1": (
+        ".rod_ratio: the ram would turn back before the lever does: the rod is too steep there"
+        "\n  found:   0.1\n  allowed: more than 0.207107"
+    ),
+    "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 60 deg": (
+        ".pressure: the ram would turn back before the lever does: the rod is too steep there"
+        "\n  found:   '60 deg'\n  allowed: less than 45 deg"
+    ),
+    "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 100 deg": (
+        ".pressure: a largest pressure angle is more than zero and less than a right angle"
+        "\n  found:   '100 deg'\n  allowed: 30 deg is usual for a sliding link"
+    ),
+    "stroke: 400, k: 3, frame_ratio: 0.3": (
+        ": these keys do not determine a shaper\n  found:   none of them\n  allowed: one of DE, rod_ratio, pressure"
+    ),
+}
+
+
+def refusal(make, keys):
+    with pytest.raises(ProblemError) as caught:
+        make(keys)
+    return str(caught.value).partition(": synthesis")[2]
+
+
+@pytest.mark.parametrize("keys", REFUSED_LEVERS)
+def test_a_lever_that_cannot_be_is_refused_with_the_reason_and_what_could(keys):
+    assert refusal(lever, keys) == REFUSED_LEVERS[keys]
+
+
+@pytest.mark.parametrize("keys", REFUSED_SHAPERS)
+def test_a_shaper_that_cannot_be_is_refused_with_the_reason_and_what_could(keys):
+    assert refusal(shaping, keys) == REFUSED_SHAPERS[keys]

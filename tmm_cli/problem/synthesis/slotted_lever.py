@@ -1,0 +1,84 @@
+"""Slotted lever by k and its extreme positions: keys of the task."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema import Value
+from tmm_cli.problem.sense import Sense
+from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
+from tmm_cli.synthesis.slotted_lever import Asked
+
+ENDS = (("B1", "B2"), ("CB",))
+SWINGS = (("k",), ("swing",))
+FRAMES = (("OC",), ("within",))
+
+
+class Shape(Block):
+    """A slotted lever by the extreme places of its end B (or its length) and k (or its swing)."""
+
+    task: Literal["slotted-lever"]
+    B1: tuple[Value, Value] | None = Field(default=None, description="extreme place of the lever's end B")
+    B2: tuple[Value, Value] | None = Field(default=None, description="the other one")
+    C: Literal["left", "right"] | None = Field(
+        default=None, description="on which side of the way from B1 to B2 the lever's hinge lies; right"
+    )
+    CB: Value | None = Field(default=None, description="length of the lever, instead of its places")
+    support: tuple[Value, Value] | None = Field(default=None, description="with CB, the hinge C; [0, 0]")
+    axis: Value | None = Field(default=None, description="with CB, direction from C to O; 90 deg")
+    k: Value | None = Field(default=None, description="coefficient of change of mean speed, more than 1")
+    swing: Value | None = Field(default=None, description="swing of the lever, instead of k")
+    OC: Value | None = Field(default=None, description="distance of the fixed hinges")
+    within: tuple[Value, Value] | None = Field(default=None, description="or bounds of that distance")
+    choose: Literal["least force", "shortest"] | None = Field(
+        default=None,
+        description="OC within its bounds: the longest that leaves the stone on CB (least force), or the shortest",
+    )
+
+
+def asked(shape: Shape, sense: Sense) -> Asked:
+    """The task in SI. Raises ProblemError."""
+    ends, swing, frame = (_one_of(shape, sets) for sets in (ENDS, SWINGS, FRAMES))
+    _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
+    found: dict[str, Any] = {
+        swing[0]: sense.number(getattr(shape, swing[0]), NUMBER if swing == ("k",) else ANGLE, swing)
+    }
+    if ends == ("CB",):
+        found["length"] = sense.number(shape.CB, LENGTH, ("CB",))
+        found["c"] = sense.vector(shape.support or (0, 0), LENGTH, ("support",))
+        found["axis"] = sense.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
+    else:
+        found |= {name.lower(): sense.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
+    if frame == ("OC",):
+        found["frame"] = sense.number(shape.OC, LENGTH, ("OC",))
+    else:
+        assert shape.within is not None
+        low, high = (sense.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
+        found["within"] = (low, high)
+    choose = "shortest" if shape.choose == "shortest" else "force"
+    return Asked(**found, side=1 if shape.C == "left" else -1, choose=choose)
+
+
+def _one_of(shape: Shape, sets: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
+    here = tuple(key for one in sets for key in one if getattr(shape, key) is not None)
+    if here not in sets:
+        raise ProblemError(
+            "these keys do not determine a slotted lever", found=", ".join(here) or "none of them",
+            allowed="; or ".join(" and ".join(one) for one in sets), key=True,
+        )  # fmt: skip
+    return here
+
+
+def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
+    for key, others in needs.items():
+        lacking = [other for other in others if getattr(shape, other) is None]
+        if getattr(shape, key) is not None and lacking:
+            raise ProblemError(
+                f"{key} goes with {' and '.join(others)} only", path=(key,),
+                found=f"{key} without {' and '.join(lacking)}", allowed=f"{' and '.join(others)}, or no {key}",
+                key=True,
+            )  # fmt: skip

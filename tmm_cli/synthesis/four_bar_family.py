@@ -1,0 +1,79 @@
+"""Drawings of the four-bars by k: circles with their admissible arcs, link lengths and pressure angle along them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.synthesis.construction import Arc, Construction, Curve, Diagram, Line, Segment, Spot
+
+W: Final = "synthesis_four_bar_by_k"
+SHEET: Final = 2.5  # how far from C1C2 an arc is drawn, in sizes of the mechanism
+ROOM: Final = 1.6  # the largest circle that has room whole, in the same
+LONGEST: Final = 4.0  # rods longer than this many of the chosen one (and of the rocker) are not on the diagrams
+
+
+def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
+    """Both extreme positions, the circles on which C1C2 is seen under theta, and the pivots that may be A."""
+    d, a = asked.support, complex(found.a)
+    c1, c2 = (complex(d + asked.l3 * np.exp(1j * psi)) for psi in (asked.psi1, asked.psi2))
+    way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
+    pin1, pin2 = a - found.l1 * way1, a + found.l1 * way2
+    segments = [
+        Segment(d, c1, "link", "l3"), Segment(pin1, a, "link", "l1"), Segment(a, c1, "link", "l2 − l1"),
+        Segment(d, c2, "link2", "l3"), Segment(a, pin2, "link2", "l1"), Segment(pin2, c2, "link2", "l2"),
+        Segment(d, a, "axis", "l4"), Segment(c1, c2, "thin"),
+    ]  # fmt: skip
+    spots = [
+        Spot("D", d, "support"), Spot("A", a, "support"), Spot("B1", pin1, "hinge"), Spot("B2", pin2, "hinge"),
+        Spot("C1", c1, "hinge"), Spot("C2", c2, "hinge"),
+    ]  # fmt: skip
+    middle, size = (c1 + c2) / 2, float(max(asked.l3, found.l1 + found.l2, found.l4))
+    arcs = [Arc(a, float(found.l1), 0.0, 2 * np.pi, "dashed")]
+    theta, half = float(asked.theta), abs(c2 - c1) / 2
+    circles = theta > 0 and half / np.sin(theta) < ROOM * size
+    if circles:
+        out = (middle - d) / abs(middle - d)
+        for f in family:
+            side = int(f.side)
+            centre = middle + side * out * half / np.tan(theta)
+            arcs.append(Arc(centre, half / float(np.sin(theta)), 0.0, 2 * np.pi, "dashed"))
+            if side == int(found.side):
+                segments += [Segment(c1, centre, "dashed"), Segment(c2, centre, "dashed")]
+                spots.append(Spot("O", centre, "dot"))
+    turned = np.angle(way1), np.angle(way1) + np.angle(way2 / way1)
+    if theta > 0.01:
+        arcs.append(Arc(a, 0.7 * abs(c1 - a), float(min(turned)), float(max(turned)), "thin", "θ"))
+    curves = []
+    for f in family:
+        places = [complex(z) for z in f.a if abs(z - middle) < SHEET * size]
+        curves.append(Curve(tuple(places), "bold"))
+    notes = (f"{W}.bold", f"{W}.angles") if circles else (f"{W}.bold",)
+    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), notes, tuple(curves))
+
+
+def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Diagram]:
+    """Largest pressure angle, and the lengths of crank and frame, over that of the coupler along the arcs."""
+    most = LONGEST * max(float(found.l2), float(asked.l3))
+    pressures, lengths = [], []
+    for number, f in enumerate(family):
+        name = "line" if asked.k == 1 else "beyond" if int(f.side) > 0 else "inside"
+        x = np.asarray(f.l2)
+        kept = x <= most
+        pressures.append(Line(f"{W}.pressure_{name}", x[kept], np.asarray(f.pressure)[kept]))
+        lengths.append(Line(f"{W}.l4_{name}", x[kept], np.asarray(f.l4)[kept]))
+        if number == len(family) - 1:
+            longest = max(family, key=lambda one: float(np.max(one.l2)))
+            kept = np.asarray(longest.l2) <= most
+            lengths.append(Line(f"{W}.l1", longest.l2[kept], longest.l1[kept]))
+    dot = np.array([found.l2], dtype=float)
+    pressures.append(Line(f"{W}.chosen", dot, np.array([found.pressure], dtype=float), dots=True))
+    both = np.array([found.l1, found.l4], dtype=float)
+    lengths.append(Line(f"{W}.chosen", np.repeat(dot, 2), both, dots=True))
+    across = (f"{W}.l2", "length")
+    return (
+        Diagram("family-pressure", f"{W}.family_pressure", across, (f"{W}.pressure", "angle"), tuple(pressures)),
+        Diagram("family-lengths", f"{W}.family_lengths", across, (f"{W}.lengths", "length"), tuple(lengths)),
+    )

@@ -1,0 +1,134 @@
+"""Crank shaper (six-bar: crank, stone, slotted lever CD, rod DE, ram) from its stroke and k.
+
+D is equally high in both extreme positions of the lever, so the ram's stroke is the chord of D's arc whatever DE is:
+    CD = H/(2 sin(theta/2)),  OA = OC sin(theta/2),  theta = pi (k - 1)/(k + 1).
+D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of it has the least pressure angle:
+    sin(lambda) = CD sin^2(theta/4)/DE.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.synthesis import slotted_lever
+from tmm_cli.synthesis.construction import Construction, Segment, Spot
+from tmm_cli.synthesis.crank_slider import theta_of
+from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+
+PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
+W: Final = "synthesis_shaper"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Stroke (m) and k; the frame OC (m) or its ratio to CD; the rod DE (m), its ratio, or the pressure angle (rad)."""
+
+    stroke: Any
+    k: Any
+    frame: Any = None
+    frame_ratio: Any = None
+    rod: Any = None
+    rod_ratio: Any = None
+    pressure: Any = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths (m), level: of the guide over O (m), theta and the largest pressure angle of the ram (rad)."""
+
+    crank: Any
+    frame: Any
+    lever: Any
+    rod: Any
+    level: Any
+    theta: Any
+    pressure: Any
+
+
+def find(asked: Asked) -> Found:
+    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    theta = theta_of(asked.k)
+    sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
+    lever = np.asarray(asked.stroke) / (2 * sine)
+    frame = lever * asked.frame_ratio if asked.frame is None else np.asarray(asked.frame)
+    rise = lever * half_height
+    if asked.pressure is not None:
+        rod = rise / np.sin(asked.pressure)
+    else:
+        rod = lever * asked.rod_ratio if asked.rod is None else np.asarray(asked.rod)
+    level = lever * (1 - half_height) - frame
+    return Found(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
+
+
+def refuse(asked: Asked) -> None:
+    """Raises Infeasible with the reason and what could be met."""
+    names = {"stroke": "stroke", "frame": "OC", "frame_ratio": "frame_ratio", "rod": "DE", "rod_ratio": "rod_ratio"}
+    for name, key in names.items():
+        value = getattr(asked, name)
+        if value is not None and not value > 0:
+            raise Infeasible(key, f"{W}.positive", f"{W}.more_than_zero")
+    if not asked.k > 1:
+        values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number")}
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if asked.k < 1 else f"{W}.k_more", values)
+    if asked.pressure is not None and not 0 < asked.pressure < np.pi / 2:
+        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")
+    f = find(asked)
+    lever, half = float(f.lever), float(f.theta) / 2
+    most = 1 / (1 + np.sin(half))
+    if not f.frame < lever * most:
+        by_ratio = asked.frame is None
+        limit: tuple[float, str] = (most, "number") if by_ratio else (lever * most, "length")
+        raise Infeasible("frame_ratio" if by_ratio else "OC", f"{W}.frame_above", f"{W}.frame_most", {"most": limit})
+    if not f.pressure < np.pi / 2 - half:  # beyond, the ram turns back before the lever does
+        if asked.pressure is not None:
+            raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", {"most": (np.pi / 2 - half, "angle")})
+        share = np.sin(half / 2) ** 2 / np.cos(half)
+        by_ratio = asked.rod is None
+        limit = (share, "number") if by_ratio else (lever * share, "length")
+        raise Infeasible("rod_ratio" if by_ratio else "DE", f"{W}.turns_back", f"{W}.rod_least", {"least": limit})
+
+
+def solve(asked: Asked) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    refuse(asked)
+    f = find(asked)
+    kinds = {"stroke": "length", "frame": "length", "rod": "length", "pressure": "angle"}
+    given = tuple(
+        Value(name, value, kinds.get(name, "number"), f"{W}.{name}")
+        for name, value in vars(asked).items() if value is not None
+    )  # fmt: skip
+    lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod, "y": f.level}
+    found = [Value(name, value, "length", f"{W}.{name}") for name, value in lengths.items()]
+    found.append(Value("", f.theta, "angle", f"{W}.theta"))
+    if asked.pressure is None:
+        found.append(Value("", f.pressure, "angle", f"{W}.pressure"))
+    found.append(Value("", f.lever / (1 + np.sin(f.theta / 2)), "length", f"{W}.longest"))
+    demands = (
+        Demand(f"{W}.crank_turns", 1.0, "number", crank_turns, asked=False),
+        Demand(f"{W}.stroke", float(asked.stroke), "length", stroke),
+        Demand(f"{W}.k", float(asked.k), "number", ratio),
+        Demand(f"{W}.pressure", float(f.pressure), "angle", pressure, asked.pressure is not None),
+    )
+    return Outcome(given, tuple(found), f"{W}.source", demands, (construction(f),))
+
+
+def construction(f: Found) -> Construction:
+    """The lever in its extreme positions, the guide midway in D's arc, the ram at both ends of its stroke; O at 0."""
+    middle, half = np.pi / 2, float(f.theta) / 2
+    lever = slotted_lever.Found(
+        f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
+    )
+    segments, arcs, spots = slotted_lever.lever_parts(lever, "D")
+    reach = float(f.rod * np.cos(f.pressure))
+    d1, d2 = (spot.at for spot in spots[-2:])
+    e1, e2 = (complex(d.real + reach, float(f.level)) for d in (d1, d2))
+    segments += [
+        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed", "H"),
+        Segment(complex(d1.real, e1.imag), e2 + 0.25 * (d2 - d1), "axis"),
+    ]  # fmt: skip
+    spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
+    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",))

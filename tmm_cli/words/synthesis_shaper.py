@@ -1,0 +1,36 @@
+"""Words of the synthesis of a crank shaper."""
+
+WORDS: dict[str, str] = {
+    "synthesis_shaper.stroke": "stroke H of the ram",
+    "synthesis_shaper.k": "k",
+    "synthesis_shaper.frame": "frame OC",
+    "synthesis_shaper.frame_ratio": "OC/CD",
+    "synthesis_shaper.rod": "rod DE",
+    "synthesis_shaper.rod_ratio": "DE/CD",
+    "synthesis_shaper.pressure": "largest pressure angle of the ram",
+    "synthesis_shaper.OA": "crank OA",
+    "synthesis_shaper.OC": "frame OC, C below O",
+    "synthesis_shaper.CD": "slotted lever CD",
+    "synthesis_shaper.DE": "rod DE",
+    "synthesis_shaper.y": "guide of the ram above O, y",
+    "synthesis_shaper.theta": "theta = D1CD2",
+    "synthesis_shaper.longest": "longest OC that leaves the stone on CD",
+    "synthesis_shaper.crank_turns": "crank turns fully (1: yes)",
+    "synthesis_shaper.source": "D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = "
+    "pi (k - 1)/(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc",
+    "synthesis_shaper.construction": "Extreme positions of the shaper",
+    "synthesis_shaper.midway": "guide midway between D1D2 and the top of the arc",
+    "synthesis_shaper.positive": "there is no such motion",
+    "synthesis_shaper.more_than_zero": "more than zero",
+    "synthesis_shaper.k_below": "a lever that swings goes back faster: k is the time of the slow stroke over that of "
+    "the quick one",
+    "synthesis_shaper.k_least": "more than 1; {k} for the same strokes",
+    "synthesis_shaper.k_more": "more than 1",
+    "synthesis_shaper.pressure_range": "a largest pressure angle is more than zero and less than a right angle",
+    "synthesis_shaper.pressure_allowed": "30 deg is usual for a sliding link",
+    "synthesis_shaper.frame_above": "the stone would pass the hinge D of the rod",
+    "synthesis_shaper.frame_most": "less than {most}",
+    "synthesis_shaper.turns_back": "the ram would turn back before the lever does: the rod is too steep there",
+    "synthesis_shaper.pressure_most": "less than {most}",
+    "synthesis_shaper.rod_least": "more than {least}",
+}
