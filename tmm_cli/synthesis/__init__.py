@@ -14,6 +14,7 @@ from typing import Any, Final
 TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name of the task's files
     "crank-slider": "crank_slider",
     "grashof": "grashof",
+    "optimal": "optimal",
 }
 
 
