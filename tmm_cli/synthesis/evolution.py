@@ -37,7 +37,8 @@ class Evolved:
 def better(f: Real, v: Real, than_f: Real, than_v: Real, tolerance: float) -> Real:
     """Deb's rules: less violation, or both allowed (or alike) and a smaller objective."""
     a, b = np.where(v <= tolerance, 0.0, v), np.where(than_v <= tolerance, 0.0, than_v)
-    return (a < b) | ((a == b) & (f <= than_f))
+    found: Real = (a < b) | ((a == b) & (f <= than_f))
+    return found
 
 
 def evolve(

@@ -144,10 +144,12 @@ class Goal:
             off = read("run") - np.array(self.wanted)
             if self.relative:
                 off = off - off[:, :1]
-            return np.angle(np.exp(1j * off)) if swings else off
+            turned: Real = np.angle(np.exp(1j * off)) if swings else off
+            return turned
         p = read("p")
         if self.places:
-            return np.abs(p - np.array(self.wanted))
+            apart: Real = np.abs(p - np.array(self.wanted))
+            return apart
         found = []
         for w in self.wanted:
             square = np.abs(p - w) ** 2
@@ -157,7 +159,7 @@ class Goal:
     def counted(self, off: Real) -> Real:
         """Root mean square, or the largest."""
         if self.norm == "largest":
-            return np.max(np.abs(off), axis=1)
+            off = np.max(np.abs(off), axis=1, keepdims=True)
         found: Real = np.sqrt(np.mean(off * off, axis=1))
         return found
 
@@ -176,7 +178,7 @@ class Goal:
             return [(f"{n}", int(np.argmin(np.abs(p - w)))) for n, w in enumerate(self.wanted)]
         return []
 
-    def fine(self, parts: list[tuple[str, float, Read]], exact: Read, sense: int, swings: bool, step: float) -> Real:
+    def fine(self, parts: list[tuple[str, float, Read]], exact: Read, swings: bool, step: float) -> Real:
         """Pieces of the quantity, (variants, pieces); the largest counts (of LEAST: the least).
 
         parts: curve, first place (rad) and outputs of every window; exact: outputs at the goal's own places; step: of
@@ -202,7 +204,8 @@ class Goal:
                     runs.append(np.where(up[:, 0], peak(run), -peak(-run)))
                 all_runs = np.stack(runs, axis=1)
                 travel = np.max(all_runs, axis=1) - np.min(all_runs, axis=1)
-                return (travel if self.of == "stroke" else travel * parts[0][2]("rate")[:, 0] / np.pi)[:, None]
+                whole: Real = travel if self.of == "stroke" else travel * parts[0][2]("rate")[:, 0] / np.pi
+                return whole[:, None]
             forward: Any = 0.0
             for _, start, read in parts:
                 slope = read("slope")
@@ -228,13 +231,15 @@ def _forward(slope: Real) -> Real:
     after = np.roll(slope, -1, axis=1)
     up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
     with np.errstate(all="ignore"):
-        return np.mean(up / (up + down), axis=1)
+        found: Real = np.mean(up / (up + down), axis=1)
+    return found
 
 
 def _ratio(share: Real) -> Real:
     """k from the share of one of two strokes: the longer over the shorter."""
     with np.errstate(all="ignore"):
-        return np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
+        found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
+    return found
 
 
 def _peaks(y: Real, most: int) -> list[int]:

@@ -59,6 +59,8 @@ class Limit:
     @property
     def scale(self) -> float:
         """What a miss is measured against."""
+        if self.goal.of in LEAST:
+            return 1.0
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
 
     def missed(self, value: Any) -> Any:
@@ -145,7 +147,8 @@ class Search:
 
     def numbers(self, x: Real) -> Real:
         """SI numbers of shares of the ranges."""
-        return self.low + x * (self.high - self.low)
+        found: Real = self.low + x * (self.high - self.low)
+        return found
 
     def run(self, x: Real, q: Real) -> Outputs:
         """All outputs for candidates x (variants, n) in 0..1."""
@@ -181,7 +184,7 @@ class Search:
         """Objective and constrained quantities, coarsely."""
         found = self.run(x, self.places)
         return [
-            goal.coarse(lambda name, n=n: found[f"{n}.{name}"][:, self.exact[n]], self.swings[n])
+            goal.coarse(_reader(found, n, self.exact[n]), self.swings[n])
             for n, goal in enumerate(self.goals)
         ]  # fmt: skip
 
@@ -200,7 +203,7 @@ class Search:
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
-            for name, k in goal.windows(lambda name, n=n: found[f"{n}.{name}"][:1]):
+            for name, k in goal.windows(_reader(found, n, slice(None))):
                 first = scan[k] - self.step
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
@@ -213,16 +216,14 @@ class Search:
             exact.append(slice(at, at + len(here)))
             at += len(here)
         q = np.concatenate(blocks)
-        sense = self.linkage.driver.sense
 
         def pieces(some: Real) -> list[Real]:
             out = self.run(np.atleast_2d(some), q)
 
-            def read(n: int, where: slice) -> Callable[[str], Real]:
-                return lambda name: out[f"{n}.{name}"][:, where]
-
             return [
-                goal.fine([(c, s, read(n, w)) for c, s, w in parts[n]], read(n, exact[n]), sense, self.swings[n], step)
+                goal.fine(
+                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.swings[n], step
+                )
                 for n, goal in enumerate(self.goals)
             ]  # fmt: skip
 
@@ -272,6 +273,11 @@ class Search:
                 least.append((limit.most - (pieces if each and limit.goal.of not in LEAST else value)) / limit.scale)
         none = np.zeros((len(found[0]), 0))
         return Local(self._pieces(found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))
+
+
+def _reader(found: Outputs, n: int, where: slice) -> Callable[[str], Real]:
+    """Outputs of a goal by name, at some of the places."""
+    return lambda name: found[f"{n}.{name}"][:, where]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.vectors import Real
 
-WINDOW = 17  # places about a peak
+WINDOW = 33  # places about a peak
 _FIT = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True)).T  # values @ _FIT: coefficients
 NEWTON = 6
 
@@ -23,7 +23,9 @@ def crest(y: Real) -> Real:
     bend = before - 2 * at + after
     with np.errstate(all="ignore"):
         more = -((after - before) ** 2) / (8 * bend)
-    return at + np.where(np.isfinite(more) & (bend < 0), np.minimum(more, at - np.minimum(before, after)), 0.0)
+    parabola = np.isfinite(more) & (bend < 0)
+    found: Real = at + np.where(parabola, np.minimum(more, at - np.minimum(before, after)), 0.0)
+    return found
 
 
 def _five(y: Real, k: Real) -> tuple[Real, Real]:

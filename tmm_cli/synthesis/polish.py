@@ -1,8 +1,7 @@
 """Local polish: sequential quadratic programming with numeric derivatives, all variants of a step at once.
 
-The largest of several pieces is minimised as a bound t above all of them, so that minimax has a smooth form. The
-quadratic problem is one of least distance, solved by nonnegative least squares: C. L. Lawson, R. J. Hanson, Solving
-Least Squares Problems, 1974, ch. 23; D. Kraft, A software package for sequential quadratic programming, 1988.
+The largest of several pieces is minimised as a bound t above all of them, so that minimax has a smooth form. J.
+Nocedal, S. J. Wright, Numerical Optimization, 2006, ch. 16 and 18.
 """
 
 from __future__ import annotations
@@ -16,6 +15,8 @@ from tmm_cli.vectors import Real
 
 STEP = 2e-6  # of a derivative, in shares of the range
 REACH = 0.1  # farthest in one iteration
+INTERIOR, DONE, TINY = 50, 1e-12, 1e-18  # of the quadratic problem: iterations, tolerance, least of what is positive
+FLAT = 0.1  # bend of the bound t: it only steadies the steps, and is not felt where they end
 HALVES = 0.5 ** np.arange(20)
 
 
@@ -34,46 +35,41 @@ class Local:
         return np.where(np.isfinite(found), found, np.inf)
 
 
-def nonnegative(matrix: Real, right: Real) -> Real:
-    """u >= 0 with the least |matrix u - right|."""
-    count = matrix.shape[1]
-    u, passive = np.zeros(count), np.zeros(count, dtype=bool)
-    for _ in range(5 * count):
-        gain = matrix.T @ (right - matrix @ u)
-        gain[passive] = -np.inf
-        if passive.all() or gain.max() <= 1e-13 * np.abs(matrix).max():
+def quadratic(
+    hessian: Real, gradient: Real, equal: Real, value: Real, rows: Real, bound: Real
+) -> tuple[Real, Real, Real] | None:
+    """d with the least gradient d + d hessian d/2 where equal d = value and rows d >= bound.
+
+    And the multipliers of both; None where there is none. By the steps of S. Mehrotra, SIAM J. Optim. 2
+    (1992).
+    """
+    n, e = len(gradient), len(equal)
+    d, nu = np.zeros(n), np.zeros(e)
+    slack, lam = np.maximum(rows @ d - bound, 1.0), np.ones(len(bound))
+    for _ in range(INTERIOR):
+        dual = hessian @ d + gradient - equal.T @ nu - rows.T @ lam
+        off, apart = equal @ d - value, rows @ d - bound - slack
+        gap = float(slack @ lam) / len(bound)
+        lost = max(float(np.max(np.abs(part), initial=0.0)) for part in (off, apart))
+        if lost < DONE and gap < DONE and float(np.max(np.abs(dual))) < DONE * (1 + float(np.max(lam))):
+            return d, nu, lam
+        matrix = np.block([[hessian + (rows.T * (lam / slack)) @ rows, -equal.T], [equal, np.zeros((e, e))]])
+        aim = -slack * lam
+        for corrected in (False, True):
+            right = np.concatenate([-dual + rows.T @ ((aim - lam * apart) / slack), -off])
+            both = np.linalg.lstsq(matrix, right, rcond=None)[0]
+            ds = rows @ both[:n] + apart
+            dl = (aim - lam * ds) / slack
+            longest = min(float(np.min(-x[dx < 0] / dx[dx < 0], initial=1.0)) for x, dx in ((slack, ds), (lam, dl)))
+            if not corrected:
+                after = float((slack + longest * ds) @ (lam + longest * dl)) / len(bound)
+                aim = (after / gap) ** 3 * gap - slack * lam - ds * dl
+        share = 1.0 if longest == 1.0 else 0.995 * longest
+        d, nu = d + share * both[:n], nu + share * both[n:]
+        slack, lam = np.maximum(slack + share * ds, TINY), np.maximum(lam + share * dl, TINY)
+        if not np.all(np.isfinite(d)):
             break
-        passive[int(np.argmax(gain))] = True
-        while True:
-            s = np.zeros(count)
-            s[passive] = np.linalg.lstsq(matrix[:, passive], right, rcond=None)[0]
-            if not passive.any() or s[passive].min() > 0:
-                u = s
-                break
-            low = passive & (s <= 0)
-            share = float(np.min(u[low] / np.where(u[low] - s[low] > 0, u[low] - s[low], 1.0)))
-            u = u + share * (s - u)
-            passive &= u > 1e-15
-            u[~passive] = 0.0
-    return u
-
-
-def quadratic(hessian: Real, gradient: Real, rows: Real, bound: Real) -> tuple[Real, Real] | None:
-    """d with the least gradient d + d hessian d/2 and rows d >= bound, and the multipliers; None: there is none."""
-    root = np.linalg.cholesky(hessian)
-    start = np.linalg.solve(root, gradient)
-    turned = np.linalg.solve(root, rows.T).T
-    size = np.maximum(np.linalg.norm(turned, axis=1), 1e-12)
-    turned, high = turned / size[:, None], (bound + turned @ start) / size
-    system = np.vstack([turned.T, high])
-    aim = np.zeros(len(system))
-    aim[-1] = 1.0
-    u = nonnegative(system, aim)
-    rest = system @ u - aim
-    if -rest[-1] < 1e-11:
-        return None
-    y = rest[:-1] / -rest[-1]
-    return np.linalg.solve(root.T, y - start), u / -rest[-1] / size
+    return (d, nu, lam) if lost < 1e3 * DONE and gap < 1e3 * DONE else None
 
 
 def polish(evaluate: Callable[[Real], Local], x: Real, iterations: int = 60) -> Real:
@@ -96,23 +92,23 @@ def polish(evaluate: Callable[[Real], Local], x: Real, iterations: int = 60) -> 
         if last is not None:  # damped BFGS on the Lagrangian
             x0, lam_f, lam_c, lam_e, old = last
             hessian = _updated(hessian, x - x0, lam_f @ g - lam_c @ rows_c - lam_e @ rows_e - old)
-        slopes = np.vstack([-g, rows_c, rows_e, -rows_e, np.eye(n), -np.eye(n)])
+        slopes = np.vstack([-g, rows_c, np.eye(n), -np.eye(n)])
         rows = np.hstack([slopes, np.zeros((len(slopes), 1))])
         rows[: len(f), -1] = 1.0
-        bound = np.concatenate([f - top, -c, -e, e, np.maximum(-x, -REACH), np.maximum(x - 1, -REACH)])
-        whole = np.block([[hessian, np.zeros((n, 1))], [np.zeros((1, n)), np.full((1, 1), 1e-8)]])
+        bound = np.concatenate([f - top, -c, np.maximum(-x, -REACH), np.maximum(x - 1, -REACH)])
+        whole = np.block([[hessian, np.zeros((n, 1))], [np.zeros((1, n)), np.full((1, 1), FLAT)]])
+        even = np.hstack([rows_e, np.zeros((len(e), 1))])
         solved = None
         for share in (1.0, 0.5, 0.1, 0.0):  # where the linear constraints contradict each other, towards them
             at = bound.copy()
-            at[len(f) : len(f) + len(c) + 2 * len(e)] *= share
-            solved = quadratic(whole, np.append(np.zeros(n), 1.0), rows, at)
+            at[len(f) : len(f) + len(c)] = np.minimum(at[len(f) : len(f) + len(c)], share * np.maximum(-c, 0))
+            solved = quadratic(whole, np.append(np.zeros(n), 1.0), even, -share * e, rows, at)
             if solved is not None:
                 break
-        if solved is None or not np.all(np.isfinite(solved[0])):
+        if solved is None:
             break
-        d, lam = solved[0][:n], solved[1]
-        a, b, z = len(f), len(f) + len(c), len(f) + len(c) + len(e)
-        lam_f, lam_c, lam_e = lam[:a], lam[a:b], lam[b:z] - lam[z : z + len(e)]
+        d, lam_e, lam = solved[0][:n], solved[1], solved[2]
+        lam_f, lam_c = lam[: len(f)], lam[len(f) : len(f) + len(c)]
         weight = max(weight, 2 * float(np.max(np.abs(np.concatenate([lam_c, lam_e, [0.0]])))))
         tried = np.clip(x + HALVES[:, None] * d, 0, 1)
         merit = evaluate(np.vstack([tried, x])).merit(weight)
