@@ -19,7 +19,7 @@ from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Motion
 from tmm_cli.pressure import followers, sides
 from tmm_cli.strokes import output_link, output_place, output_slope
-from tmm_cli.synthesis.peaks import crest, peak, zero
+from tmm_cli.synthesis.peaks import peak, zero
 from tmm_cli.vectors import Real
 
 PEAKS: Final = ("pressure", "moment", "reaction", "margin", "crank", "box")
@@ -109,7 +109,8 @@ class Goal:
             return found
         if self.of == "law":
             return {"run": output_place(motion, self.name)}
-        return {"p": motion.spot(self.name)}
+        p = motion.spot(self.name)
+        return {"px": p.real, "py": p.imag}
 
     # reading it off
 
@@ -118,14 +119,14 @@ class Goal:
         if self.of in PLAIN:
             return read("value")[:, 0]
         if self.of in PEAKS:
-            return self.told(sum(crest(read(name)) for name in self.curves))
+            return self.told(sum(np.max(read(name), axis=1) for name in self.curves))
         if self.of == "k":
             return _ratio(_forward(read("slope")))
         if self.of in STROKES:
             run = read("run")
-            if swings and np.any(np.abs(np.diff(run, axis=1)) > np.pi):
-                run = np.unwrap(run, axis=1)
-            travel = crest(run) + crest(-run)
+            travel = np.max(run, axis=1) - np.min(run, axis=1)
+            if swings and np.any(round_ := travel > np.pi):  # angles are within -pi..pi
+                travel[round_] = np.ptp(np.unwrap(run[round_], axis=1), axis=1)
             return travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
         return self.counted(self.deviations(read, swings))
 
@@ -146,15 +147,10 @@ class Goal:
                 off = off - off[:, :1]
             turned: Real = np.angle(np.exp(1j * off)) if swings else off
             return turned
-        p = read("p")
+        x, y = read("px"), read("py")
         if self.places:
-            apart: Real = np.abs(p - np.array(self.wanted))
-            return apart
-        found = []
-        for w in self.wanted:
-            square = np.abs(p - w) ** 2
-            found.append(np.sqrt(np.maximum(-crest(-square), 0)))
-        return np.stack(found, axis=1)
+            return np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
+        return nearest(x, y, np.array(self.wanted))
 
     def counted(self, off: Real) -> Real:
         """Root mean square, or the largest."""
@@ -174,7 +170,7 @@ class Goal:
             slope = read("slope")[0]
             return [("slope", int(k)) for k in np.flatnonzero(slope * np.roll(slope, -1) < 0)]
         if self.of == "path" and not self.places:
-            p = read("p")[0]
+            p = read("px")[0] + 1j * read("py")[0]
             return [(f"{n}", int(np.argmin(np.abs(p - w)))) for n, w in enumerate(self.wanted)]
         return []
 
@@ -212,11 +208,37 @@ class Goal:
                 forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
             return _ratio(np.mod(forward, 2 * np.pi) / (2 * np.pi))[:, None]
         if self.of == "path" and not self.places:
-            near = [-peak(-(np.abs(read("p") - self.wanted[int(n)]) ** 2)) for n, _, read in parts]
+            near = [-peak(-_square(read, self.wanted[int(n)])) for n, _, read in parts]
             off = np.sqrt(np.maximum(np.stack(near, axis=1), 0))
         else:
             off = self.deviations(exact, swings)
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
+
+
+def _square(read: Read, wanted: complex) -> Real:
+    """Of the distance of a path from a point."""
+    found: Real = (read("px") - wanted.real) ** 2 + (read("py") - wanted.imag) ** 2
+    return found
+
+
+def nearest(x: Real, y: Real, wanted: Real) -> Real:
+    """Distances of a closed polygon (variants, corners) from points, (variants, points).
+
+    Of the corner that is nearest, and of the sides that meet there.
+    """
+    rows, found = np.arange(len(x)), []
+    for w in wanted:
+        dx, dy = x - w.real, y - w.imag
+        k = np.argmin(dx * dx + dy * dy, axis=1)
+        px, py = dx[rows, k], dy[rows, k]
+        best = px * px + py * py
+        for other in (k - 1, (k + 1) % x.shape[1]):
+            sx, sy = dx[rows, other] - px, dy[rows, other] - py
+            with np.errstate(all="ignore"):
+                share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
+            best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
+        found.append(np.sqrt(best))
+    return np.stack(found, axis=1)
 
 
 def length(linkage: Linkage, link: str) -> Any:

@@ -38,6 +38,7 @@ SCAN = 720  # places where peaks are looked for before the polish
 ROUNDS = 5
 STARTS = 3  # of the polish: the best that differ
 APART = 0.02  # in shares of the ranges: what counts as different
+BLOCK = 250  # candidates at once
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
 ACTIVE = 1e-6
 LOST = 10.0  # violation of what cannot be assembled, above all others
@@ -171,7 +172,11 @@ class Search:
         return np.concatenate([cycle, *(np.array(goal.places) for goal in self.goals)])
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
-        """Objective and violation of candidates."""
+        """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
+        blocks = [self._evaluate(x[k : k + BLOCK]) for k in range(0, len(x), BLOCK)]
+        return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
+
+    def _evaluate(self, x: Real) -> tuple[Real, Real]:
         with np.errstate(all="ignore"):
             values = self.values(x)
             violation = sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True))
@@ -222,7 +227,8 @@ class Search:
 
             return [
                 goal.fine(
-                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.swings[n], step
+                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.swings[n],
+                    step,
                 )
                 for n, goal in enumerate(self.goals)
             ]  # fmt: skip

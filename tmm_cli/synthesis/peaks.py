@@ -15,19 +15,6 @@ _FIT = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True)).T  # valu
 NEWTON = 6
 
 
-def crest(y: Real) -> Real:
-    """The largest value on a closed cycle, by a parabola through its neighbours; (variants,)."""
-    rows = np.arange(len(y))
-    k = np.argmax(y, axis=1)
-    at, before, after = y[rows, k], y[rows, k - 1], y[rows, (k + 1) % y.shape[1]]
-    bend = before - 2 * at + after
-    with np.errstate(all="ignore"):
-        more = -((after - before) ** 2) / (8 * bend)
-    parabola = np.isfinite(more) & (bend < 0)
-    found: Real = at + np.where(parabola, np.minimum(more, at - np.minimum(before, after)), 0.0)
-    return found
-
-
 def _five(y: Real, k: Real) -> tuple[Real, Real]:
     middle = np.clip(k, 2, y.shape[1] - 3)
     five = np.take_along_axis(y, middle[:, None] + np.arange(-2, 3), axis=1)
