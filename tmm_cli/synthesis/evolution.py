@@ -77,5 +77,7 @@ def evolve(
             x, f, v = np.where(won[:, None], trial, x), np.where(won, new_f, f), np.where(won, new_v, v)
     except KeyboardInterrupt:
         stopped = True
+    finally:
+        progress(generations, generations)
     order = np.lexsort((np.where(np.isfinite(f), f, np.inf), v))
     return Evolved(x[order], f[order], v[order], np.array(history or [(f[order[0]], v[order[0]])]), stopped)

@@ -226,14 +226,14 @@ def nearest(x: Real, y: Real, wanted: Real) -> Real:
 
     Of the corner that is nearest, and of the sides that meet there.
     """
-    rows, found = np.arange(len(x)), []
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    square, rows, found = (x * x + y * y) / 2, np.arange(len(x)), []
     for w in wanted:
-        dx, dy = x - w.real, y - w.imag
-        k = np.argmin(dx * dx + dy * dy, axis=1)
-        px, py = dx[rows, k], dy[rows, k]
+        k = np.argmin(square - (w.real * x + w.imag * y), axis=1)  # of half the square of the distance, but for w^2
+        px, py = x[rows, k] - w.real, y[rows, k] - w.imag
         best = px * px + py * py
         for other in (k - 1, (k + 1) % x.shape[1]):
-            sx, sy = dx[rows, other] - px, dy[rows, other] - py
+            sx, sy = x[rows, other] - w.real - px, y[rows, other] - w.imag - py
             with np.errstate(all="ignore"):
                 share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
             best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)

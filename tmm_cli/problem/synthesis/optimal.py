@@ -121,7 +121,8 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
         least, most = sides.get("least", equal), sides.get("most", equal)
         if least is not None and most is not None and least > most:
             raise ProblemError("the least is more than the most", path=path, found=f"{given.least} and {given.most}")
-        limits.append(Limit(goal, least, most, path))
+        key = "equal" if equal is not None else "least" if most is None else "most"
+        limits.append(Limit(goal, least, most, (*path, key)))
     objective = _goal(shape.objective, middle, sense, ("objective",))
     target = shape.objective.target
     wanted = None if target is None else sense.number(target, _dimension(objective, middle), ("objective", "target"))
@@ -199,8 +200,8 @@ def _bar() -> Callable[[int, int], None]:
     def show(at: int, of: int) -> None:
         if at == 0:
             bar.start()
-        bar.update(task, completed=at + 1, total=of)
-        if at + 1 >= of:
+        bar.update(task, completed=at, total=of)
+        if at == of:
             bar.stop()
 
     return show
