@@ -175,13 +175,11 @@ def test_polish_solves_a_problem_of_textbooks():
     )
     assert d == pytest.approx([1.4, 1.7], abs=1e-10) and lam[0] == pytest.approx(0.8, abs=1e-9)
     # the largest of two parabolas is least where they are equal
-    pieces = polish(
-        lambda x: Local(
-            np.stack([x[:, 0] ** 2, (x[:, 0] - 1) ** 2 + 0.5], 1), np.zeros((len(x), 0)), np.zeros((len(x), 0))
-        ),
-        np.array([0.2]),
-    )
-    assert pieces == pytest.approx([0.75], abs=1e-10)
+
+    def both(x):
+        return Local(np.hstack([x**2, (x - 1) ** 2 + 0.5]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
+
+    assert polish(both, np.array([0.2])) == pytest.approx([0.75], abs=1e-10)
 
 
 def test_peaks_and_zeros_are_found_between_the_places():

@@ -125,9 +125,10 @@ class Goal:
         if self.of in STROKES:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
-            if swings and np.any(round_ := travel > np.pi):  # angles are within -pi..pi
-                travel[round_] = np.ptp(np.unwrap(run[round_], axis=1), axis=1)
-            return travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
+            if swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
+                travel[past] = np.ptp(np.unwrap(run[past], axis=1), axis=1)
+            found: Real = travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
+            return found
         return self.counted(self.deviations(read, swings))
 
     @property
@@ -149,7 +150,8 @@ class Goal:
             return turned
         x, y = read("px"), read("py")
         if self.places:
-            return np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
+            apart: Real = np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
+            return apart
         return nearest(x, y, np.array(self.wanted))
 
     def counted(self, off: Real) -> Real:
