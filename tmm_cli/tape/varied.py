@@ -31,6 +31,9 @@ class Varied(NDArrayOperatorsMixin):
     def __repr__(self) -> str:
         return repr(self.value)
 
+    def __format__(self, how: str) -> str:
+        return format(self.value, how)
+
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise DependsOnData("an array is wanted that depends on the data")
 

@@ -45,6 +45,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.iterated": "groups that are found by iteration, toothed wheels, cams and friction cannot be "
     "searched over",
     "synthesis_optimal.dyads": "a linkage of groups of class II",
+    "synthesis_optimal.not_here": "a parameter that varies is used where only a given number can stand",
+    "synthesis_optimal.lengths": "parameters of lengths, places, masses and loads, not of the driver's motion",
     "synthesis_optimal.no_assembly": "no linkage within these bounds can be assembled as it is sketched",
     "synthesis_optimal.other_sketch": "a sketch that fits, e.g. with places that rest on the parameters",
     "synthesis_optimal.never": "no mechanism within these bounds has a crank that turns fully",
