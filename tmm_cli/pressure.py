@@ -90,6 +90,12 @@ def followers(group: Group) -> Iterable[Lead]:
 
 def angle(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> Real:
     """Pressure angle of a driven link at every position, rad; nan where there is none."""
+    found: Real = np.arctan2(*sides(motion, kernel, at, lead))
+    return np.where(found < NOTHING, 0.0, found)
+
+
+def sides(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+    """What is to each other as sine and cosine of the pressure angle: both above zero."""
     link, outer, pairs = lead
     group, poses = kernel.group, motion.poses
     pose = poses[link]
@@ -116,12 +122,13 @@ def angle(motion: Motion, kernel: Kernel, at: Placement, lead: Lead) -> Real:
         velocity = u if outer.slide is not None else 1j * (point - pivot)
         # against the resistance all together do work of one sign; by both components, which tells small angles
         power, aside = -dot(force, velocity), np.abs(cross(force, velocity))
+        along, across = along + power, across + aside
+        if len(pairs) == 1:
+            return across, np.abs(along)
         most = np.hypot(power, aside)
-        along, across, loose = along + power, across + aside, loose + most
+        loose = loose + most
         lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
-    sine = across if len(pairs) == 1 else np.sqrt(lost * (loose + along))
-    found: Real = np.arctan2(sine, np.abs(along))
-    return np.where(found < NOTHING, 0.0, found)
+    return np.sqrt(lost * (loose + along)), np.abs(along)
 
 
 def find_pressure(

@@ -236,7 +236,7 @@ class Parser:
             return Quantity(self.units.functions[name](*values), ANGLE)
         if name == "hypot":
             return Quantity(self.units.functions[name](*values), dimension)
-        return Quantity(min(values) if name == "min" else max(values), dimension)
+        return Quantity(self.units.functions[name](values), dimension)
 
     def alike(self, left: Quantity, right: Quantity) -> tuple[float, float, Dimension | None]:
         """Both values in one dimension, a bare one taken in the file's unit of the other's."""

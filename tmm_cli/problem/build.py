@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from copy import copy
 from dataclasses import replace
 from functools import partial
 from pathlib import PurePath
@@ -18,13 +19,14 @@ from tmm_cli.problem.build_positions import build_request
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.reader import Tree, read_file
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem.record import Problem, Synthesised
 from tmm_cli.problem.sense import Sense, check_name, direction, phase, planar
 from tmm_cli.problem.stray import nothing_stray
 from tmm_cli.problem.units import (
     ANGLE,
     LENGTH,
     NUMBER,
+    Quantity,
     UnitSystem,
 )
 
@@ -43,8 +45,11 @@ def is_chain(tree: Tree) -> bool:
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
-def build(tree: Tree, *, extended: bool = False) -> Problem:
-    """A problem from a file that has been read; extended: with its numbers in longdouble."""
+def build(tree: Tree, *, extended: bool = False, known: Synthesised | None = None) -> Problem:
+    """A problem from a file that has been read; extended: with its numbers in longdouble.
+
+    known: what its synthesis found already, where that was a search.
+    """
     if is_chain(tree):
         raise ProblemError(
             "a chain given by pairs alone has no dimensions: there is only its structure", path=("structure",),
@@ -62,7 +67,7 @@ def build(tree: Tree, *, extended: bool = False) -> Problem:
 
         raise shape_error(error, tree) from None
     try:
-        return _Builder(shape, tree, extended).problem()
+        return _Builder(shape, tree, extended, known).problem()
     except ProblemError as error:
         raise error.located(tree.file, tree) from None
 
@@ -70,7 +75,7 @@ def build(tree: Tree, *, extended: bool = False) -> Problem:
 class _Builder:
     """Builds the parts of one linkage in the order in which they need each other."""
 
-    def __init__(self, shape: schema.File, tree: Tree, extended: bool) -> None:
+    def __init__(self, shape: schema.File, tree: Tree, extended: bool, known: Synthesised | None = None) -> None:
         self.shape, self.tree = shape, tree
         try:
             units = _extended_units(shape.units) if extended else UnitSystem(shape.units)
@@ -80,13 +85,19 @@ class _Builder:
         if shape.synthesis is not None:
             from tmm_cli.problem.synthesis.build import with_synthesis  # few files have it
 
-            parameters, self.synthesis = with_synthesis(shape.synthesis, shape.parameters, units)
+            parameters, self.synthesis = with_synthesis(shape.synthesis, shape.parameters, units, self.variant, known)
         else:
             try:
                 parameters = resolve_parameters(shape.parameters, units)
             except ProblemError as error:
                 raise error.at("parameters") from None
         self.sense = Sense(parameters, units)
+
+    def variant(self, parameters: dict[str, Quantity], units: UnitSystem) -> Linkage:
+        """The linkage with other parameters, for a synthesis that searches."""
+        other = copy(self)
+        other.sense, other.synthesis = Sense(parameters, units), None
+        return other.problem().linkage
 
     def problem(self) -> Problem:
         shape = self.shape
@@ -111,7 +122,7 @@ class _Builder:
             PurePath(file).stem, shape.title or PurePath(file).stem, linkage,
             build_request(shape, driver, self.sense), self.sense.units,
             limit, shape.description, file, allowed, given, self.tree, self.synthesis,
-            partial(build, self.tree, extended=True),
+            partial(build, self.tree, extended=True, known=self.synthesis),
         )  # fmt: skip
 
     def meshes(self, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...]) -> tuple[Mesh, ...]:

@@ -13,7 +13,8 @@ class ExtendedUnits(UnitSystem):
 
     functions = {  # noqa: RUF012  a table
         "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-        "atan2": np.arctan2, "hypot": np.hypot, "sqrt": np.sqrt, "pi": np.longdouble(PI),
+        "atan2": np.arctan2, "hypot": np.hypot, "sqrt": np.sqrt, "min": min, "max": max,
+        "pi": np.longdouble(PI),
     }  # fmt: skip
 
     def number(self, written: str | int | float) -> float:

@@ -87,7 +87,11 @@ class Unit:
 
 def _pi(number: float) -> float:
     """Pi as exactly as the number: a longdouble is no float, and brings arithmetic of its own."""
-    return math.pi if isinstance(number, int | float) else type(number)("3.14159265358979323846264338327950288")
+    return (
+        math.pi
+        if isinstance(number, int | float) or hasattr(number, "stand")
+        else type(number)("3.14159265358979323846264338327950288")
+    )
 
 
 @dataclass(frozen=True)
@@ -226,7 +230,7 @@ class UnitSystem:
             self._names[kind.dimension] = name
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
-    functions: Mapping[str, Any] = vars(math)  # what arithmetic computes with
+    functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max}  # what arithmetic computes with
 
     def number(self, written: str | int | float) -> float:
         """The value of a number as it is written."""

@@ -22,7 +22,8 @@ def tables(
 ) -> Iterable[Table]:
     """Asked, found, measured (None: there is no linkage)."""
     outcome = found.outcome
-    yield _values("synthesis-asked", say("synthesis.asked", task=found.task), outcome.asked, {}, units, digits)
+    bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else {}
+    yield _values("synthesis-asked", say("synthesis.asked", task=found.task), outcome.asked, bounded, units, digits)
     source = say("synthesis.source", source=say(outcome.source))
     notes = (*map(say, outcome.notes), source)
     yield _values("synthesis-found", say("synthesis.found"), outcome.found, found.names, units, digits, notes)

@@ -19,6 +19,7 @@ TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name
     "four-bar-by-k": "four_bar_by_k",
     "slotted-lever": "slotted_lever",
     "shaper": "shaper",
+    "optimal": "optimal",
 }
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
+from tmm_cli.linkage import Linkage
 from tmm_cli.problem.arithmetic import Parser
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.expressions import check_parameter, resolve_parameters
@@ -20,31 +21,50 @@ from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.words import say
 
 Parameters = dict[str, Quantity]
+Variant = Callable[[Parameters, UnitSystem], Linkage]
 
 
-def with_synthesis(block: Block, raw: Mapping[str, object], units: UnitSystem) -> tuple[Parameters, Synthesised]:
-    """All parameters of the file, and what was found. Raises ProblemError."""
+def with_synthesis(
+    block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None,
+    known: Synthesised | None = None,
+) -> tuple[Parameters, Synthesised]:  # fmt: skip
+    """All parameters of the file, and what was found. Raises ProblemError.
+
+    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
+    """
     names = _names(block, raw)
     late = _resting(raw, set(names.values()), units)
     early = _parameters({name: raw[name] for name in raw if name not in late}, units)
+
+    def with_found(found: Parameters, own: UnitSystem) -> Parameters:
+        known = early | found
+        return known | _parameters({name: raw[name] for name in late}, own, known)
+
+    def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
+        assert variant is not None
+        return variant(with_found(found, own), own)
+
     try:
         _not_on(block, late, units)
-        asked = reader(block.task).asked(block, Sense(early, units))
+        search = getattr(reader(block.task), "SEARCH", False)
+        if search and variant is None:
+            raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
+        sense = Sense(early, units)
         try:
-            outcome = task(block.task).solve(asked)
+            if known is not None and search:
+                outcome = known.outcome
+            else:
+                asked = reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
+                outcome = task(block.task).solve(asked)
         except Infeasible as error:
             raise _refused(error, block, units) from None
     except ProblemError as error:
         raise error.at("synthesis") from None
-    kinds = _standard(block)
     found = {
-        names[name]: Quantity(_plain(value.value), KINDS[kinds[name]].dimension)
+        names[name]: Quantity(_plain(value.value), KINDS[value.kind].dimension)
         for name, value in outcome.parameters.items() if name in names
     }  # fmt: skip
-    known = early | found
-    return known | _parameters({name: raw[name] for name in late}, units, known), Synthesised(
-        block.task, outcome, names
-    )
+    return with_found(found, units), Synthesised(block.task, outcome, names)
 
 
 def _parameters(

@@ -1,0 +1,89 @@
+"""A file's linkage with parameters put in anew is the linkage that the file builds for them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_commands import ROOT
+
+from tmm_cli.batch import everything, prepare
+from tmm_cli.family import Iterated, family
+from tmm_cli.problem import schema
+from tmm_cli.problem.build import _Builder
+from tmm_cli.problem.expressions import evaluate_quantity, resolve_parameters
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.units import Quantity, UnitSystem
+from tmm_cli.problem.varied import VariedUnits
+from tmm_cli.tape import record
+from tmm_cli.tape.varied import Varied
+
+
+def maker(name, given):
+    """The linkage of a file of the bank for other values of some parameters, and their values in the file."""
+    tree = read_file(str(ROOT / "problems" / f"{name}.yaml"))
+    shape = schema.File.model_validate(tree.data)
+    builder = _Builder(shape, tree, False)
+    known = builder.sense.parameters
+    rest = {key: value for key, value in shape.parameters.items() if key not in given}
+
+    def make(numbers):
+        units = UnitSystem(shape.units)
+        units = VariedUnits(units) if any(isinstance(x, Varied) for x in numbers) else units
+        varied = {key: Quantity(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
+        return builder.variant(varied | resolve_parameters(rest, units, varied), units)
+
+    return make, [known[key].value for key in given]
+
+
+BANK = {"crank-rocker": ["l1", "l2", "l3", "l4"], "shaper": 3, "six-bar": 4, "crank-slider-offset": 3,
+        "slotted-lever": 2, "course-2": 3}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BANK)
+def test_a_family_is_what_the_file_builds_for_the_same_numbers(name):
+    tree = read_file(str(ROOT / "problems" / f"{name}.yaml"))
+    given = BANK[name] if isinstance(BANK[name], list) else list(tree.data["parameters"])[: BANK[name]]
+    make, first = maker(name, given)
+    columns = np.array(first) * (1 + 0.02 * np.random.default_rng(1).uniform(-1, 1, (5, len(first))))
+    q = np.linspace(0.1, 6.1, 12)
+    loads = [x for x in make(first).loads if x.table is not None and x.table.against != "crank angle"]
+    found = family(make, first, everything, forces=not loads)(*columns.T[:, :, None], q)
+    known = prepare([make(row) for row in columns], everything, forces=not loads)
+    expected, sound = known(q), known.sound(q)["moving"]
+    if make(first).driver.acceleration:
+        sound = sound & (q > make(first).sketch.at)  # before it starts there is no motion
+    for key in expected:
+        size = np.max(np.abs(expected[key][sound])) or 1.0
+        assert np.max(np.abs((found[key] - expected[key])[sound])) < 1e-11 * size, key
+
+
+ARITHMETIC = (
+    "asin(a/b) + acos(a/b) + atan(a/b)", "sqrt(a^2 + b^2) - hypot(a, b)/2", "min(a, b, 2*a) + max(b, 3*a)",
+    "a*tan(0.3)", "a^3/b^2", "atan2(a, b) - 30 deg", "abs(a - b)", "b*sin(60 deg) - a*cos(atan(a/b))", "(a/b)^-1",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ARITHMETIC)
+def test_arithmetic_of_a_file_on_numbers_that_vary(text):
+    units = UnitSystem()
+    a, b = np.array([[0.02], [0.06]]), np.array([[0.09], [0.07]])
+
+    def value(x, y, own):
+        length = units_of("1 mm")
+        return evaluate_quantity(text, {"a": Quantity(x, length), "b": Quantity(y, length)}, own).value
+
+    def units_of(sample):
+        return evaluate_quantity(sample, {}, units).dimension
+
+    found = record(lambda x, y: {"y": value(Varied(0.02, x), Varied(0.09, y), VariedUnits(units)).stand}, 1, 1)(a, b)[
+        "y"
+    ]
+    assert found[:, 0] == pytest.approx([value(x, y, units) for x, y in zip(a[:, 0], b[:, 0], strict=True)], rel=1e-13)
+
+
+def test_groups_found_by_iteration_are_no_family():
+    make, first = maker(
+        "press-class-iii", list(read_file(str(ROOT / "problems/press-class-iii.yaml")).data["parameters"])[:1]
+    )
+    with pytest.raises(Iterated):
+        family(make, first, everything)

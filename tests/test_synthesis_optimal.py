@@ -1,0 +1,198 @@
+"""Optimal synthesis: known optima, margins, the same answer of the same seed, refusals."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from test_commands import ROOT, tmm
+
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.crank_slider import Asked, find
+from tmm_cli.synthesis.evolution import evolve
+from tmm_cli.synthesis.peaks import peak, zero
+from tmm_cli.synthesis.polish import Local, polish, quadratic
+
+SLIDER = """
+tmm: 1
+parameters: {n1: 90 rpm}
+synthesis:
+  task: optimal
+  vary: {OA: [30, 90], AB: [80, 400], e: [1, 80]}
+OPTIONS
+points: {O: [0, 0]}
+guides: {x: {through: [0, -e], angle: 0}}
+links:
+  1: {points: [O, A], length: OA}
+  2: {points: [A, B], length: AB}
+  3: {points: [B], slides: {on: x}}
+driver: {link: 1, speed: n1, turns: ccw}
+sketch: {at: 60 deg, B: [OA/2 + AB, -e]}
+masses:
+  2: {mass: 2 kg, inertia: 0.01, centre: [0.4*AB, 0]}
+  3: {mass: 5 kg, inertia: 0.02, centre: [0, 0]}
+loads:
+  F: {on: 3, at: B, force: [-2 kN, 0]}
+output: 3
+"""
+ROD = """
+  objective: {of: length, links: [2]}
+  constraints: [{of: stroke, equal: 120}, {of: k, equal: 1.08}, {of: pressure, most: 32 deg}]
+"""
+
+
+def slider(options):
+    return build(read_text(SLIDER.replace("OPTIONS", options.strip("\n")), "x.yaml"))
+
+
+def parameters(problem):
+    return {name: value.value for name, value in problem.synthesis.outcome.parameters.items()}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_shortest_rod_that_keeps_a_pressure_angle_is_that_of_the_closed_formula(seed):
+    problem = slider(ROD + f"  seed: {seed}\n")
+    known = find(Asked(stroke=0.12, k=1.08, pressure=np.radians(32)))
+    found = parameters(problem)
+    assert [found["OA"], found["AB"], found["e"]] == pytest.approx([known.r, known.l, known.e], rel=1e-9)
+
+
+def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told():
+    problem = slider(ROD)
+    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    told = {value.words.partition(".")[2]: value for value in problem.synthesis.outcome.found}
+    assert told["state_pressure"].text.endswith(".active") and told["margin_pressure"].value == pytest.approx(
+        0, abs=1e-9
+    )
+    assert told["state_k"].text.endswith(".equal")
+
+
+def test_the_same_seed_gives_the_same_answer_to_the_last_bit():
+    assert parameters(slider(ROD + "  generations: 30\n")) == parameters(slider(ROD + "  generations: 30\n"))
+
+
+def test_least_pressure_angle_of_a_crank_slider_is_the_least_that_its_k_allows():
+    from tmm_cli.synthesis.crank_slider import least_pressure, theta_of
+
+    problem = slider("""
+  objective: pressure
+  constraints: [{of: stroke, equal: 120}, {of: k, equal: 1.3}]
+""")
+    best = problem.synthesis.outcome.demands[1].value
+    assert best == pytest.approx(float(least_pressure(theta_of(1.3))), rel=1e-9)
+
+
+FORCES = {
+    "moment": ("{of: moment}", "N m"),
+    "reaction": ("{of: reaction, pair: A}", "N"),
+    "mass": ("mass", "kg"),
+    "box": ("box", "m"),
+    "margin": ("margin", ""),
+    "speed": ("{of: speed, target: 0.4 m/s}", "m/s"),
+    "law": ("{of: law, link: 3, at: [0, 60, 120], values: [300, 240, 180]}", "m"),
+    "law, minimax": ("{of: law, link: 3, norm: largest, at: [0, 50, 100, 150], values: [300, 270, 210, 150]}", "m"),
+    "path": ("{of: path, point: A, at: [0, 90], through: [[50, 0], [0, 60]]}", "m"),
+}
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_every_objective_is_what_is_measured_on_the_analysed_mechanism(name):
+    problem = slider(f"""
+  objective: {FORCES[name][0]}
+  constraints: [{{of: stroke, least: 100}}, {{of: pressure, most: 40 deg}}]
+  generations: 60
+""")
+    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+        assert m.met, (m.demand.words, m.demand.value, m.value)
+
+
+def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_two_seeds():
+    text = (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
+    found = [
+        build(read_text(text.replace("objective:", f"seed: {seed}\n  objective:"), "x.yaml")).synthesis.outcome
+        for seed in (3, 4)
+    ]
+    best = [outcome.demands[1].value for outcome in found]
+    assert best == pytest.approx([0.39599372e-3] * 2, rel=1e-7)
+
+
+REFUSED = {
+    "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]":
+        "no mechanism within the bounds was found that meets this",
+    "  objective: presure": "this word is not known here",
+    "  objective: {of: reaction, pair: X}": "there is no pair of that name",
+    "  objective: {of: path, point: A}": "the key `through` is missing",
+    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "as many angles as values are wanted",
+    "  objective: {of: mass, pair: A}": "mass has no pair",
+    "  objective: mass\n  constraints: [{of: k}]": "a constraint has a bound",
+    "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the least is more than the most",
+    "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "a number is wanted here",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("options", REFUSED)
+def test_what_cannot_be_asked_is_refused(options):
+    with pytest.raises(ProblemError) as caught:
+        slider(options)
+    assert REFUSED[options] in str(caught.value)
+
+
+@pytest.mark.parametrize(("vary", "words"), [
+    ("{OA: [90, 30]}", "the lower bound comes first"),
+    ("{OA: [-90, 30]}", "a length cannot be negative"),
+    ("{OA: [30]}", "2 are wanted here"),
+    ("{n1: [30, 40]}", "is given by hand"),
+    ("{OA: [30, 90], AB: [80, 400], e: [1, 80], n: [1 rpm, 2 rpm]}", "only a given number can stand"),
+])  # fmt: skip
+def test_bounds_that_cannot_be_are_refused(vary, words):
+    text = SLIDER.replace("{OA: [30, 90], AB: [80, 400], e: [1, 80]}", vary).replace("OPTIONS", "  objective: mass")
+    text = text.replace("speed: n1", "speed: n") if "n:" in vary else text
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    assert words in str(caught.value)
+
+
+def test_stopped_by_hand_it_gives_the_best_so_far():
+    def stop(at, of):
+        if at == 5:
+            raise KeyboardInterrupt
+
+    found = evolve(
+        lambda x: (np.sum((x - 0.3) ** 2, axis=1), np.zeros(len(x))), 3, population=30, generations=100, seed=1,
+        progress=stop,
+    )  # fmt: skip
+    assert found.stopped and len(found.history) == 5 and found.objective[0] == min(found.objective)
+
+
+def test_polish_solves_a_problem_of_textbooks():
+    # J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., example 16.4: the answer is (1.4, 1.7)
+    rows = np.array([[1, -2], [-1, -2], [-1, 2], [1, 0], [0, 1.0]])
+    d, _, lam = quadratic(
+        2 * np.eye(2), np.array([-2, -5.0]), np.zeros((0, 2)), np.zeros(0), rows, np.array([-2, -6, -2, 0, 0.0])
+    )
+    assert d == pytest.approx([1.4, 1.7], abs=1e-10) and lam[0] == pytest.approx(0.8, abs=1e-9)
+    # the largest of two parabolas is least where they are equal
+
+    def both(x):
+        return Local(np.hstack([x**2, (x - 1) ** 2 + 0.5]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
+
+    assert polish(both, np.array([0.2])) == pytest.approx([0.75], abs=1e-10)
+
+
+def test_peaks_and_zeros_are_found_between_the_places():
+    q = 0.37 + 0.0055 * np.arange(-16, 17) + np.array([[0.0], [0.002]])
+    assert peak(np.cos(q - 0.371)) == pytest.approx([1, 1], abs=1e-14)
+    assert q[:, 0] + 0.0055 * zero(np.sin(q - 0.371)) == pytest.approx([0.371] * 2, abs=1e-13)
+
+
+def test_the_history_of_the_search_is_drawn(tmp_path):
+    done = tmm("synthesis", ROOT / "problems" / "crank-rocker-optimal.yaml", "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "crank-rocker-optimal"
+    assert (folder / "synthesis-history.svg").exists()
+    assert json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))["met"] is True

@@ -1,0 +1,207 @@
+"""Optimal synthesis: keys of the task."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from tmm_cli.linkage import Linkage
+from tmm_cli.problem.dimensions import KINDS
+from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.expressions import evaluate_quantity
+from tmm_cli.problem.schema import Name, Strict, Value, Vector
+from tmm_cli.problem.sense import Sense
+from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
+from tmm_cli.problem.varied import VariedUnits
+from tmm_cli.synthesis.goals import Goal
+from tmm_cli.synthesis.optimal import Asked, Limit
+from tmm_cli.tape.varied import Varied
+
+SEARCH = True  # it wants the linkage for other parameters, and takes long
+MOST = 20  # parameters
+Of = Literal["length", "mass", "box", "pressure", "moment", "reaction", "margin", "stroke", "k", "speed", "path", "law"]
+NEEDS = {"reaction": "pair", "path": "point", "law": "link"}  # the key that names of what
+FULL = {"moment": "moment of force", "reaction": "force"}
+
+
+class Quality(Strict):
+    """A quantity of the mechanism over its cycle."""
+
+    of: Of = Field(description="length: sum of link lengths; box: width + height; margin: from dead positions")
+    pair: Name | None = Field(default=None, description="whose reaction")
+    point: Name | None = Field(default=None, description="whose path")
+    link: Name | None = Field(default=None, description="whose law of motion")
+    links: list[Name] = Field(default_factory=list, max_length=100, description="of length: of these alone")
+    through: list[Vector] = Field(default_factory=list, max_length=200, description="wanted points of the path")
+    values: list[Value] = Field(default_factory=list, max_length=200, description="wanted angles or runs of the link")
+    at: list[Value] = Field(default_factory=list, max_length=200, description="angles of the crank for them")
+    relative: bool = Field(default=False, description="law: from the first value on")
+    norm: Literal["least squares", "largest"] = "least squares"
+
+
+class Objective(Quality):
+    """What is made least (a margin: largest), or brought near to a target."""
+
+    target: Value | None = Field(default=None, description="come near to this instead")
+
+
+class Constraint(Quality):
+    """What must be kept."""
+
+    least: Value | None = None
+    most: Value | None = None
+    equal: Value | None = None
+
+
+def _short(found: Any) -> Any:
+    return {"of": found} if isinstance(found, str) else found
+
+
+class Shape(Block):
+    """Parameters within bounds that make an objective least and keep constraints; the crank turns fully always."""
+
+    task: Literal["optimal"]
+    vary: dict[Name, Annotated[list[Value], Field(min_length=2, max_length=2)]] = Field(
+        min_length=1, max_length=MOST, description="bounds by name of the parameter; bare numbers are lengths"
+    )
+    objective: Annotated[Objective, BeforeValidator(_short)]
+    constraints: list[Constraint] = Field(default_factory=list, max_length=30)
+    positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
+    population: int = Field(default=0, ge=0, le=10_000, description="candidates in a generation; 15 a parameter")
+    generations: int = Field(default=200, ge=1, le=100_000)
+    seed: int = Field(default=1, ge=0, le=2**32 - 1)
+
+
+def parameters(shape: Shape) -> dict[str, str]:
+    """Names of what is found; their kinds follow from the bounds."""
+    return dict.fromkeys(shape.vary, "length")
+
+
+def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity], UnitSystem], Linkage]) -> Asked:
+    """The task in SI. Raises ProblemError."""
+    low, high, kinds = {}, {}, {}
+    for name, (first, second) in shape.vary.items():
+        way = ("vary", name)
+        kind = next((k for k in map(_kind_of, (first, second), (sense, sense)) if k), "length")
+        kinds[name] = kind
+        low[name], high[name] = (
+            float(sense.number(v, KINDS[kind].dimension, (*way, n))) for n, v in enumerate((first, second))
+        )
+        if not low[name] < high[name]:
+            raise ProblemError(
+                "the lower bound comes first", path=way, found=f"{first} and {second}", allowed="[low, high]"
+            )
+    varied = VariedUnits(sense.units)
+    names = [shape.names.get(name, name) for name in low]
+
+    def make(numbers: Sequence[Any]) -> Linkage:
+        units = varied if any(isinstance(x, Varied) for x in numbers) else sense.units
+        dimensions = (KINDS[kind].dimension for kind in kinds.values())
+        return linkage_of({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
+
+    middle = make([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)])
+    for end in (low, high):  # what the file refuses at its bounds it is to say before the search
+        make(list(end.values()))
+    limits = []
+    for n, given in enumerate(shape.constraints):
+        path: tuple[str | int, ...] = ("constraints", n)
+        goal = _goal(given, middle, sense, path)
+        dimension = _dimension(goal, middle)
+        sides = {
+            key: sense.number(value, dimension, (*path, key))
+            for key in ("least", "most", "equal") if (value := getattr(given, key)) is not None
+        }  # fmt: skip
+        if not sides or ("equal" in sides and len(sides) > 1):
+            raise ProblemError("a constraint has a bound", path=path, allowed="least, most or both; or equal", key=True)
+        equal = sides.get("equal")
+        least, most = sides.get("least", equal), sides.get("most", equal)
+        if least is not None and most is not None and least > most:
+            raise ProblemError("the least is more than the most", path=path, found=f"{given.least} and {given.most}")
+        key = "equal" if equal is not None else "least" if most is None else "most"
+        limits.append(Limit(goal, least, most, (*path, key)))
+    objective = _goal(shape.objective, middle, sense, ("objective",))
+    target = shape.objective.target
+    wanted = None if target is None else sense.number(target, _dimension(objective, middle), ("objective", "target"))
+    return Asked(
+        low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
+        shape.generations, shape.seed, _bar(),
+    )  # fmt: skip
+
+
+def _kind_of(source: Any, sense: Sense) -> str | None:
+    try:
+        found = evaluate_quantity(source, sense.parameters, sense.units).dimension
+    except ProblemError:
+        return None  # said when it is evaluated
+    return next((name for name, kind in KINDS.items() if kind.dimension == found), None)
+
+
+def _dimension(goal: Goal, linkage: Linkage) -> Dimension:
+    from tmm_cli.mobile import mobile
+
+    return KINDS[goal.kind(linkage, mobile(linkage).solved)].dimension
+
+
+def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int, ...]) -> Goal:
+    own = {"pair", "point", "link", "links", "through", "values", "at", "relative"}
+    takes = {"reaction": {"pair"}, "path": {"point", "through", "at"}, "law": {"link", "values", "at", "relative"},
+             "length": {"links"}}.get(given.of, set())  # fmt: skip
+    for key in own - takes:
+        if getattr(given, key):
+            allowed = ", ".join(sorted(takes)) or "of"
+            raise ProblemError(f"{given.of} has no {key}", path=(*path, key), allowed=allowed, key=True)
+    name = ""
+    if need := NEEDS.get(given.of):
+        name = getattr(given, need) or ""
+        known = {
+            "pair": [h.point for h in linkage.hinges] + [s.name for s in linkage.slides], "link": linkage.moving,
+            "point": [p for link in linkage.moving for p in linkage.links[link].points],
+        }[need]  # fmt: skip
+        if not name:
+            raise ProblemError(f"the key `{need}` is missing", path=(*path, need), allowed=", ".join(known))
+        sense.known(name, dict.fromkeys(known), (*path, need), need)
+    for n, link in enumerate(given.links):
+        sense.known(link, linkage.links, (*path, "links", n), "link")
+    wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
+    if given.of == "law":
+        dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
+        wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
+    places = [sense.number(v, ANGLE, (*path, "at", n)) for n, v in enumerate(given.at)]
+    if given.of in ("path", "law"):
+        key = "through" if given.of == "path" else "values"
+        if not wanted:
+            raise ProblemError(f"the key `{key}` is missing", path=(*path, key), allowed="what is wanted")
+        if len(places) != len(wanted) and (places or given.of == "law"):
+            raise ProblemError(
+                f"as many angles as {key} are wanted", path=(*path, "at"), found=quote(len(places)),
+                allowed=str(len(wanted)),
+            )  # fmt: skip
+    return Goal(
+        given.of, name, tuple(given.links), tuple(map(float, places)), tuple(wanted), given.norm, given.relative
+    )
+
+
+def _bar() -> Callable[[int, int], None]:
+    """Progress on a terminal."""
+    if not sys.stderr.isatty():
+        return lambda at, of: None
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from tmm_cli.words import say
+
+    bar = Progress(console=Console(stderr=True), transient=True)
+    task = bar.add_task(say("synthesis_optimal.searching"))
+
+    def show(at: int, of: int) -> None:
+        if at == 0:
+            bar.start()
+        bar.update(task, completed=at, total=of)
+        if at == of:
+            bar.stop()
+
+    return show

@@ -1,0 +1,278 @@
+"""Candidates of an optimal synthesis: variants of a file's linkage, evaluated a whole generation at once.
+
+Coarsely from places all round the cycle, for the search; exactly from windows about the peaks, for the polish.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.family import Iterated, family
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.linkage import Linkage
+from tmm_cli.mobile import mobile
+from tmm_cli.motion import Motion
+from tmm_cli.refused import Refused
+from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal
+from tmm_cli.synthesis.peaks import WINDOW
+from tmm_cli.synthesis.polish import Local, polish
+from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.tape import DependsOnData, Outputs
+from tmm_cli.vectors import Real
+
+W: Final = "synthesis_optimal"
+ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
+TRIES = 40  # of linkages that could tell the assembly
+SCAN = 720  # places where peaks are looked for before the polish
+ROUNDS = 5
+BLOCK = 125  # candidates at once
+LOST = 10.0  # violation of what cannot be assembled, above all others
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A constraint: least <= goal <= most (SI); equal where they are the same. at: its place among those asked for."""
+
+    goal: Goal
+    least: float | None = None
+    most: float | None = None
+    at: tuple[str | int, ...] = ()
+
+    @property
+    def equal(self) -> bool:
+        return self.least is not None and self.least == self.most
+
+    @property
+    def scale(self) -> float:
+        """What a miss is measured against."""
+        if self.goal.of in LEAST:
+            return 1.0
+        return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
+
+    def missed(self, value: Any) -> Any:
+        """By how much, in shares of the scale; 0 where it is kept."""
+        low = 0.0 if self.least is None else self.least - value
+        high = 0.0 if self.most is None else value - self.most
+        return np.maximum(np.maximum(low, high), 0.0) / self.scale
+
+    def margin(self, value: float) -> float:
+        """How far the value is from its nearer limit, in its unit."""
+        above = np.inf if self.least is None else value - self.least
+        return float(min(above, np.inf if self.most is None else self.most - value))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
+    order. target: the objective is to come near to this. positions: round the cycle, in the search.
+    """
+
+    low: dict[str, float]
+    high: dict[str, float]
+    kinds: dict[str, str]
+    make: Callable[[Sequence[Any]], Linkage] = field(compare=False)
+    objective: Goal
+    limits: tuple[Limit, ...] = ()
+    target: float | None = None
+    positions: int = 72
+    population: int = 0
+    generations: int = 200
+    seed: int = 1
+    progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
+
+
+class Search:
+    """A task ready for evaluation. Raises Infeasible."""
+
+    def __init__(self, asked: Asked) -> None:
+        self.asked = asked
+        self.low, self.high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
+        self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
+        self.goals = (asked.objective, *(limit.goal for limit in self.limits))
+        self.first = self._first()
+        self.linkage = asked.make(self.first)
+        self.groups = mobile(self.linkage).solved
+        driver = self.linkage.driver
+        if driver.kind != "turn" or driver.stroke is not None or self.linkage.others:
+            raise Infeasible("task", f"{W}.no_crank", f"{W}.a_crank")
+        forces = any(goal.of in FORCES for goal in self.goals)
+        if forces and any(x.working_stroke_only or x.table for x in self.linkage.loads):
+            raise Infeasible("objective", f"{W}.stroke_loads", f"{W}.constant_loads")
+        try:
+            self.program = family(asked.make, self.first, self._outputs, forces=forces)
+        except Iterated:
+            raise Infeasible("task", f"{W}.iterated", f"{W}.dyads") from None
+        except DependsOnData:
+            raise Infeasible("vary", f"{W}.not_here", f"{W}.lengths") from None
+        self.program = self.program.only(*(n for n in self.program.outputs if n not in ("placed", "moving", "margin")))
+        self.step = 2 * np.pi / asked.positions
+        self.start = self.linkage.sketch.at
+        self.swings = tuple(not goal.slides(self.linkage, self.groups) for goal in self.goals)
+
+    def _first(self) -> list[float]:
+        """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
+        chance = np.random.default_rng(0)
+        shares = [np.full(len(self.low), 0.5), *chance.random((TRIES, len(self.low)))]
+        refusal: Refused | None = None
+        for share in shares:
+            numbers = [float(x) for x in self.low + share * (self.high - self.low)]
+            try:
+                family(self.asked.make, numbers, lambda motion, reactions: {})
+            except (Iterated, DependsOnData):
+                return numbers
+            except Refused as error:
+                refusal = error
+            else:
+                return numbers
+        assert refusal is not None
+        raise Infeasible("vary", f"{W}.no_assembly", f"{W}.other_sketch")
+
+    def _outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
+        return {
+            f"{n}.{name}": value for n, goal in enumerate(self.goals)
+            for name, value in goal.outputs(motion, reactions).items()
+        }  # fmt: skip
+
+    def numbers(self, x: Real) -> Real:
+        """SI numbers of shares of the ranges."""
+        found: Real = self.low + x * (self.high - self.low)
+        return found
+
+    def run(self, x: Real, q: Real) -> Outputs:
+        """All outputs for candidates x (variants, n) in 0..1."""
+        columns = self.numbers(x)
+        return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+
+    @cached_property
+    def exact(self) -> list[slice]:
+        """Where the places of the goals stand after those round the cycle; of a goal without any, the cycle."""
+        found, at = [], self.asked.positions
+        for goal in self.goals:
+            n = len(goal.places)
+            found.append(slice(at, at + n) if n else slice(0, self.asked.positions))
+            at += n
+        return found
+
+    @cached_property
+    def places(self) -> Real:
+        cycle = self.start + self.step * np.arange(self.asked.positions)
+        return np.concatenate([cycle, *(np.array(goal.places) for goal in self.goals)])
+
+    def evaluate(self, x: Real) -> tuple[Real, Real]:
+        """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
+        blocks = [self._evaluate(x[k : k + BLOCK]) for k in range(0, len(x), BLOCK)]
+        return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
+
+    def _evaluate(self, x: Real) -> tuple[Real, Real]:
+        with np.errstate(all="ignore"):
+            values = self.values(x)
+            violation = sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True))
+            lost = self.limits[0].missed(values[1]) * self.limits[0].scale
+            violation = np.where(lost > 0, LOST + 10 * lost, violation)
+            violation = np.where(np.isnan(violation), 1e6, violation)
+            return self.wanted(values[0]), violation
+
+    def values(self, x: Real) -> list[Real]:
+        """Objective and constrained quantities, coarsely."""
+        found = self.run(x, self.places)
+        return [
+            goal.coarse(_reader(found, n, self.exact[n]), self.swings[n])
+            for n, goal in enumerate(self.goals)
+        ]  # fmt: skip
+
+    def wanted(self, value: Real) -> Real:
+        """What is made least: of a margin its opposite, of a target the distance from it."""
+        if self.asked.target is not None:
+            return np.abs(value - self.asked.target) / (abs(self.asked.target) or 1.0)
+        return -value if self.asked.objective.of in LEAST else value
+
+    def closely(self, x: Real) -> Callable[[Real], list[Real]]:
+        """Pieces of every goal near x, exactly: windows are where x has its peaks."""
+        scan = self.start + 2 * np.pi / SCAN * np.arange(SCAN)
+        found = self.run(np.stack([x, x]), scan)
+        step = 2 * self.step / (WINDOW - 1)
+        blocks, parts = [], []
+        at = 0
+        for n, goal in enumerate(self.goals):
+            own = []
+            for name, k in goal.windows(_reader(found, n, slice(None))):
+                first = scan[k] - self.step
+                blocks.append(first + step * np.arange(WINDOW))
+                own.append((name, float(first), slice(at, at + WINDOW)))
+                at += WINDOW
+            parts.append(own)
+        exact = []
+        for goal in self.goals:
+            here = np.array(goal.places or (self.start,))
+            blocks.append(here)
+            exact.append(slice(at, at + len(here)))
+            at += len(here)
+        q = np.concatenate(blocks)
+
+        def pieces(some: Real) -> list[Real]:
+            out = self.run(np.atleast_2d(some), q)
+
+            return [
+                goal.fine(
+                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.swings[n],
+                    step,
+                )
+                for n, goal in enumerate(self.goals)
+            ]  # fmt: skip
+
+        return pieces
+
+    def exactly(self, x: Real) -> list[float]:
+        """Objective and constrained quantities of one candidate."""
+        with np.errstate(all="ignore"):
+            found = self.closely(x)(x)
+        return [float(np.min(p) if goal.of in LEAST else np.max(p)) for goal, p in zip(self.goals, found, strict=True)]
+
+    def polished(self, x: Real) -> Real:
+        """The best place near x."""
+        for _ in range(ROUNDS):
+            before = x
+            try:
+                pieces = self.closely(x)
+                top = float(np.max(np.abs(self._pieces(pieces(x)[0])))) or 1.0
+                with np.errstate(all="ignore"):
+                    x = polish(lambda some: self._local(pieces(some), top), x)  # noqa: B023
+            except np.linalg.LinAlgError:
+                return before
+            if float(np.max(np.abs(x - before))) < 1e-9:
+                break
+        return x
+
+    def _pieces(self, objective: Real) -> Real:
+        if self.asked.target is not None:
+            return ((objective - self.asked.target) / (abs(self.asked.target) or 1.0)) ** 2
+        if self.asked.objective.of in LEAST:
+            return -objective
+        squares = self.asked.objective.wanted and self.asked.objective.norm == "least squares"
+        return objective**2 if squares else objective
+
+    def _local(self, found: list[Real], top: float) -> Local:
+        least, equal = [], []
+        for limit, pieces in zip(self.limits, found[1:], strict=True):
+            extreme = np.min if limit.goal.of in LEAST else np.max
+            value = extreme(pieces, axis=1, keepdims=True)
+            if limit.equal:
+                equal.append((value - limit.least) / limit.scale)
+                continue
+            each = limit.goal.of in PEAKS
+            if limit.least is not None:
+                least.append(((pieces if each and limit.goal.of in LEAST else value) - limit.least) / limit.scale)
+            if limit.most is not None:
+                least.append((limit.most - (pieces if each and limit.goal.of not in LEAST else value)) / limit.scale)
+        none = np.zeros((len(found[0]), 0))
+        return Local(self._pieces(found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))
+
+
+def _reader(found: Outputs, n: int, where: slice) -> Callable[[str], Real]:
+    """Outputs of a goal by name, at some of the places."""
+    return lambda name: found[f"{n}.{name}"][:, where]

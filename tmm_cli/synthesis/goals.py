@@ -1,0 +1,275 @@
+"""What a mechanism can be optimised for or held to: quantities over its cycle, for many variants at once.
+
+A quantity is written on the tape with the linkage (`outputs`), and then read off coarsely, from places all round the
+cycle, or finely, from windows of places about its peaks and zeros (`peaks`), where it is exact to some 1e-12.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from itertools import combinations
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.motion import Motion
+from tmm_cli.pressure import followers, sides
+from tmm_cli.strokes import output_link, output_place, output_slope
+from tmm_cli.synthesis.peaks import peak, zero
+from tmm_cli.vectors import Real
+
+PEAKS: Final = ("pressure", "moment", "reaction", "margin", "crank", "box")
+STROKES: Final = ("stroke", "k", "speed")
+PLACES: Final = ("path", "law")
+PLAIN: Final = ("length", "mass")
+ALL: Final = (*PLAIN, *PEAKS, *STROKES, *PLACES)
+FORCES: Final = ("moment", "reaction")
+LEAST: Final = ("margin", "crank")  # whose least value counts
+MOST_PEAKS = 4
+SIDE = 0.3  # of its range: a lower peak so far below the highest one is no rival
+
+Read = Callable[[str], Real]  # an output by name, (variants, places)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A quantity of ALL. name: of the pair, the point or the link; links: those whose lengths count.
+
+    places: of the driver (rad), with the wanted values there; a path without places is to pass through the points in
+    any of its positions. norm: how deviations are counted.
+    """
+
+    of: str
+    name: str = ""
+    links: tuple[str, ...] = ()
+    places: tuple[float, ...] = ()
+    wanted: tuple[Any, ...] = ()
+    norm: Literal["least squares", "largest"] = "least squares"
+    relative: bool = False
+
+    def kind(self, linkage: Linkage, groups: Any) -> str:
+        """Its dimension by name."""
+        slides = self.slides(linkage, groups)
+        own = {
+            "mass": "mass", "pressure": "angle", "moment": "moment of force", "reaction": "force", "margin": "number",
+            "crank": "number", "k": "number", "speed": "speed", "stroke": "length" if slides else "angle",
+            "law": "length" if slides else "angle",
+        }  # fmt: skip
+        return own.get(self.of, "length")
+
+    def slides(self, linkage: Linkage, groups: Any) -> bool:
+        """Whether the output slides."""
+        link = self.name if self.of == "law" else output_link(linkage, groups)
+        return link is not None and linkage.slides_on_frame(link)
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        """What is to be written down for it."""
+        linkage = motion.linkage
+        groups = tuple(kernel.group for kernel in motion.kernels)
+        output = output_link(linkage, groups)
+        if self.of == "length":
+            names = self.links or tuple(linkage.links)
+            return {"value": sum(length(linkage, name) for name in names)}
+        if self.of == "mass":
+            return {"value": sum(linkage.links[name].mass for name in linkage.moving)}
+        if self.of == "pressure":
+            leads = [(n, lead) for n, group in enumerate(groups) for lead in followers(group)]
+            leads = [x for x in leads if x[1][0] == output] or leads
+            tangents = []
+            for n, lead in leads:
+                sine, cosine = sides(motion, motion.kernels[n], motion.placements[n], lead)
+                tangents.append(sine / cosine)
+            return {"y0": reduce(np.maximum, tangents)}
+        if self.of == "moment":
+            assert reactions is not None
+            return {"y0": np.abs(reactions.balances[0].generalized)}
+        if self.of == "reaction":
+            assert reactions is not None
+            return {"y0": reduce(np.maximum, [np.abs(r.force) for r in reactions.all if r.pair.name == self.name])}
+        if self.of == "margin":
+            return {"y0": -reduce(np.minimum, [at.margin for at in motion.placements])}
+        if self.of == "crank":
+            both = zip(motion.kernels, motion.placements, strict=True)
+            return {"y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])}
+        if self.of == "box":
+            spots = [motion.poses[name].at(p) for name in linkage.moving for p in linkage.links[name].points.values()]
+            turned = (1, -1, -1j, 1j)  # to the right, left, top and bottom
+            return {f"y{k}": reduce(np.maximum, [(p * z).real for p in spots]) for k, z in enumerate(turned)}
+        if self.of in STROKES:
+            assert output is not None
+            found = {"slope": output_slope(motion, output)}
+            if self.of != "k":
+                found["run"] = output_place(motion, output)
+            if self.of == "speed":
+                found["rate"] = linkage.driver.rate + 0.0 * found["slope"]
+            return found
+        if self.of == "law":
+            return {"run": output_place(motion, self.name)}
+        p = motion.spot(self.name)
+        return {"px": p.real, "py": p.imag}
+
+    # reading it off
+
+    def coarse(self, read: Read, swings: bool) -> Real:
+        """From places all round the cycle (for `places`: from those), (variants,)."""
+        if self.of in PLAIN:
+            return read("value")[:, 0]
+        if self.of in PEAKS:
+            return self.told(sum(np.max(read(name), axis=1) for name in self.curves))
+        if self.of == "k":
+            return _ratio(_forward(read("slope")))
+        if self.of in STROKES:
+            run = read("run")
+            travel = np.max(run, axis=1) - np.min(run, axis=1)
+            if swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
+                travel[past] = np.ptp(np.unwrap(run[past], axis=1), axis=1)
+            found: Real = travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
+            return found
+        return self.counted(self.deviations(read, swings))
+
+    @property
+    def curves(self) -> tuple[str, ...]:
+        return ("y0", "y1", "y2", "y3") if self.of == "box" else ("y0",)
+
+    def told(self, y: Any) -> Real:
+        """The quantity from the peak of its curve."""
+        found: Real = np.arctan(y) if self.of == "pressure" else -y if self.of in LEAST else y
+        return found
+
+    def deviations(self, read: Read, swings: bool) -> Real:
+        """From what is wanted at each place, or of the path from each point: (variants, wanted), m or rad."""
+        if self.of == "law":
+            off = read("run") - np.array(self.wanted)
+            if self.relative:
+                off = off - off[:, :1]
+            turned: Real = np.angle(np.exp(1j * off)) if swings else off
+            return turned
+        x, y = read("px"), read("py")
+        if self.places:
+            apart: Real = np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
+            return apart
+        return nearest(x, y, np.array(self.wanted))
+
+    def counted(self, off: Real) -> Real:
+        """Root mean square, or the largest."""
+        if self.norm == "largest":
+            off = np.max(np.abs(off), axis=1, keepdims=True)
+        found: Real = np.sqrt(np.mean(off * off, axis=1))
+        return found
+
+    # finely
+
+    def windows(self, read: Read) -> list[tuple[str, int]]:
+        """Curves and places about which to look closely, from a scan of one variant round the cycle."""
+        if self.of in PEAKS:
+            most = MOST_PEAKS if self.of != "box" else 1
+            return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most)]
+        if self.of in STROKES:
+            slope = read("slope")[0]
+            return [("slope", int(k)) for k in np.flatnonzero(slope * np.roll(slope, -1) < 0)]
+        if self.of == "path" and not self.places:
+            p = read("px")[0] + 1j * read("py")[0]
+            return [(f"{n}", int(np.argmin(np.abs(p - w)))) for n, w in enumerate(self.wanted)]
+        return []
+
+    def fine(self, parts: list[tuple[str, float, Read]], exact: Read, swings: bool, step: float) -> Real:
+        """Pieces of the quantity, (variants, pieces); the largest counts (of LEAST: the least).
+
+        parts: curve, first place (rad) and outputs of every window; exact: outputs at the goal's own places; step: of
+        places in windows.
+        """
+        if self.of in PLAIN:
+            return exact("value")[:, :1]
+        if self.of in PEAKS:
+            ys = [np.arctan(read(c)) if self.of == "pressure" else read(c) for c, _, read in parts]
+            found: Real = np.stack([peak(y) for y in ys], axis=1)
+            if self.of == "box":
+                found = found.sum(axis=1, keepdims=True)
+            return -found if self.of in LEAST else found
+        if self.of in STROKES:
+            if self.of != "k":
+                runs = []
+                for _, _, read in parts:
+                    run = read("run")
+                    if swings:
+                        run = run - 2 * np.pi * np.round((run - parts[0][2]("run")[:1, :1]) / (2 * np.pi))
+                    middle = np.mean(run, axis=1, keepdims=True)
+                    up = run[:, :1] + run[:, -1:] < 2 * middle
+                    runs.append(np.where(up[:, 0], peak(run), -peak(-run)))
+                all_runs = np.stack(runs, axis=1)
+                travel = np.max(all_runs, axis=1) - np.min(all_runs, axis=1)
+                whole: Real = travel if self.of == "stroke" else travel * parts[0][2]("rate")[:, 0] / np.pi
+                return whole[:, None]
+            forward: Any = 0.0
+            for _, start, read in parts:
+                slope = read("slope")
+                forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
+            return _ratio(np.mod(forward, 2 * np.pi) / (2 * np.pi))[:, None]
+        if self.of == "path" and not self.places:
+            near = [-peak(-_square(read, self.wanted[int(n)])) for n, _, read in parts]
+            off = np.sqrt(np.maximum(np.stack(near, axis=1), 0))
+        else:
+            off = self.deviations(exact, swings)
+        return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
+
+
+def _square(read: Read, wanted: complex) -> Real:
+    """Of the distance of a path from a point."""
+    found: Real = (read("px") - wanted.real) ** 2 + (read("py") - wanted.imag) ** 2
+    return found
+
+
+def nearest(x: Real, y: Real, wanted: Real) -> Real:
+    """Distances of a closed polygon (variants, corners) from points, (variants, points).
+
+    Of the corner that is nearest, and of the sides that meet there.
+    """
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    square, rows, found = (x * x + y * y) / 2, np.arange(len(x)), []
+    for w in wanted:
+        k = np.argmin(square - (w.real * x + w.imag * y), axis=1)  # of half the square of the distance, but for w^2
+        px, py = x[rows, k] - w.real, y[rows, k] - w.imag
+        best = px * px + py * py
+        for other in (k - 1, (k + 1) % x.shape[1]):
+            sx, sy = x[rows, other] - w.real - px, y[rows, other] - w.imag - py
+            with np.errstate(all="ignore"):
+                share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
+            best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
+        found.append(np.sqrt(best))
+    return np.stack(found, axis=1)
+
+
+def length(linkage: Linkage, link: str) -> Any:
+    """The farthest two points of a link, of the frame its farthest hinges (m)."""
+    points = linkage.links[link].points
+    names = [n for n in points if link != FRAME or any(n == h.point and FRAME in h.links for h in linkage.hinges)]
+    return reduce(np.maximum, [np.abs(points[a] - points[b]) for a, b in combinations(names, 2)], 0.0)
+
+
+def _forward(slope: Real) -> Real:
+    """Share of the cycle in which a curve rises, from its slope at equal steps."""
+    after = np.roll(slope, -1, axis=1)
+    up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
+    with np.errstate(all="ignore"):
+        found: Real = np.mean(up / (up + down), axis=1)
+    return found
+
+
+def _ratio(share: Real) -> Real:
+    """k from the share of one of two strokes: the longer over the shorter."""
+    with np.errstate(all="ignore"):
+        found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
+    return found
+
+
+def _peaks(y: Real, most: int) -> list[int]:
+    """The highest peaks of a curve on a closed cycle."""
+    found = np.flatnonzero((y >= np.roll(y, 1)) & (y > np.roll(y, -1)))
+    if not found.size:
+        return [int(np.argmax(y))]
+    found = found[np.argsort(-y[found], kind="stable")][:most]
+    return [int(k) for k in found if y[k] >= np.max(y) - SIDE * np.ptp(y)]

@@ -1,0 +1,54 @@
+"""Peaks and zeros between the places at which a quantity is known, many variants at once.
+
+Seven neighbours on equal steps h determine a polynomial of degree 6, which is off by h^7 times the seventh derivative
+over 7! and less; arrays are (variants, places).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tmm_cli.vectors import Real
+
+WINDOW = 33  # places about a peak
+SIDE = 3  # neighbours on either side
+_FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
+NEWTON = 6
+
+
+def _near(y: Real, k: Real) -> tuple[Real, Real]:
+    middle = np.clip(k, SIDE, y.shape[1] - SIDE - 1)
+    near = np.take_along_axis(y, middle[:, None] + np.arange(-SIDE, SIDE + 1), axis=1)
+    return near @ _FIT, middle
+
+
+def _value(c: Real, u: Real, order: int = 0) -> Real:
+    found = np.zeros_like(u)
+    for power in range(2 * SIDE, order - 1, -1):
+        factor = float(np.prod(np.arange(power - order + 1, power + 1))) if order else 1.0
+        found = found * u + factor * c[:, power]
+    return found
+
+
+def peak(y: Real) -> Real:
+    """The largest value within a window; (variants,)."""
+    c, middle = _near(y, np.argmax(y, axis=1))
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            bend = _value(c, u, 2)
+            u = np.clip(u - np.where(bend < 0, _value(c, u, 1) / bend, 0.0), -SIDE, SIDE)
+    found: Real = np.maximum(_value(c, u), np.max(y, axis=1))
+    return np.where((middle == np.argmax(y, axis=1)) & (np.abs(u) < SIDE), found, np.max(y, axis=1))
+
+
+def zero(y: Real) -> Real:
+    """Where in a window a quantity changes its sign, in steps from its first place; (variants,)."""
+    c, middle = _near(y, np.argmin(np.abs(y), axis=1))
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            step = _value(c, u) / _value(c, u, 1)
+            u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
+    found: Real = middle + u
+    return found
