@@ -15,6 +15,7 @@ import numpy as np
 
 from tmm_cli.accuracy.data import Length, changed, lengths
 from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, U, exact
+from tmm_cli.accuracy.places import Changed
 from tmm_cli.extended import WIDER
 from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import Linkage
@@ -117,16 +118,12 @@ def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
     """The results with what was searched for as it is when one length is changed, by how much, and which one.
 
     At an extreme the place does not matter to first order, so values there are taken where they were found. Places that
-    are no roots of a derivative which is known have no such answer: nan.
+    are no roots of anything known have no such answer: nan.
     """
     way, linkage = results.way, results.linkage
     if way is None:
         return
-    nowhere = float("nan")
-    lost = given(
-        results, way=way if way.full else replace(way, start=nowhere, end=nowhere),
-        dead=tuple(replace(d, place=nowhere) for d in results.dead),
-    )  # fmt: skip
+    span = way.end - way.start if linkage.driver.kind == "slide" else 1.0
     data = lengths(linkage)
     for length in data:
         by = STEP * max(abs(other.value) for other in data if other.link == length.link)
@@ -138,24 +135,51 @@ def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
             law = Law(0.0, 1.0, 0.0, 1)
             return move(linkage, both[0], q, law), move(moved, both[1], q, law)
 
+        after = Changed(motions, both, span)
+        ends = {"start": way.start, "end": way.end}
+        moved_ends: dict[str, Any] = {name: at + after.limit(at, _limit(results, at)) for name, at in ends.items()}
         further = tuple(_strokes_after(strokes, motions) for strokes in results.further)
         travels = []
         for travel in results.travels:
             runs = [output_run(m, travel.link)[0] for m in motions([travel.low_at, travel.high_at])]
             low, high = np.remainder(runs[1] - runs[0] + np.pi, 2 * np.pi) - np.pi
+            at = [
+                _inner(results, place) * after.extreme(place, travel.link) for place in (travel.low_at, travel.high_at)
+            ]
             travels.append(
-                replace(travel, low=travel.low + low, high=travel.high + high, low_at=nowhere, high_at=nowhere)
-            )
+                replace(travel, low=travel.low + low, high=travel.high + high, low_at=travel.low_at + at[0],
+                        high_at=travel.high_at + at[1])
+            )  # fmt: skip
         pressure = []
         for p in results.pressure:
-            before, after = (_largest(m, p.group, p.link) for m in motions(p.place))
-            pressure.append(replace(p, largest=p.largest + after - before, place=nowhere))
+            one, other = (_largest(m, p.group, p.link) for m in motions(p.place))
+            there = p.place + after.pressure(p.place, p.group, p.link)
+            pressure.append(replace(p, largest=p.largest + other - one, place=there))
+        dead = tuple(replace(d, place=d.place + after.dead(d.place, d.group)) for d in results.dead)
         strokes = results.strokes and _strokes_after(results.strokes, motions)
         yield (
-            given(lost, strokes=strokes, further=further, travels=tuple(travels), pressure=tuple(pressure)),
+            given(
+                results,
+                way=way if way.full else replace(way, **moved_ends),
+                dead=dead,
+                strokes=strokes,
+                further=further,
+                travels=tuple(travels),
+                pressure=tuple(pressure),
+            ),
             by,
             length,
         )
+
+
+def _end(results: Results) -> float:
+    """How far an end of what is asked for moves: not at all where the file names it."""
+    return 0.0 if results.problem.request.places else float("nan")
+
+
+def _inner(results: Results, place: float) -> bool:
+    """Whether a place lies between those asked for."""
+    return bool(np.min(results.asked) < place < np.max(results.asked))
 
 
 def _strokes_after(strokes: Strokes, motions: Callable[[Any], tuple[Motion, Motion]]) -> Strokes:
