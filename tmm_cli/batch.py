@@ -96,7 +96,7 @@ class Batch:
         for k, linkage in enumerate(self.linkages):
             kernels = self.kernels if k == 0 else assemble(linkage, self.structure)
             here = q[k] if np.ndim(q) > 1 else q
-            found.append(_solved(linkage, self.structure, kernels, here, self.asked, self.forces, self.strokes))
+            found.append(solved(linkage, self.structure, kernels, here, self.asked, self.forces, self.strokes))
         if len(found) == 1:
             return found[0]
         return {name: np.stack([one[name] for one in found]) for name in found[0]}
@@ -128,7 +128,7 @@ def prepare(
     def stages(*data: Any) -> Mapping[str, Any]:
         linkage = changed(first, together(*data[:-1])) if columns else first
         own = tuple(kernel.again(linkage) for kernel in kernels) if columns else kernels
-        return _solved(linkage, structure, own, data[-1], asked, forces, strokes, blank=False)
+        return solved(linkage, structure, own, data[-1], asked, forces, strokes, blank=False)
 
     axes = (*[1] * len(columns), 3 if own_places else 2)
     whole = record(stages, *axes, data=dict(enumerate(columns)))
@@ -137,7 +137,7 @@ def prepare(
     return Batch(linkages, structure, kernels, asked, forces, strokes, values, checks, tuple(columns))
 
 
-def _solved(
+def solved(
     linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: Any, asked: Asked, forces: bool,
     strokes: Strokes | None, *, blank: bool = True,
 ) -> Mapping[str, Any]:  # fmt: skip
@@ -150,6 +150,17 @@ def _solved(
         for link, d in drives_at(linkage, q).items()
     }
     motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
-    reactions = react(motion, structure, applied(motion, strokes)) if forces else None
+    reactions = reactions_of(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
     return {**asked(motion, reactions), "placed": motion.placed, "moving": motion.moving, "margin": margin}
+
+
+def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
+    """The force plan under all that acts, friction too."""
+    acting = applied(motion, strokes)
+    free = react(motion, structure, acting)
+    if not motion.linkage.friction:
+        return free
+    from tmm_cli.forces.friction import rub
+
+    return rub(motion, structure, acting, free).reactions

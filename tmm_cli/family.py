@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from tmm_cli.assembly import assemble
-from tmm_cli.batch import Asked, _solved
+from tmm_cli.batch import Asked, solved
 from tmm_cli.groups.base import Dyad
 from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
@@ -43,6 +43,6 @@ def family(make: Make, first: Sequence[float], asked: Asked, *, forces: bool = F
         stands = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
         linkage = replace(changed(varied, stands), sketch=ordinary.sketch)
         own = tuple(kernel.again(linkage) for kernel in kernels)
-        return _solved(linkage, structure.again(linkage), own, data[-1], asked, forces, None, blank=False)
+        return solved(linkage, structure.again(linkage), own, data[-1], asked, forces, None, blank=False)
 
     return record(stages, *[1] * len(first), 2)

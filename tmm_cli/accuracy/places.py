@@ -43,9 +43,9 @@ class Changed:
         before, after = (kernels[number] for kernels in self.kernels)
         if isinstance(before, Dyad):
             return self._root(place, lambda motion, _: motion.placements[number].gap)
-        if not isinstance(before, Newton) or not isinstance(after, Newton) or before.track is None:
+        if not isinstance(before, Newton) or not isinstance(after, Newton) or before.followed is None:
             return NOWHERE
-        track = before.track
+        track = before.followed
         end = 0 if abs(place - track.q[0]) < abs(place - track.q[-1]) else -1
         if not track.limits[end]:
             return NOWHERE

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
-from tmm_cli.groups.winding import Winding
+from tmm_cli.groups.winding import Winds
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.vectors import Real, Vector, unit
@@ -144,7 +144,7 @@ class Dyad(Kernel):
     ends: tuple[Turn | Run, Turn | Run]
     inner: Turn | Run
     sign: int = 1
-    winding: Winding | None = None
+    winding: Winds | None = None
 
     type: ClassVar[str]
     assemblies: ClassVar[int] = 2

@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, reach, spread
 from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
 from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
-from tmm_cli.groups.track import State, Track
+from tmm_cli.groups.track import Starts, State, Track
 from tmm_cli.linkage import Linkage
 from tmm_cli.pairs import PAIRS
 from tmm_cli.pairs.base import Constraint, Grip
@@ -38,19 +38,19 @@ class Newton(Kernel):
 
     constraints: tuple[Constraint, ...]
     start: State | None = None
-    track: Track | None = None
+    track: Starts | None = None
     passive: bool = False
     order: Mapping[str, int] = field(default_factory=dict)
 
     near = 0.005  # of singular values: a well-shaped triad has 0.1
 
     @classmethod
-    def of(cls, group: Group, linkage: Linkage) -> Newton:
-        """The group with its numbers, not yet assembled."""
+    def of(cls, group: Group, linkage: Linkage, size: float = 0.0) -> Newton:
+        """The group with its numbers, not yet assembled. size: what lengths are counted in, if it is given."""
         pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
         known = {pair.other(link) for pair in group.outer for link in group.links if link in (pair.i, pair.j)}
-        size = max(spread(linkage, link) for link in {*group.links, *known}) or reach(linkage)
+        size = size or max(spread(linkage, link) for link in {*group.links, *known}) or reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
@@ -60,7 +60,7 @@ class Newton(Kernel):
 
     @property
     def followed(self) -> Track | None:
-        return self.track
+        return self.track if isinstance(self.track, Track) else None
 
     @cached_property
     def by_angle(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -16,6 +17,22 @@ class State:
 
     x: Vector
     turn: Real
+
+
+class Starts(Protocol):
+    """What tells a group where to start at places q of the driver."""
+
+    def start(self, q: Real) -> tuple[State, Real]:
+        """A state near that at each place, and the gap: above zero where there is none."""
+        ...
+
+    def in_dead(self, q: Real, rounding: float) -> Real:
+        """Places that cannot be told from a dead position that is passed."""
+        ...
+
+    def side(self, q: Real) -> Real:
+        """The determinant's sign against that at the beginning."""
+        ...
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -15,6 +16,14 @@ from tmm_cli.groups.state import Pose
 from tmm_cli.vectors import Real, pi
 
 TAU = 2 * np.pi
+
+
+class Winds(Protocol):
+    """What tells how often links have gone round at places q of the driver."""
+
+    def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
+        """The same poses with their angles followed through full turns."""
+        ...
 
 
 @dataclass(frozen=True)

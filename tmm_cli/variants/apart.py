@@ -1,0 +1,58 @@
+"""Variants of a linkage one after another, each as a file of its own: for whatever else may vary."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tmm_cli.assembly import assemble
+from tmm_cli.batch import Asked, solved
+from tmm_cli.family import Make
+from tmm_cli.mechanism import Mechanism
+from tmm_cli.mobile import mobile
+from tmm_cli.refused import Refused
+from tmm_cli.variants.way import Places, Way
+from tmm_cli.vectors import Real
+
+
+class Apart:
+    """Called with numbers (variants, n) and places; gives what is asked, (variants, places), by name.
+
+    A variant that cannot be assembled as it is sketched, or not be moved, has nothing but nan. Raises what assembly
+    raises, for the first linkage.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
+        self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
+        self.ordinary = make(first)
+        self.structure = mobile(self.ordinary)
+        assemble(self.ordinary, self.structure)
+        self.names = tuple(self._one(self.first, Places(np.zeros(1), np.zeros(0))))
+
+    def way(self, columns: Real) -> Way:
+        """The drivers' ways, as far as they can go round."""
+        turns = Mechanism(self.ordinary, self.structure).way.turns
+        return Way.of(self.ordinary, len(columns), turns)
+
+    def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+        rows = []
+        for row in columns:
+            try:
+                rows.append(self._one(row, places))
+            except Refused:
+                rows.append({})
+        lost = np.full(places.count, np.nan)
+        return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
+
+    def _one(self, numbers: Real, places: Places) -> dict[str, Real]:
+        linkage = self.make([float(x) for x in numbers])
+        mechanism = Mechanism(linkage, self.structure.again(linkage))
+        kernels, way = mechanism.kernels, mechanism.way
+        q = Way.of(linkage, 1, way.turns).at(places)[0]
+        strokes = mechanism.strokes if way.full and self.forces else None
+        with np.errstate(all="ignore"):
+            found = solved(
+                linkage, mechanism.structure, kernels, q, self.asked, self.forces, strokes, blank=True
+            )  # fmt: skip
+        return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}

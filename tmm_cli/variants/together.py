@@ -1,0 +1,149 @@
+"""Variants of a linkage of any class solved together: the ordinary stages on arrays, an element for each variant and
+place.
+
+For what the tape cannot hold: groups that are found by iteration, toothed wheels, cams, friction, several drivers,
+drivers that work between two ends, loads of working strokes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_cli.assembly import assemble
+from tmm_cli.batch import Asked, solved
+from tmm_cli.family import Make
+from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.newton import Newton
+from tmm_cli.groups.state import Pose
+from tmm_cli.groups.track import State
+from tmm_cli.linkage import Linkage
+from tmm_cli.mechanism import Mechanism
+from tmm_cli.mobile import mobile
+from tmm_cli.motion import Law, move
+from tmm_cli.stack import changed, numbers
+from tmm_cli.strokes import output_link
+from tmm_cli.tape import DependsOnData
+from tmm_cli.tape.varied import Varied
+from tmm_cli.variants.strokes import find_strokes, spread
+from tmm_cli.variants.walk import Step, Walked, kernels_of, walk
+from tmm_cli.variants.way import Places, Way
+from tmm_cli.vectors import Real, Vector
+
+SINGLE = (".law", ".table", ".ratio", "acceleration")  # numbers that every variant has alike
+
+
+@dataclass(frozen=True)
+class Started:
+    """In the place of a track: a state for each element from which Newton's method starts; gap: above 0 where lost."""
+
+    state: State
+    gap: Real
+
+    def start(self, q: Real) -> tuple[State, Real]:
+        return self.state, self.gap
+
+    def in_dead(self, q: Real, rounding: float) -> Real:
+        return np.zeros(np.shape(q), dtype=bool)
+
+    def side(self, q: Real) -> Real:
+        return np.ones(np.shape(q))
+
+
+@dataclass(frozen=True)
+class Followed:
+    """In the place of a winding: about which angle each link of a group has, for each element."""
+
+    about: Mapping[str, Real]
+
+    def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
+        found = []
+        for link, pose in zip(links, poses, strict=True):
+            angle = np.angle(pose.z)
+            turns = np.round((self.about[link] - angle) / (2 * np.pi))
+            found.append(replace(pose, turn=angle + 2 * np.pi * turns))
+        return tuple(found)
+
+
+class Together:
+    """Called with numbers (variants, n) and places; gives what is asked, (variants, places), by name.
+
+    All variants have the assembly that is led to from the first linkage's. Raises DependsOnData where a number that
+    varies is none of those that arrays can stand for, and what assembly raises.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
+        self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
+        self.ordinary = ordinary = make(first)
+        self.structure = mobile(ordinary)
+        self.kernels = assemble(ordinary, self.structure)
+        for path, number in numbers(make([Varied(x, x) for x in first])):
+            if isinstance(number, Varied) and any(part in path for part in SINGLE):
+                raise DependsOnData(path)
+        self.turns = Mechanism(ordinary, self.structure).way.turns
+        at = np.array([ordinary.sketch.at])
+        poses = move(ordinary, self.kernels, at, Law(float(at[0]), 1.0, 0.0, 1), 0).poses
+        links = [n for kernel in self.kernels for n in kernel.group.links]
+        self.home = Step(
+            at[0], {n: poses[n].x[0] for n in links},
+            {n: (np.angle(poses[n].z) if (turn := poses[n].turn) is None else turn)[0] for n in links},
+        )  # fmt: skip
+        wound = any(getattr(kernel, "winding", None) is not None for kernel in self.kernels)
+        self.walks = wound or any(isinstance(kernel, Newton) for kernel in self.kernels)
+        self.by_strokes = forces and any(
+            x.working_stroke_only or (x.table is not None and x.table.against != "crank angle") for x in ordinary.loads
+        )
+
+    def linkage(self, columns: Real) -> Linkage:
+        """A linkage of arrays (variants,), for numbers (variants, n)."""
+        varied = self.make([Varied(x, c) for x, c in zip(self.first, columns.T, strict=True)])
+        arrays = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
+        found: Linkage = replace(changed(varied, arrays), sketch=self.ordinary.sketch)
+        return found
+
+    def way(self, columns: Real) -> Way:
+        """The drivers' ways."""
+        return Way.of(self.linkage(columns), len(columns), self.turns)
+
+    def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+        way = self.way(columns)
+        walked = walk(self.linkage, self.first, columns, self.kernels, self.home, way) if self.walks else None
+        strokes = None
+        if self.by_strokes and way.closed:
+            link = output_link(self.ordinary, self.structure.groups)
+            strokes = find_strokes(lambda q: self._elements(columns, q, walked), way, self.ordinary, link)
+        q = way.at(places)
+        flat, kernels = self._elements(columns, q, walked)
+        with np.errstate(all="ignore"):
+            found = solved(
+                flat, self.structure.again(flat), kernels, q.ravel(), self.asked, self.forces,
+                spread(strokes, q.shape[1]), blank=False,
+            )  # fmt: skip
+        return {name: np.broadcast_to(value, q.size).reshape(q.shape) for name, value in found.items()}
+
+    def _elements(self, columns: Real, q: Real, walked: Walked | None) -> tuple[Linkage, tuple[Kernel, ...]]:
+        """The linkage and its groups with an element for each of the places q (variants, places)."""
+        flat = self.linkage(np.repeat(columns, q.shape[1], axis=0))
+        kernels = kernels_of(flat, self.kernels)
+        if walked is None:
+            return flat, kernels
+        x, turn, lost = walked.near(q)
+        share = np.mean(walked.lost, axis=1, keepdims=True)
+        gap = np.where(lost, share, -1.0).ravel()
+
+        def on(values: Mapping[str, Vector], links: Sequence[str]) -> Vector:
+            found: Vector = np.stack([values[n].ravel() for n in links], axis=-1)
+            return found
+
+        found: list[Kernel] = []
+        for kernel, own in zip(self.kernels, kernels, strict=True):
+            links = own.group.links
+            if isinstance(own, Newton):
+                found.append(replace(own, track=Started(State(on(x, links), on(turn, links)), gap)))
+            elif isinstance(own, Dyad) and getattr(kernel, "winding", None) is not None:
+                found.append(replace(own, winding=Followed({n: turn[n].ravel() for n in links})))
+            else:
+                found.append(own)
+        return flat, tuple(found)
