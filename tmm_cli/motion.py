@@ -72,7 +72,7 @@ class Law:
     def speed(self, q: Real) -> Real:
         """dq/dt at q, with its sign; nan where the driver stops before."""
         if self.acceleration == 0:
-            return np.full(np.shape(q), float(self.sense * self.rate))
+            return np.zeros(np.shape(q)) + self.sense * self.rate
         with np.errstate(invalid="ignore"):
             way = self.sense * (q - self.start)
             return self.sense * np.sqrt(self.rate * self.rate + 2 * self.acceleration * way)

@@ -5,24 +5,29 @@ Coarsely from places all round the cycle, for the search; exactly from windows a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.family import Iterated, family
+from tmm_cli.assembly import assemble
+from tmm_cli.family import Iterated
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal
+from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal, Over
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
-from tmm_cli.tape import DependsOnData, Outputs
+from tmm_cli.tape import DependsOnData
+from tmm_cli.variants.apart import Apart
+from tmm_cli.variants.taped import Taped
+from tmm_cli.variants.together import Together
+from tmm_cli.variants.way import Places
 from tmm_cli.vectors import Real
 
 W: Final = "synthesis_optimal"
@@ -31,6 +36,8 @@ TRIES = 40  # of linkages that could tell the assembly
 SCAN = 720  # places where peaks are looked for before the polish
 ROUNDS = 5
 BLOCK = 125  # candidates at once
+ZOOMS = 9  # of a peak that may be a jump
+CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
@@ -98,21 +105,30 @@ class Search:
         self.linkage = asked.make(self.first)
         self.groups = mobile(self.linkage).solved
         driver = self.linkage.driver
-        if driver.kind != "turn" or driver.stroke is not None or self.linkage.others:
-            raise Infeasible("task", f"{W}.no_crank", f"{W}.a_crank")
+        if driver.kind != "turn" and driver.stroke is None:
+            raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
+        self.program = self._program()
+        way = self.program.way(np.array([self.first]))
+        self.closed, self.cycle = way.closed, float(way.span[0, 0])
+        for at, goal in ((("objective",), self.goals[0]), *((limit.at, limit.goal) for limit in asked.limits)):
+            if goal.of in CYCLIC and not self.closed:
+                raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
+        self.step = 1 / asked.positions
+        loads = self.linkage.loads
+        rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
+        self.overs = tuple(
+            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough) for goal in self.goals
+        )
+
+    def _program(self) -> Taped | Together | Apart:
+        """What moves the candidates, the fastest there is for this linkage."""
         forces = any(goal.of in FORCES for goal in self.goals)
-        if forces and any(x.working_stroke_only or x.table for x in self.linkage.loads):
-            raise Infeasible("objective", f"{W}.stroke_loads", f"{W}.constant_loads")
-        try:
-            self.program = family(asked.make, self.first, self._outputs, forces=forces)
-        except Iterated:
-            raise Infeasible("task", f"{W}.iterated", f"{W}.dyads") from None
-        except DependsOnData:
-            raise Infeasible("vary", f"{W}.not_here", f"{W}.lengths") from None
-        self.program = self.program.only(*(n for n in self.program.outputs if n not in ("placed", "moving", "margin")))
-        self.step = 2 * np.pi / asked.positions
-        self.start = self.linkage.sketch.at
-        self.swings = tuple(not goal.slides(self.linkage, self.groups) for goal in self.goals)
+        for way in (Taped, Together):
+            try:
+                return way(self.asked.make, self.first, self._outputs, forces=forces)
+            except (Iterated, DependsOnData):
+                continue
+        return Apart(self.asked.make, self.first, self._outputs, forces=forces)
 
     def _first(self) -> list[float]:
         """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
@@ -121,10 +137,9 @@ class Search:
         refusal: Refused | None = None
         for share in shares:
             numbers = [float(x) for x in self.low + share * (self.high - self.low)]
+            linkage = self.asked.make(numbers)
             try:
-                family(self.asked.make, numbers, lambda motion, reactions: {})
-            except (Iterated, DependsOnData):
-                return numbers
+                assemble(linkage, mobile(linkage))
             except Refused as error:
                 refusal = error
             else:
@@ -143,14 +158,17 @@ class Search:
         found: Real = self.low + x * (self.high - self.low)
         return found
 
-    def run(self, x: Real, q: Real) -> Outputs:
+    def run(self, x: Real, places: Places) -> Mapping[str, Real]:
         """All outputs for candidates x (variants, n) in 0..1."""
-        columns = self.numbers(x)
-        return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+        return self.program(self.numbers(x), places)
+
+    def over(self, count: int) -> Real:
+        """Shares of the way: of a closed one without its end."""
+        return np.arange(count) / (count if self.closed else count - 1)
 
     @cached_property
     def exact(self) -> list[slice]:
-        """Where the places of the goals stand after those round the cycle; of a goal without any, the cycle."""
+        """Where the places of the goals stand after those over the way; of a goal without any, the way."""
         found, at = [], self.asked.positions
         for goal in self.goals:
             n = len(goal.places)
@@ -159,9 +177,9 @@ class Search:
         return found
 
     @cached_property
-    def places(self) -> Real:
-        cycle = self.start + self.step * np.arange(self.asked.positions)
-        return np.concatenate([cycle, *(np.array(goal.places) for goal in self.goals)])
+    def places(self) -> Places:
+        own = np.concatenate([np.zeros(0), *(np.array(goal.places) for goal in self.goals)])
+        return Places(self.over(self.asked.positions), own)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
@@ -175,13 +193,14 @@ class Search:
             lost = self.limits[0].missed(values[1]) * self.limits[0].scale
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
             violation = np.where(np.isnan(violation), 1e6, violation)
-            return self.wanted(values[0]), violation
+            wanted = self.wanted(values[0])
+            return np.where(np.isnan(wanted), np.inf, wanted), violation
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
         found = self.run(x, self.places)
         return [
-            goal.coarse(_reader(found, n, self.exact[n]), self.swings[n])
+            goal.coarse(_reader(found, n, self.exact[n]), self.overs[n])
             for n, goal in enumerate(self.goals)
         ]  # fmt: skip
 
@@ -193,33 +212,34 @@ class Search:
 
     def closely(self, x: Real) -> Callable[[Real], list[Real]]:
         """Pieces of every goal near x, exactly: windows are where x has its peaks."""
-        scan = self.start + 2 * np.pi / SCAN * np.arange(SCAN)
-        found = self.run(np.stack([x, x]), scan)
+        scan = self.over(SCAN)
+        found = self.run(np.stack([x, x]), Places(scan, np.zeros(0)))
         step = 2 * self.step / (WINDOW - 1)
         blocks, parts = [], []
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
-            for name, k in goal.windows(_reader(found, n, slice(None))):
+            for name, k in goal.windows(_reader(found, n, slice(None)), self.overs[n]):
                 first = scan[k] - self.step
+                if not self.closed:
+                    first = min(max(first, 0.0), 1 - 2 * self.step)
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
                 at += WINDOW
             parts.append(own)
-        exact = []
+        blocks.append(np.zeros(1))
+        at, exact = at + 1, []
         for goal in self.goals:
-            here = np.array(goal.places or (self.start,))
-            blocks.append(here)
-            exact.append(slice(at, at + len(here)))
-            at += len(here)
-        q = np.concatenate(blocks)
+            exact.append(slice(at, at + len(goal.places)) if goal.places else slice(at - 1, at))
+            at += len(goal.places)
+        places = Places(np.concatenate(blocks), self.places.driver)
 
         def pieces(some: Real) -> list[Real]:
-            out = self.run(np.atleast_2d(some), q)
+            out = self.run(np.atleast_2d(some), places)
 
             return [
                 goal.fine(
-                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.swings[n],
+                    [(c, s, _reader(out, n, w)) for c, s, w in parts[n]], _reader(out, n, exact[n]), self.overs[n],
                     step,
                 )
                 for n, goal in enumerate(self.goals)
@@ -231,7 +251,23 @@ class Search:
         """Objective and constrained quantities of one candidate."""
         with np.errstate(all="ignore"):
             found = self.closely(x)(x)
-        return [float(np.min(p) if goal.of in LEAST else np.max(p)) for goal, p in zip(self.goals, found, strict=True)]
+            values = [np.min(p) if goal.of in LEAST else np.max(p) for goal, p in zip(self.goals, found, strict=True)]
+            for n, goal in enumerate(self.goals):
+                if self.overs[n].rough and goal.of in FORCES:
+                    values[n] = self._highest(x, n)
+        return [float(value) for value in values]
+
+    def _highest(self, x: Real, n: int) -> float:
+        """The largest value of a quantity that may jump: closer and closer about its highest place."""
+        shares, best = self.over(SCAN), -np.inf
+        for _ in range(ZOOMS):
+            y = _reader(self.run(np.stack([x, x]), Places(shares, np.zeros(0))), n, slice(0, len(shares)))("y0")[0]
+            k = int(np.nanargmax(y))
+            best = max(best, float(y[k]))
+            step = shares[1] - shares[0]
+            shares = np.linspace(shares[k] - step, shares[k] + step, WINDOW)
+            shares = shares if self.closed else np.clip(shares, 0.0, 1.0)
+        return best
 
     def polished(self, x: Real) -> Real:
         """The best place near x."""
@@ -273,6 +309,6 @@ class Search:
         return Local(self._pieces(found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))
 
 
-def _reader(found: Outputs, n: int, where: slice) -> Callable[[str], Real]:
+def _reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
     """Outputs of a goal by name, at some of the places."""
     return lambda name: found[f"{n}.{name}"][:, where]

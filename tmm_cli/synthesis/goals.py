@@ -36,6 +36,19 @@ Read = Callable[[str], Real]  # an output by name, (variants, places)
 
 
 @dataclass(frozen=True)
+class Over:
+    """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
+
+    swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
+    """
+
+    swings: bool
+    closed: bool = True
+    cycle: float = 2 * np.pi
+    rough: bool = False
+
+
+@dataclass(frozen=True)
 class Goal:
     """A quantity of ALL. name: of the pair, the point or the link; links: those whose lengths count.
 
@@ -114,8 +127,8 @@ class Goal:
 
     # reading it off
 
-    def coarse(self, read: Read, swings: bool) -> Real:
-        """From places all round the cycle (for `places`: from those), (variants,)."""
+    def coarse(self, read: Read, over: Over) -> Real:
+        """From places all over the way (for `places`: from those), (variants,)."""
         if self.of in PLAIN:
             return read("value")[:, 0]
         if self.of in PEAKS:
@@ -125,11 +138,13 @@ class Goal:
         if self.of in STROKES:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
-            if swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
+            if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
                 travel[past] = np.ptp(np.unwrap(run[past], axis=1), axis=1)
-            found: Real = travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
+            if self.of == "stroke":
+                return np.asarray(travel)
+            found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * read("rate")[:, 0] / over.cycle
             return found
-        return self.counted(self.deviations(read, swings))
+        return self.counted(self.deviations(read, over))
 
     @property
     def curves(self) -> tuple[str, ...]:
@@ -140,19 +155,19 @@ class Goal:
         found: Real = np.arctan(y) if self.of == "pressure" else -y if self.of in LEAST else y
         return found
 
-    def deviations(self, read: Read, swings: bool) -> Real:
+    def deviations(self, read: Read, over: Over) -> Real:
         """From what is wanted at each place, or of the path from each point: (variants, wanted), m or rad."""
         if self.of == "law":
             off = read("run") - np.array(self.wanted)
             if self.relative:
                 off = off - off[:, :1]
-            turned: Real = np.angle(np.exp(1j * off)) if swings else off
+            turned: Real = np.angle(np.exp(1j * off)) if over.swings else off
             return turned
         x, y = read("px"), read("py")
         if self.places:
             apart: Real = np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
             return apart
-        return nearest(x, y, np.array(self.wanted))
+        return nearest(x, y, np.array(self.wanted), closed=over.closed)
 
     def counted(self, off: Real) -> Real:
         """Root mean square, or the largest."""
@@ -163,30 +178,35 @@ class Goal:
 
     # finely
 
-    def windows(self, read: Read) -> list[tuple[str, int]]:
-        """Curves and places about which to look closely, from a scan of one variant round the cycle."""
+    def windows(self, read: Read, over: Over) -> list[tuple[str, int]]:
+        """Curves and places about which to look closely, from a scan of one variant over the way."""
         if self.of in PEAKS:
             most = MOST_PEAKS if self.of != "box" else 1
-            return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most)]
+            return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most, over.closed)]
         if self.of in STROKES:
             slope = read("slope")[0]
-            return [("slope", int(k)) for k in np.flatnonzero(slope * np.roll(slope, -1) < 0)]
+            after = np.roll(slope, -1)
+            if not over.closed:
+                after[-1] = 0.0
+            turns = [("slope", int(k)) for k in np.flatnonzero(slope * after < 0)]
+            return turns if over.closed else [("slope", 0), *turns, ("slope", len(slope) - 1)]
         if self.of == "path" and not self.places:
             p = read("px")[0] + 1j * read("py")[0]
             return [(f"{n}", int(np.argmin(np.abs(p - w)))) for n, w in enumerate(self.wanted)]
         return []
 
-    def fine(self, parts: list[tuple[str, float, Read]], exact: Read, swings: bool, step: float) -> Real:
+    def fine(self, parts: list[tuple[str, float, Read]], exact: Read, over: Over, step: float) -> Real:
         """Pieces of the quantity, (variants, pieces); the largest counts (of LEAST: the least).
 
-        parts: curve, first place (rad) and outputs of every window; exact: outputs at the goal's own places; step: of
-        places in windows.
+        parts: curve, first place and outputs of every window; exact: outputs at the goal's own places; step: of places
+        in windows. Places are shares of the way.
         """
         if self.of in PLAIN:
             return exact("value")[:, :1]
         if self.of in PEAKS:
             ys = [np.arctan(read(c)) if self.of == "pressure" else read(c) for c, _, read in parts]
-            found: Real = np.stack([peak(y) for y in ys], axis=1)
+            rough = over.rough and self.of in FORCES
+            found: Real = np.stack([np.max(y, axis=1) if rough else peak(y) for y in ys], axis=1)
             if self.of == "box":
                 found = found.sum(axis=1, keepdims=True)
             return -found if self.of in LEAST else found
@@ -195,25 +215,29 @@ class Goal:
                 runs = []
                 for _, _, read in parts:
                     run = read("run")
-                    if swings:
+                    if over.swings:
                         run = run - 2 * np.pi * np.round((run - parts[0][2]("run")[:1, :1]) / (2 * np.pi))
-                    middle = np.mean(run, axis=1, keepdims=True)
-                    up = run[:, :1] + run[:, -1:] < 2 * middle
-                    runs.append(np.where(up[:, 0], peak(run), -peak(-run)))
-                all_runs = np.stack(runs, axis=1)
-                travel = np.max(all_runs, axis=1) - np.min(all_runs, axis=1)
-                whole: Real = travel if self.of == "stroke" else travel * parts[0][2]("rate")[:, 0] / np.pi
-                return whole[:, None]
+                    runs.append(run)
+                if self.of == "stroke":
+                    tops, lows = ([peak(side * run) for run in runs] for side in (1, -1))
+                    travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
+                    return travel[:, None]
+                ends = [
+                    np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs
+                ]
+                whole = np.sum(np.abs(np.diff([*ends, ends[0]], axis=0)), axis=0)
+                speed: Real = whole * parts[0][2]("rate")[:, 0] / over.cycle
+                return speed[:, None]
             forward: Any = 0.0
             for _, start, read in parts:
                 slope = read("slope")
                 forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
-            return _ratio(np.mod(forward, 2 * np.pi) / (2 * np.pi))[:, None]
+            return _ratio(np.mod(forward, 1.0))[:, None]
         if self.of == "path" and not self.places:
             near = [-peak(-_square(read, self.wanted[int(n)])) for n, _, read in parts]
             off = np.sqrt(np.maximum(np.stack(near, axis=1), 0))
         else:
-            off = self.deviations(exact, swings)
+            off = self.deviations(exact, over)
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
 
 
@@ -223,8 +247,8 @@ def _square(read: Read, wanted: complex) -> Real:
     return found
 
 
-def nearest(x: Real, y: Real, wanted: Real) -> Real:
-    """Distances of a closed polygon (variants, corners) from points, (variants, points).
+def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
+    """Distances of a polygon (variants, corners) from points, (variants, points).
 
     Of the corner that is nearest, and of the sides that meet there.
     """
@@ -234,7 +258,9 @@ def nearest(x: Real, y: Real, wanted: Real) -> Real:
         k = np.argmin(square - (w.real * x + w.imag * y), axis=1)  # of half the square of the distance, but for w^2
         px, py = x[rows, k] - w.real, y[rows, k] - w.imag
         best = px * px + py * py
-        for other in (k - 1, (k + 1) % x.shape[1]):
+        last = x.shape[1] - 1
+        sides = (k - 1, (k + 1) % x.shape[1]) if closed else (np.maximum(k - 1, 0), np.minimum(k + 1, last))
+        for other in sides:
             sx, sy = x[rows, other] - w.real - px, y[rows, other] - w.imag - py
             with np.errstate(all="ignore"):
                 share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
@@ -266,9 +292,12 @@ def _ratio(share: Real) -> Real:
     return found
 
 
-def _peaks(y: Real, most: int) -> list[int]:
-    """The highest peaks of a curve on a closed cycle."""
-    found = np.flatnonzero((y >= np.roll(y, 1)) & (y > np.roll(y, -1)))
+def _peaks(y: Real, most: int, closed: bool) -> list[int]:
+    """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
+    before, after = np.roll(y, 1), np.roll(y, -1)
+    if not closed:
+        before[0] = after[-1] = -np.inf
+    found = np.flatnonzero((y >= before) & (y > after))
     if not found.size:
         return [int(np.argmax(y))]
     found = found[np.argsort(-y[found], kind="stable")][:most]

@@ -14,7 +14,10 @@ NONE = math.nan
 
 
 def stroke(results: Results) -> float:
-    """Stroke H (m) or swing psi (rad) of the output."""
+    """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over the driver's own stroke."""
+    if results.way is not None and not results.way.full:
+        main = next((t for t in results.travels if t.link == results.mechanism.output), None)
+        return main.high - main.low if main is not None else NONE
     strokes = results.strokes
     return strokes.travel if strokes is not None and strokes.strokes else NONE
 
@@ -23,6 +26,12 @@ def ratio(results: Results) -> float:
     """Coefficient of change of mean speed k."""
     strokes = results.strokes
     return strokes.k if strokes is not None and strokes.strokes else NONE
+
+
+def slower_ratio(results: Results) -> float:
+    """The longer stroke over the shorter."""
+    k = ratio(results)
+    return max(k, 1 / k)
 
 
 def pressure(results: Results) -> float:
@@ -42,9 +51,14 @@ def mean_speed(results: Results) -> float:
     return way * results.linkage.driver.rate / strokes.cycle
 
 
+def goes_its_way(results: Results) -> bool:
+    """Whether the driver turns fully, or goes the whole of its stroke."""
+    return results.way is not None and (results.way.full or results.way.inclusive)
+
+
 def crank_turns(results: Results) -> float:
-    """1 when the driver turns fully, else 0."""
-    return float(results.way is not None and results.way.full)
+    """1 when it does, else 0."""
+    return float(goes_its_way(results))
 
 
 def end_angle(results: Results, near: float) -> float:

@@ -81,6 +81,8 @@ def polish(evaluate: Callable[[Real], Local], x: Real, iterations: int = 60) -> 
     for _ in range(iterations):
         ends = np.clip(x + np.vstack([np.zeros(n), STEP * np.eye(n), -STEP * np.eye(n)]), 0, 1)
         found = evaluate(ends)
+        if not all(np.all(np.isfinite(part)) for part in (found.pieces, found.least, found.equal)):
+            break  # at the edge of what can be assembled there are no derivatives
         run = np.diag(ends[1 : n + 1] - ends[n + 1 :])[:, None]
 
         def slope(y: Real, run: Real = run) -> Real:

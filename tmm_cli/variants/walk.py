@@ -21,7 +21,7 @@ from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import driven_state, drives_at, frame_state
 from tmm_cli.vectors import Real, Vector, unit
 
-NODES = 120  # in a turn, or in a stroke
+NODES = 72  # in a turn, or in a stroke
 CHANGES = 8  # steps from the first linkage to a variant
 ROUNDS = 7  # of Newton's method from node to node
 LEAP = 0.2  # a state so far from the expected one (sizes of the group, rad) is another

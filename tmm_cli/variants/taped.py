@@ -1,0 +1,37 @@
+"""Variants of a linkage by its tape: the fastest way, for groups in closed form whose crank turns round and round."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tmm_cli.batch import Asked
+from tmm_cli.family import Iterated, Make, family
+from tmm_cli.variants.way import Places, Way
+from tmm_cli.vectors import Real
+
+UNUSED = ("placed", "moving", "margin")
+
+
+class Taped:
+    """Called with numbers (variants, n) and places; gives what is asked, (variants, places), by name.
+
+    Raises Iterated or DependsOnData where there is no tape, and what assembly raises.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
+        self.ordinary = make(first)
+        by_stroke = any(x.working_stroke_only or x.table is not None for x in self.ordinary.loads)
+        if self.ordinary.others or self.ordinary.driver.stroke is not None or (forces and by_stroke):
+            raise Iterated
+        program = family(make, first, asked, forces=forces)
+        self.program = program.only(*(name for name in program.outputs if name not in UNUSED))
+
+    def way(self, columns: Real) -> Way:
+        """The crank's turn."""
+        return Way.of(self.ordinary, len(columns), 1)
+
+    def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
+        q = np.concatenate([self.ordinary.sketch.at + 2 * np.pi * places.shares, places.driver])
+        return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
