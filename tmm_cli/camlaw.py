@@ -85,9 +85,13 @@ class CamLaw:
 
     @cached_property
     def _table(self) -> tuple[Real, Real, Real, Real]:
-        """Of each piece: where it starts (rad, from the law's start), its angle, the run there, its rise."""
-        over, rise = np.array([p.over for p in self.pieces]), np.array([p.rise for p in self.pieces])
-        return np.cumsum(over) - over, over, np.cumsum(rise) - rise, rise
+        """Of each piece: where it starts (rad, from the law's start), its angle, the run there, its rise.
+
+        They are (pieces,), or (pieces, variants) where they vary.
+        """
+        both = np.broadcast_arrays(*(p.over for p in self.pieces), *(p.rise for p in self.pieces))
+        over, rise = np.array(both[: len(self.pieces)]), np.array(both[len(self.pieces) :])
+        return np.cumsum(over, axis=0) - over, over, np.cumsum(rise, axis=0) - rise, rise
 
     def jumps(self) -> tuple[float, ...]:
         """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
@@ -105,13 +109,20 @@ class CamLaw:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
         turn = np.mod(np.asarray(angle) - self.start, 2 * pi(angle))
         starts, overs, lows, rises = self._table
-        number = np.clip(np.searchsorted(starts, turn, side="right") - 1, 0, len(self.pieces) - 1)
-        over, rise = overs[number], rises[number]
-        x = np.clip((turn - starts[number]) / over, 0.0, 1.0)
+        passed = np.searchsorted(starts, turn, side="right") if starts.ndim == 1 else np.sum(starts <= turn, axis=0)
+        number = np.clip(passed - 1, 0, len(self.pieces) - 1)
+        over, rise, start, low = (_of(part, number) for part in (overs, rises, starts, lows))
+        x = np.clip((turn - start) / over, 0.0, 1.0)
         value, first, second = (np.zeros(np.shape(turn)) for _ in range(3))
         shapes = [p.shape for p in self.pieces]
         for shape in dict.fromkeys(shapes):
             here = np.array([name == shape for name in shapes])[number]
             s, ds, dds = SHAPES[shape](x)
             value, first, second = np.where(here, s, value), np.where(here, ds, first), np.where(here, dds, second)
-        return lows[number] + rise * value, rise / over * first, rise / over**2 * second
+        return low + rise * value, rise / over * first, rise / over**2 * second
+
+
+def _of(part: Real, number: Real) -> Real:
+    """Numbers of the pieces with these numbers."""
+    found: Real = part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]
+    return found

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 
@@ -45,12 +46,13 @@ class Newton(Kernel):
     near = 0.005  # of singular values: a well-shaped triad has 0.1
 
     @classmethod
-    def of(cls, group: Group, linkage: Linkage, size: float = 0.0) -> Newton:
-        """The group with its numbers, not yet assembled. size: what lengths are counted in, if it is given."""
+    def of(cls, group: Group, linkage: Linkage) -> Newton:
+        """The group with its numbers, which may be arrays, not yet assembled."""
         pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
         known = {pair.other(link) for pair in group.outer for link in group.links if link in (pair.i, pair.j)}
-        size = size or max(spread(linkage, link) for link in {*group.links, *known}) or reach(linkage)
+        size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *known})])
+        size = size if np.all(size > 0) else reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
@@ -80,14 +82,19 @@ class Newton(Kernel):
 
     @cached_property
     def _scale(self) -> Real:
-        return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
+        return _stacked([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
     def _columns(self) -> Real:
-        return np.array([self.size, self.size, 1.0] * len(self.group.links))
+        return _stacked([self.size, self.size, 1.0] * len(self.group.links))
+
+    @property
+    def unit(self) -> Real:
+        """The size on an axis of its own."""
+        return np.asarray(self.size)[..., None]
 
     def _fill(self, gripped: Sequence[Mapping[str, Sequence[Grip]]], shape: tuple[int, ...], kind: type) -> Real:
         """Rows of grips as a matrix (..., rows, unknowns), without dimension."""
-        matrix: Real = np.zeros((*shape, len(self._scale), 3 * len(self.group.links)), dtype=kind)
+        matrix: Real = np.zeros((*shape, self._scale.shape[-1], 3 * len(self.group.links)), dtype=kind)
         row = 0
         for constraint, grips in zip(self.constraints, gripped, strict=True):
             for link, lines in grips.items():
@@ -98,7 +105,7 @@ class Newton(Kernel):
                         matrix[..., row + k, at + 1] = c.imag
                         matrix[..., row + k, at + 2] = m
             row += len(constraint.lengths)
-        matrix *= self._scale.astype(kind)[:, None] * self._columns()  # to be rounded as the matrix is
+        matrix *= self._scale.astype(kind)[..., :, None] * self._columns()[..., None, :]  # rounded as the matrix is
         return matrix
 
     def matrix(self, poses: Mapping[str, Pose]) -> Real:
@@ -149,7 +156,7 @@ class Newton(Kernel):
             size = np.max(np.abs(step), axis=-1)
             moved = step.reshape(*np.shape(step)[:-1], -1, 3)
             state = State(
-                state.x + self.size * (moved[..., 0] + 1j * moved[..., 1]), state.turn + moved[..., 2],
+                state.x + self.unit * (moved[..., 0] + 1j * moved[..., 1]), state.turn + moved[..., 2],
             )  # fmt: skip
             if bool(np.all(near | ~np.isfinite(size))):
                 break
@@ -270,6 +277,11 @@ class Newton(Kernel):
             driver.link: found[..., row - len(self.group.drivers) + k] for k, driver in enumerate(self.group.drivers)
         }
         return Holding(tuple(held[:outer]), tuple(held[outer : outer + inner]), drives)
+
+
+def _stacked(values: Sequence[Any]) -> Real:
+    """Numbers, or arrays of them, on a last axis."""
+    return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
 def _nothing(shape: tuple[int, ...]) -> Wrench:

@@ -107,6 +107,8 @@ class Search:
         driver = self.linkage.driver
         if driver.kind != "turn" and driver.stroke is None:
             raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
+        if any(d.acceleration for d in self.linkage.drivers) and any(goal.of in FORCES for goal in self.goals):
+            raise Infeasible("task", f"{W}.accelerated", f"{W}.steady")
         self.program = self._program()
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
@@ -233,9 +235,10 @@ class Search:
             exact.append(slice(at, at + len(goal.places)) if goal.places else slice(at - 1, at))
             at += len(goal.places)
         places = Places(np.concatenate(blocks), self.places.driver)
+        near = self.program.about(self.numbers(x))
 
         def pieces(some: Real) -> list[Real]:
-            out = self.run(np.atleast_2d(some), places)
+            out = near(self.numbers(np.atleast_2d(some)), places)
 
             return [
                 goal.fine(

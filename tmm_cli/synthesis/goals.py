@@ -185,10 +185,9 @@ class Goal:
             return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most, over.closed)]
         if self.of in STROKES:
             slope = read("slope")[0]
-            after = np.roll(slope, -1)
-            if not over.closed:
-                after[-1] = 0.0
-            turns = [("slope", int(k)) for k in np.flatnonzero(slope * after < 0)]
+            moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
+            after = np.roll(moves, -1) if over.closed else np.append(moves[1:], moves[-1:])
+            turns = [("slope", int(k)) for k in moves[slope[moves] * slope[after] < 0]]
             return turns if over.closed else [("slope", 0), *turns, ("slope", len(slope) - 1)]
         if self.of == "path" and not self.places:
             p = read("px")[0] + 1j * read("py")[0]
@@ -211,6 +210,8 @@ class Goal:
                 found = found.sum(axis=1, keepdims=True)
             return -found if self.of in LEAST else found
         if self.of in STROKES:
+            if not parts:
+                return exact("slope")[:, :1] * np.nan  # it has no strokes
             if self.of != "k":
                 runs = []
                 for _, _, read in parts:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Self
 
 import numpy as np
 
@@ -34,6 +35,10 @@ class Apart:
         """The drivers' ways, as far as they can go round."""
         turns = Mechanism(self.ordinary, self.structure).way.turns
         return Way.of(self.ordinary, len(columns), turns)
+
+    def about(self, numbers: Real) -> Self:
+        """For variants near one: no other than for all."""
+        return self
 
     def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
         rows = []

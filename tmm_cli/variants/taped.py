@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Self
 
 import numpy as np
 
@@ -31,6 +32,10 @@ class Taped:
     def way(self, columns: Real) -> Way:
         """The crank's turn."""
         return Way.of(self.ordinary, len(columns), 1)
+
+    def about(self, numbers: Real) -> Self:
+        """For variants near one: no other than for all."""
+        return self
 
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
         q = np.concatenate([self.ordinary.sketch.at + 2 * np.pi * places.shares, places.driver])

@@ -7,7 +7,7 @@ drivers that work between two ends, loads of working strokes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,7 +32,8 @@ from tmm_cli.variants.walk import Step, Walked, kernels_of, walk
 from tmm_cli.variants.way import Places, Way
 from tmm_cli.vectors import Real, Vector
 
-SINGLE = (".law", ".table", ".ratio", "acceleration")  # numbers that every variant has alike
+Program = Callable[[Real, Places], Mapping[str, Real]]
+SINGLE = (".table", ".ratio", "acceleration")  # numbers that every variant has alike
 
 
 @dataclass(frozen=True)
@@ -107,9 +108,20 @@ class Together:
         """The drivers' ways."""
         return Way.of(self.linkage(columns), len(columns), self.turns)
 
+    def about(self, numbers: Real) -> Program:
+        """The same for variants near one, whose groups are not followed anew but start from where its own are."""
+        one = numbers[None, :]
+        walked = self._walked(one, self.way(one))
+        return lambda columns, places: self._found(columns, places, walked and walked.repeated(len(columns)))
+
     def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+        return self._found(columns, places, self._walked(columns, self.way(columns)))
+
+    def _walked(self, columns: Real, way: Way) -> Walked | None:
+        return walk(self.linkage, self.first, columns, self.kernels, self.home, way) if self.walks else None
+
+    def _found(self, columns: Real, places: Places, walked: Walked | None) -> dict[str, Real]:
         way = self.way(columns)
-        walked = walk(self.linkage, self.first, columns, self.kernels, self.home, way) if self.walks else None
         strokes = None
         if self.by_strokes and way.closed:
             link = output_link(self.ordinary, self.structure.groups)

@@ -32,12 +32,11 @@ Make = Callable[[Real], Linkage]  # numbers (variants, n) -> a linkage of arrays
 
 
 def kernels_of(linkage: Linkage, kernels: Sequence[Kernel]) -> tuple[Kernel, ...]:
-    """The groups with the numbers of another linkage, which may be arrays; lengths are counted in the same sizes."""
+    """The groups with the numbers of another linkage, which may be arrays, not yet assembled."""
     found: list[Kernel] = []
     for kernel in kernels:
         if isinstance(kernel, Newton):
-            own = Newton.of(kernel.group.again(linkage), linkage, kernel.size)
-            found.append(replace(own, start=kernel.start))
+            found.append(Newton.of(kernel.group.again(linkage), linkage))
         else:
             again = kernel.again(linkage)
             assert isinstance(again, Dyad)
@@ -70,6 +69,15 @@ class Walked:
     home: int
     closed: bool
     lost: Real
+
+    def repeated(self, variants: int) -> Walked:
+        """The nodes of one variant for as many that are near to it."""
+
+        def all_of(values: Real) -> Real:
+            return np.repeat(values, variants, axis=0)
+
+        x, turn = ({n: all_of(v) for n, v in part.items()} for part in (self.x, self.turn))
+        return Walked(all_of(self.q), x, turn, self.home, self.closed, all_of(self.lost))
 
     def near(self, q: Real) -> tuple[dict[str, Vector], dict[str, Real], Real]:
         """States of all links near places q (variants, places), between two nodes, and whether they are lost there."""

@@ -1,0 +1,129 @@
+"""Optimal synthesis of linkages of every kind: variants solved together are those solved one by one."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_commands import ROOT
+
+from tmm_cli import solve
+from tmm_cli.batch import everything
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.stack import changed, numbers
+from tmm_cli.synthesis.check import measured
+from tmm_cli.variants.apart import Apart
+from tmm_cli.variants.together import Together
+from tmm_cli.variants.way import Places
+
+
+def text_of(name, *edits):
+    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8")
+    for pattern, new in edits:
+        text, count = re.subn(pattern, new, text, count=1)
+        assert count == 1, pattern
+    return text
+
+
+def linkage_of(text):
+    return build(read_text(text, "x.yaml")).linkage
+
+
+ALIKE = {
+    "press-class-iii": (),
+    "class-iv": (),
+    "cam-lever": (),
+    "summing-lever": (),
+    "shaper": (),
+    "two-strokes": (),
+    "rack-doubling": (),
+    "planetary-dwell-press": (),
+    "tilter": (("checks|output", "friction: {coefficient: 0.1, radius: 20}\noutput"),),
+    "crank-slider-offset": (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),),
+    "loader": (("speed: v}", "speed: v, stroke: [240, 340]}"),),
+}
+
+
+@pytest.mark.parametrize("name", ALIKE)
+def test_variants_solved_together_are_those_solved_one_by_one(name):
+    linkage = linkage_of(text_of(name, *ALIKE[name]))
+    given = [(p, v) for p, v in numbers(linkage) if re.fullmatch(r"links\.[^0].*\.points\..*", p) and abs(v) > 0][:5]
+    first = [abs(v) for _, v in given]
+
+    def make(x):
+        new = {path: v * (size / abs(v)) for (path, v), size in zip(given, x, strict=True)}
+        return replace(changed(linkage, new), sketch=linkage.sketch)
+
+    def asked(motion, reactions):
+        return {**everything(motion, reactions), "moves": motion.moving}
+
+    variants = np.array(first) * (1 + 0.01 * np.random.default_rng(2).uniform(-1, 1, (3, len(first))))
+    together, apart = (way(make, first, asked, forces=True) for way in (Together, Apart))
+    closed = together.way(variants).closed
+    places = Places(np.arange(12) / 12 if closed else np.linspace(0, 1, 12), np.zeros(0))
+    found, expected = together(variants, places), apart(variants, places)
+    moves = expected["moves"] == 1
+    for key in ("moves", "placed", "moving"):
+        del found[key], expected[key]
+    assert np.any(moves)
+    sizes = {key[-1]: 1e-9 for key in expected}
+    for key, values in expected.items():
+        sizes[key[-1]] = max(sizes[key[-1]], float(np.nanmax(np.abs(values))))
+    for key, values in expected.items():
+        off = np.abs(found[key] - values)[moves]
+        assert np.max(off) < 1e-11 * sizes[key[-1]], key
+
+
+SHORT = "positions: 24\n  population: 8\n  generations: 3\n"
+OPTIMAL = {
+    "class III": ("press-class-iii", (("CE: 310, FE: 270, ", ""),), "{CE: [300, 325], FE: [260, 285]}", "pressure", ""),
+    "wheels": ("tilter", (("DB: 200, ", ""),), "{DB: [150, 250]}", "moment", "{of: pressure, most: 50 deg}"),
+    "stroke loads": (
+        "shaper", ((r"  CD: 650\n  DE: 210\n", ""),), "{CD: [600, 700], DE: [180, 260]}", "moment",
+        "{of: stroke, most: 430}",
+    ),
+    "friction": (
+        "crank-slider-offset", (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"), ("l: 190", "Q: 1"),
+                                (", acceleration: 20 rad/s.2", "")), "{l: [180, 260]}",
+        "{of: reaction, pair: A}", "",
+    ),
+    "cylinder": (
+        "loader", (("speed: v}", "speed: v, stroke: [240, 330]}"), ("b: 180, ", "")), "{b: [170, 190]}", "moment", "",
+    ),
+    "cam": ("cam-lever", (("rise: 20", "rise: h"), ("rise: -20", "rise: -h")), "{h: [10 deg, 20 deg]}",
+            "{of: stroke, target: 30}", ""),
+    "speed": (
+        "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"), (", acceleration: 20 rad/s.2", "")),
+        "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.2 m/s}", "",
+    ),
+}  # fmt: skip
+
+
+def block(vary, objective, constraint):
+    return (
+        f"synthesis:\n  task: optimal\n  vary: {vary}\n  objective: {objective}\n  constraints: [{constraint}]\n"
+        f"  {SHORT}points: {{"
+    )
+
+
+@pytest.mark.parametrize("kind", OPTIMAL)
+def test_what_is_found_for_any_linkage_is_measured_on_it(kind):
+    name, edits, *task = OPTIMAL[kind]
+    problem = build(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
+    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+        assert m.met, (m.demand.words, m.demand.value, m.value)
+
+
+def test_a_stroke_has_no_k():
+    edits = (("speed: v}", "speed: v, stroke: [240, 330]}"), ("b: 180, ", ""))
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text_of("loader", *edits, (r"points: \{", block("{b: [170, 190]}", "k", ""))), "x.yaml"))
+    assert "this belongs to a driver that turns on and on" in str(caught.value)
+    with pytest.raises(ProblemError) as caught:
+        text = text_of("loader", ("b: 180, ", ""), (r"points: \{", block("{b: [170, 190]}", "mass", "")))
+        build(read_text(text, "x.yaml"))
+    assert "how far the driver goes is wanted" in str(caught.value)
