@@ -90,6 +90,8 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
     axes.set_xlabel(_axis(x_words, across, units), parse_math=False)
     axes.set_ylabel(_axis(y_words, up, units), parse_math=False)
     axes.grid(color=GREY, lw=0.4)
+    if drawn.equal:
+        axes.set_aspect("equal", adjustable="datalim")
     if len(drawn.lines) > 1:
         axes.legend(fontsize=9)
     return figure

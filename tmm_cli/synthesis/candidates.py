@@ -112,6 +112,7 @@ class Search:
         self.program = self._program()
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
+        self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
         for at, goal in ((("objective",), self.goals[0]), *((limit.at, limit.goal) for limit in asked.limits)):
             if goal.of in CYCLIC and not self.closed:
                 raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")

@@ -83,10 +83,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Diagram:
-    """A diagram (largest pressure angle along an arc, structural error). x, y: words and kind of the axes."""
+    """A diagram (largest pressure angle along an arc, structural error). x, y: words and kind of the axes.
+
+    equal: both to one scale, as a path has to be.
+    """
 
     name: str
     title: str
     x: tuple[str, str]
     y: tuple[str, str]
     lines: tuple[Line, ...]
+    equal: bool = False

@@ -6,18 +6,14 @@ finds it (polish).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from tmm_cli.synthesis.candidates import Asked, Limit, Search, W
-from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.evolution import Evolved, evolve
-from tmm_cli.synthesis.goals import LEAST, PLAIN
-from tmm_cli.synthesis.measured_goals import measure
-from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
 
 __all__ = ["PARAMETERS", "Asked", "Limit", "best", "solve"]
@@ -25,7 +21,6 @@ PARAMETERS: Final[dict[str, str]] = {}
 STARTS = 3  # of the polish: the best that differ
 APART = 0.02  # in shares of the ranges: what counts as different
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
-ACTIVE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -69,64 +64,29 @@ def best(search: Search) -> Best:
 
 def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
+    from tmm_cli.synthesis.optimal_told import told
+
     search = Search(asked)
     found = best(search)
-    kinds = [goal.kind(search.linkage, search.groups) for goal in search.goals]
     if found.missed:
-        misses = [limit.missed(v) for limit, v in zip(search.limits, found.values[1:], strict=True)]
-        n = int(np.argmax(misses))
-        if n == 0:
-            raise Infeasible("vary", f"{W}.never", f"{W}.wider")
-        raise Infeasible(
-            search.limits[n].at, f"{W}.unmet", f"{W}.nearest", {"value": (found.values[n + 1], kinds[n + 1])}
-        )  # fmt: skip
-    given = [
-        Value(name, side[name], asked.kinds[name], f"{W}.{word}")
-        for name in asked.low for word, side in (("low", asked.low), ("high", asked.high))
-    ]  # fmt: skip
-    numbers = [
-        Value(name, float(x), asked.kinds[name], f"{W}.parameter")
-        for name, x in zip(asked.low, found.numbers, strict=True)
-    ]
-    more = [Value("", found.values[0], kinds[0], f"{W}.best_{asked.objective.of}")]
-    demands = [Demand(f"{W}.crank", 1.0, "number", crank_turns, asked=False)]
-    demands.append(_demand(search, 0, found.values[0], kinds[0], asked=False))
-    for n, limit in enumerate(search.limits[1:], 2):
-        value = found.values[n]
-        given += [
-            Value("", side, kinds[n], f"{W}.{word}_{limit.goal.of}")
-            for word, side in (("least", limit.least), ("most", limit.most)) if side is not None
-        ]  # fmt: skip
-        margin = limit.margin(value)
-        state = "equal" if limit.equal else "active" if margin <= ACTIVE * limit.scale else "free"
-        more.append(Value("", value, kinds[n], f"{W}.{limit.goal.of}"))
-        more.append(Value("", margin, kinds[n], f"{W}.margin_{limit.goal.of}"))
-        more.append(Value("", state, "word", f"{W}.state_{limit.goal.of}", f"{W}.{state}"))
-        demands.append(_demand(search, n, limit.least or 0.0 if limit.equal else value, kinds[n], asked=limit.equal))
-    for name, x in zip(asked.low, found.x, strict=True):
-        if min(x, 1 - x) < ACTIVE:
-            more.append(Value("", name, "word", f"{W}.bound", name))
-    history = found.evolved.history
-    kept = history[:, 1] == 0
-    generation = np.arange(len(history))
-    so_far = _shown(search, np.fmin.accumulate(np.where(kept, history[:, 0], np.nan)))
-    curve = Diagram(
-        "history", f"{W}.history", (f"{W}.generation", "number"), (f"{W}.best_{asked.objective.of}", kinds[0]),
-        (Line(f"{W}.evolution", generation, so_far),
-         Line(f"{W}.polished", np.array([len(history)]), np.array([found.values[0]]), dots=True)),
-    )  # fmt: skip
-    notes = (f"{W}.stopped",) if found.evolved.stopped else ()
-    return Outcome(tuple(given), (*numbers, *more), f"{W}.source", tuple(demands), (curve,), notes)
+        raise _unmet(search, found)
+    return told(search, found)
 
 
-def _shown(search: Search, f: Real) -> Real:
-    """The history of the objective in its own unit; of a target as far above it as the best candidate is from it."""
-    if search.asked.target is not None:
-        return search.asked.target * (1 + f)
-    return -f if search.asked.objective.of in LEAST else f
-
-
-def _demand(search: Search, n: int, value: float, kind: str, *, asked: bool) -> Demand:
-    goal = search.goals[n]
-    at = 1e-6 if kind in ("length", "angle") and goal.of not in PLAIN else 0.0
-    return Demand(f"{W}.{goal.of}", value, kind, lambda results: measure(goal, results), asked=asked, at=at)
+def _unmet(search: Search, found: Best) -> Infeasible:
+    """Which constraint is farthest from being met, and how near to it one comes when all the others are kept."""
+    misses = [float(limit.missed(v)) for limit, v in zip(search.limits, found.values[1:], strict=True)]
+    n = int(np.argmax(misses))
+    if n == 0:
+        return Infeasible("vary", f"{W}.never", f"{W}.wider")
+    limit = search.limits[n]
+    bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
+    others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
+    kind = limit.goal.kind(search.linkage, search.groups)
+    try:
+        nearest = best(Search(replace(search.asked, objective=limit.goal, limits=others, target=bound)))
+    except Infeasible:
+        nearest = found
+    if nearest.missed:  # the others contradict one another too
+        return Infeasible(limit.at, f"{W}.unmet", f"{W}.others", {"value": (found.values[n + 1], kind)})
+    return Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (nearest.values[0], kind)})
