@@ -38,8 +38,8 @@ FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
 class Asked:
     """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
 
-    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, l1, l2, l4 (m) or near (a place).
-    sense: of the crank (1: counterclockwise) whose slow stroke leads from psi1 to psi2; 0: any.
+    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, near (a
+    place), l1, l2 or l4 (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
     """
 
     l3: Any
