@@ -1,9 +1,9 @@
 """Syntheses with answers that the literature prints, to the digits that it prints.
 
-R. S. Khurmi, J. K. Gupta, Theory of Machines, 14th ed., Eurasia Publishing House 2009: examples 5.1 to 5.3, pp. 110-112.
+R. S. Khurmi, J. K. Gupta, Theory of Machines, 14th ed., Eurasia 2009: examples 5.1 to 5.3, pp. 110-112.
 B. K. Sarkar, Theory of Machines, Tata McGraw-Hill 2002: illustrations 1 and 2, pp. 15-16. Both as printed by the public
 textbook companions of FOSSEE (Python-Textbook-Companions, Theory_Of_Machines/ch5.ipynb; Scilab-TBC-Uploads).
-A. P. Morgan, C. W. Wampler, Solving a planar four-bar design problem using continuation, J. Mechanical Design 112 (1990),
+A. P. Morgan, C. W. Wampler: Solving a planar four-bar design problem using continuation, J. Mech. Design 112 (1990),
 pp. 544-550, problem 7: solutions 1, 11 and 12, as printed by the documentation of PHCpack (phcpy, a 4-bar mechanism).
 P. L. Chebyshev's straight-line linkage: proportions and input angles, as printed by Wikipedia, Chebyshev linkage.
 Course Webkinematik, October 2020, exercise 2.5, as printed in the repository gislain1993/Webkinematik, Uebungen.md; two
