@@ -29,8 +29,8 @@ class Asked:
     """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
 
     k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
-    lever clockwise from b1 to b2. OC (m), or bounds of it and which is chosen: force (the longest with the stone on
-    CB) or shortest.
+    lever clockwise from b1 to b2. OC (m), or the crank OA (m), or bounds of OC and which is chosen: force (the longest
+    with the stone on CB) or shortest.
     """
 
     b1: Any = None
@@ -42,6 +42,7 @@ class Asked:
     k: Any = None
     swing: Any = None
     frame: Any = None
+    crank: Any = None
     within: tuple[Any, Any] | None = None
     choose: str = "force"
 
@@ -80,7 +81,9 @@ def find(asked: Asked) -> Found:
         along = np.cos(asked.axis) + 1j * np.sin(asked.axis)
         psi1, psi2 = asked.axis - asked.side * theta / 2, asked.axis + asked.side * theta / 2
     longest = lever / (1 + sine)
-    if asked.within is None:
+    if asked.crank is not None:
+        frame = np.asarray(asked.crank) / sine
+    elif asked.within is None:
         frame = np.asarray(asked.frame)
     elif asked.choose == "force":
         frame = np.minimum(asked.within[1], longest)
@@ -99,7 +102,7 @@ def refuse(asked: Asked) -> None:
         raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
     if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
         raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed")
-    for name, value in (("CB", asked.length), ("OC", asked.frame)):
+    for name, value in (("CB", asked.length), ("OC", asked.frame), ("OA", asked.crank)):
         if value is not None and not value > 0:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
     if asked.length is None and abs(asked.b2 - asked.b1) == 0:
@@ -127,7 +130,7 @@ def solve(asked: Asked) -> Outcome:
         for name in ("b1", "b2") if getattr(asked, name) is not None
         for axis, part in (("x", np.real(getattr(asked, name))), ("y", np.imag(getattr(asked, name))))
     ]  # fmt: skip
-    kinds = {"length": "length", "k": "number", "swing": "angle", "frame": "length"}
+    kinds = {"length": "length", "k": "number", "swing": "angle", "frame": "length", "crank": "length"}
     given += [
         Value(n, getattr(asked, n), kind, f"{W}.{n}") for n, kind in kinds.items() if getattr(asked, n) is not None
     ]

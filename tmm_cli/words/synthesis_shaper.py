@@ -5,6 +5,7 @@ WORDS: dict[str, str] = {
     "synthesis_shaper.k": "k",
     "synthesis_shaper.frame": "frame OC",
     "synthesis_shaper.frame_ratio": "OC/CD",
+    "synthesis_shaper.crank": "crank OA",
     "synthesis_shaper.rod": "rod DE",
     "synthesis_shaper.rod_ratio": "DE/CD",
     "synthesis_shaper.pressure": "largest pressure angle of the ram",

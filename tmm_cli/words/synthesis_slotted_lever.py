@@ -9,6 +9,7 @@ WORDS: dict[str, str] = {
     "synthesis_slotted_lever.k": "k",
     "synthesis_slotted_lever.swing": "swing of the lever",
     "synthesis_slotted_lever.frame": "frame OC",
+    "synthesis_slotted_lever.crank": "crank OA",
     "synthesis_slotted_lever.low": "frame OC, at least",
     "synthesis_slotted_lever.high": "frame OC, at most",
     "synthesis_slotted_lever.choose": "choice of OC",
