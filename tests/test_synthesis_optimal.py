@@ -65,11 +65,11 @@ def test_the_shortest_rod_that_keeps_a_pressure_angle_is_that_of_the_closed_form
 def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told():
     problem = slider(ROD)
     assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
-    told = {value.words.partition(".")[2]: value for value in problem.synthesis.outcome.found}
-    assert told["state_pressure"].text.endswith(".active") and told["margin_pressure"].value == pytest.approx(
-        0, abs=1e-9
-    )
-    assert told["state_k"].text.endswith(".equal")
+    (table,) = problem.synthesis.outcome.listings
+    rows = {row[0].partition(".")[2]: row for row in table.rows}
+    *_, bound, value, margin, unit, state = rows["pressure"]
+    assert state.endswith(".active") and margin == 0 and value == pytest.approx(bound, abs=1e-9) and unit == "angle"
+    assert rows["k"][-1].endswith(".equal") and rows["length"][-1].endswith(".objective")
 
 
 def test_the_same_seed_gives_the_same_answer_to_the_last_bit():

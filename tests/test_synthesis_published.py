@@ -218,5 +218,5 @@ def test_optimal_synthesis_finds_the_lengths_of_the_best_four_bar_of_eca():
     ))  # fmt: skip
     values = found(problem)
     assert [values[name] * 1000 for name in vary] == pytest.approx([BEST[name] for name in vary], rel=3e-7)
-    (best,) = [v.value for v in problem.synthesis.outcome.found if v.words.endswith("best_path")]
+    best = problem.synthesis.outcome.listings[0].rows[0][4]
     assert best < 1e-10

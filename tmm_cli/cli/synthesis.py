@@ -31,11 +31,9 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
         name, title, found, units, results = _solved(file)
         measured = None
         if results is not None:
-            from tmm_cli.synthesis.check import measured as measure
-
-            measured = measure(found.outcome, results)
+            measured = results.measured
         if as_json:
-            emit_json(to_json(name, found, measured))
+            emit_json({"problem": name, **to_json(found, measured)})
         else:
             screen = console()
             for table in tables(found, measured, units):
@@ -90,5 +88,5 @@ def _write(
             staged.write(f"{table.name}.csv", csv_text(table, units))
         for name, picture in files(names[1], found.outcome, results, units):
             staged.write(name, (picture,))
-        staged.write("synthesis.json", (json_bytes(to_json(names[0], found, measured)),))
+        staged.write("synthesis.json", (json_bytes({"problem": names[0], **to_json(found, measured)}),))
     return folder

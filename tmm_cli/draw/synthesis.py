@@ -43,6 +43,12 @@ def sheets(title: str, outcome: Outcome, results: Results | None, units: UnitSys
         yield "synthesis-extremes", extremes(results).finish()
 
 
+def synthesised(results: Results) -> Iterable[tuple[str, Figure]]:
+    """The sheets of a problem whose file has a synthesis."""
+    if results.synthesis is not None:
+        yield from sheets(results.problem.title, results.synthesis.outcome, results, results.problem.units)
+
+
 def construction(title: str, drawn: Construction) -> Sheet:
     """One sheet; arcs that are bold are on it whole."""
     around = [p for arc in drawn.arcs if arc.style == "bold" for p in _along(arc)]

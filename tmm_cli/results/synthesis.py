@@ -104,7 +104,7 @@ def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
             yield say("synthesis.not_met", quantity=say(m.demand.words), wanted=f"{wanted} {unit}".rstrip(), found=on)
 
 
-def to_json(name: str, found: Synthesised, measured: Sequence[Measured] | None) -> dict[str, Any]:
+def to_json(found: Synthesised, measured: Sequence[Measured] | None) -> dict[str, Any]:
     """Everything in SI and radians."""
 
     def value(v: Value) -> dict[str, Any]:
@@ -112,7 +112,6 @@ def to_json(name: str, found: Synthesised, measured: Sequence[Measured] | None) 
         return {"name": v.name or None, "quantity": say(v.words), "kind": v.kind, "value": shown}
 
     return {
-        "problem": name,
         "task": found.task,
         "asked": [value(v) for v in found.outcome.asked],
         "found": [value(v) for v in found.outcome.found],
@@ -136,7 +135,7 @@ def _records(listing: Listing) -> list[dict[str, Any]]:
             return value
         return say(value) if kind == "word" else _number(value)
 
-    keys = [words.rpartition(".")[2] for words, _ in listing.columns]
+    keys = [words.rpartition(".")[2].removeprefix("column_") for words, _ in listing.columns]
     kinds = [kind for _, kind in listing.columns]
     return [
         {key: plain(value, kind) for key, value, kind in zip(keys, row, kinds, strict=True)} for row in listing.rows
