@@ -96,9 +96,14 @@ class Goal:
             both = zip(motion.kernels, motion.placements, strict=True)
             return {"y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])}
         if self.of == "box":
-            spots = [motion.poses[name].at(p) for name in linkage.moving for p in linkage.links[name].points.values()]
-            turned = (1, -1, -1j, 1j)  # to the right, left, top and bottom
-            return {f"y{k}": reduce(np.maximum, [(p * z).real for p in spots]) for k, z in enumerate(turned)}
+            fixed = linkage.links[FRAME].points
+            names = {p for name in linkage.moving for p in linkage.links[name].points}
+            spots = [motion.spot(p) for p in sorted(names, key=lambda p: (p not in fixed, p))]
+            x, y = [p.real for p in spots], [p.imag for p in spots]
+            return {
+                "y0": reduce(np.maximum, x), "y1": -reduce(np.minimum, x),
+                "y2": reduce(np.maximum, y), "y3": -reduce(np.minimum, y),
+            }  # fmt: skip
         if self.of in STROKES:
             assert output is not None
             found = {"slope": output_slope(motion, output)}
@@ -126,7 +131,7 @@ class Goal:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
             if swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
-                travel[past] = np.ptp(np.unwrap(run[past], axis=1), axis=1)
+                travel[past] = _swept(run[past])
             found: Real = travel if self.of == "stroke" else travel * read("rate")[:, 0] / np.pi
             return found
         return self.counted(self.deviations(read, swings))
@@ -217,6 +222,15 @@ class Goal:
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
 
 
+def _swept(angles: Real) -> Real:
+    """The range of angles that are told within -pi..pi and lie nearer than pi to the next ones; (variants,)."""
+    turns = np.rint(np.diff(angles, axis=1) / (2 * np.pi))
+    whole = angles.copy()
+    whole[:, 1:] -= 2 * np.pi * np.cumsum(turns, axis=1)
+    found: Real = np.max(whole, axis=1) - np.min(whole, axis=1)
+    return found
+
+
 def _square(read: Read, wanted: complex) -> Real:
     """Of the distance of a path from a point."""
     found: Real = (read("px") - wanted.real) ** 2 + (read("py") - wanted.imag) ** 2
@@ -229,18 +243,24 @@ def nearest(x: Real, y: Real, wanted: Real) -> Real:
     Of the corner that is nearest, and of the sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    square, rows, found = (x * x + y * y) / 2, np.arange(len(x)), []
-    for w in wanted:
-        k = np.argmin(square - (w.real * x + w.imag * y), axis=1)  # of half the square of the distance, but for w^2
-        px, py = x[rows, k] - w.real, y[rows, k] - w.imag
-        best = px * px + py * py
-        for other in (k - 1, (k + 1) % x.shape[1]):
-            sx, sy = x[rows, other] - w.real - px, y[rows, other] - w.imag - py
-            with np.errstate(all="ignore"):
-                share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
-            best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
-        found.append(np.sqrt(best))
-    return np.stack(found, axis=1)
+    square, rows, corners = (x * x + y * y) / 2, np.arange(len(x)), x.shape[1]
+    near, work, other = np.empty((len(wanted), len(x)), dtype=int), np.empty_like(x), np.empty_like(x)
+    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
+        np.multiply(x, w.real, out=work)
+        np.subtract(square, work, out=work)
+        np.multiply(y, w.imag, out=other)
+        np.subtract(work, other, out=work)
+        np.argmin(work, axis=1, out=k)
+    wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
+    px, py = x[rows, near] - wx, y[rows, near] - wy
+    best = px * px + py * py
+    for beside in (near - 1, np.where(near + 1 == corners, 0, near + 1)):
+        sx, sy = x[rows, beside] - wx - px, y[rows, beside] - wy - py
+        with np.errstate(all="ignore"):
+            share = np.minimum(np.maximum(-(px * sx + py * sy) / (sx * sx + sy * sy), 0), 1)
+        best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
+    found: Real = np.sqrt(best).T
+    return found
 
 
 def length(linkage: Linkage, link: str) -> Any:
@@ -272,4 +292,4 @@ def _peaks(y: Real, most: int) -> list[int]:
     if not found.size:
         return [int(np.argmax(y))]
     found = found[np.argsort(-y[found], kind="stable")][:most]
-    return [int(k) for k in found if y[k] >= np.max(y) - SIDE * np.ptp(y)]
+    return [int(k) for k in found if not y[k] < np.max(y) - SIDE * np.ptp(y)]  # some are kept where not all is known
