@@ -18,11 +18,11 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal
+from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
-from tmm_cli.tape import DependsOnData, Outputs
+from tmm_cli.tape import DependsOnData, Outputs, Program
 from tmm_cli.vectors import Real
 
 W: Final = "synthesis_optimal"
@@ -31,6 +31,8 @@ TRIES = 40  # of linkages that could tell the assembly
 SCAN = 720  # places where peaks are looked for before the polish
 ROUNDS = 5
 BLOCK = 125  # candidates at once
+POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
+GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
@@ -70,6 +72,7 @@ class Limit:
 class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
     order. target: the objective is to come near to this. positions: round the cycle, in the search.
+    population, generations: 0 for as many as the number of parameters wants.
     """
 
     low: dict[str, float]
@@ -81,7 +84,7 @@ class Asked:
     target: float | None = None
     positions: int = 72
     population: int = 0
-    generations: int = 200
+    generations: int = 0
     seed: int = 1
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
 
@@ -110,9 +113,19 @@ class Search:
         except DependsOnData:
             raise Infeasible("vary", f"{W}.not_here", f"{W}.lengths") from None
         self.program = self.program.only(*(n for n in self.program.outputs if n not in ("placed", "moving", "margin")))
+        self.coarse = self.program.only(*(n for n in self.program.outputs if CLOSELY not in n))
+        self.spots = [sum(f"{n}.{CLOSELY}x" in name for name in self.program.outputs) for n in range(len(self.goals))]
         self.step = 2 * np.pi / asked.positions
         self.start = self.linkage.sketch.at
         self.swings = tuple(not goal.slides(self.linkage, self.groups) for goal in self.goals)
+
+    @property
+    def population(self) -> int:
+        return self.asked.population or max(LEAST_POPULATION, POPULATION * len(self.low))
+
+    @property
+    def generations(self) -> int:
+        return self.asked.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
 
     def _first(self) -> list[float]:
         """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
@@ -143,10 +156,10 @@ class Search:
         found: Real = self.low + x * (self.high - self.low)
         return found
 
-    def run(self, x: Real, q: Real) -> Outputs:
-        """All outputs for candidates x (variants, n) in 0..1."""
+    def run(self, program: Program, x: Real, q: Real) -> Outputs:
+        """Outputs of a program for candidates x (variants, n) in 0..1."""
         columns = self.numbers(x)
-        return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+        return program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
 
     @cached_property
     def exact(self) -> list[slice]:
@@ -165,7 +178,7 @@ class Search:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        blocks = [self._evaluate(x[k : k + BLOCK]) for k in range(0, len(x), BLOCK)]
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) // BLOCK))]
         return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:
@@ -179,7 +192,7 @@ class Search:
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
-        found = self.run(x, self.places)
+        found = self.run(self.coarse, x, self.places)
         return [
             goal.coarse(_reader(found, n, self.exact[n]), self.swings[n])
             for n, goal in enumerate(self.goals)
@@ -194,13 +207,13 @@ class Search:
     def closely(self, x: Real) -> Callable[[Real], list[Real]]:
         """Pieces of every goal near x, exactly: windows are where x has its peaks."""
         scan = self.start + 2 * np.pi / SCAN * np.arange(SCAN)
-        found = self.run(np.stack([x, x]), scan)
+        found = self.run(self.program, np.stack([x, x]), scan)
         step = 2 * self.step / (WINDOW - 1)
         blocks, parts = [], []
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
-            for name, k in goal.windows(_reader(found, n, slice(None))):
+            for name, k in goal.windows(_reader(found, n, slice(None)), self.spots[n]):
                 first = scan[k] - self.step
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
@@ -215,7 +228,7 @@ class Search:
         q = np.concatenate(blocks)
 
         def pieces(some: Real) -> list[Real]:
-            out = self.run(np.atleast_2d(some), q)
+            out = self.run(self.program, np.atleast_2d(some), q)
 
             return [
                 goal.fine(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import reduce
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -29,7 +29,10 @@ PLAIN: Final = ("length", "mass")
 ALL: Final = (*PLAIN, *PEAKS, *STROKES, *PLACES)
 FORCES: Final = ("moment", "reaction")
 LEAST: Final = ("margin", "crank")  # whose least value counts
+SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
+OF_A_SIDE = 3  # points that may come to bear on a side of the box
+CLOSELY = "closely."  # outputs that are wanted for windows alone
 SIDE = 0.3  # of its range: a lower peak so far below the highest one is no rival
 
 Read = Callable[[str], Real]  # an output by name, (variants, places)
@@ -97,10 +100,11 @@ class Goal:
             return {"y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])}
         if self.of == "box":
             fixed = linkage.links[FRAME].points
-            names = {p for name in linkage.moving for p in linkage.links[name].points}
-            spots = [motion.spot(p) for p in sorted(names, key=lambda p: (p not in fixed, p))]
+            points = {p for name in linkage.moving for p in linkage.links[name].points}
+            spots = [motion.spot(p) for p in sorted(points, key=lambda p: (p not in fixed, p))]
             x, y = [p.real for p in spots], [p.imag for p in spots]
-            return {
+            closely = {f"{CLOSELY}{axis}{k}": v for axis, vs in (("x", x), ("y", y)) for k, v in enumerate(vs)}
+            return closely | {
                 "y0": reduce(np.maximum, x), "y1": -reduce(np.minimum, x),
                 "y2": reduce(np.maximum, y), "y3": -reduce(np.minimum, y),
             }  # fmt: skip
@@ -168,11 +172,20 @@ class Goal:
 
     # finely
 
-    def windows(self, read: Read) -> list[tuple[str, int]]:
-        """Curves and places about which to look closely, from a scan of one variant round the cycle."""
+    def windows(self, read: Read, spots: int) -> list[tuple[str, int]]:
+        """Curves and places about which to look closely, from a scan of one variant round the cycle.
+
+        spots: points in the box; a curve of it is its side and the point, whose own path is smooth.
+        """
+        if self.of == "box":
+            found = []
+            for side, (axis, sign) in enumerate(SIDES):
+                ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(spots)}
+                tops = sorted(((y[at], k, at) for k, y in ys.items() for at in _peaks(y, MOST_PEAKS)), reverse=True)
+                found += [(f"{side}{axis}{k}", at) for _, k, at in tops[:OF_A_SIDE]]
+            return found
         if self.of in PEAKS:
-            most = MOST_PEAKS if self.of != "box" else 1
-            return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most)]
+            return [("y0", k) for k in _peaks(read("y0")[0], MOST_PEAKS)]
         if self.of in STROKES:
             slope = read("slope")[0]
             return [("slope", int(k)) for k in np.flatnonzero(slope * np.roll(slope, -1) < 0)]
@@ -189,11 +202,15 @@ class Goal:
         """
         if self.of in PLAIN:
             return exact("value")[:, :1]
+        if self.of == "box":
+            sides: list[list[Real]] = [[], [], [], []]
+            for curve, _, read in parts:
+                side = int(curve[0])
+                sides[side].append(peak(SIDES[side][1] * read(CLOSELY + curve[1:])))
+            return np.stack([np.sum(four, axis=0) for four in product(*sides)], axis=1)  # the largest is the box
         if self.of in PEAKS:
             ys = [np.arctan(read(c)) if self.of == "pressure" else read(c) for c, _, read in parts]
             found: Real = np.stack([peak(y) for y in ys], axis=1)
-            if self.of == "box":
-                found = found.sum(axis=1, keepdims=True)
             return -found if self.of in LEAST else found
         if self.of in STROKES:
             if self.of != "k":

@@ -54,6 +54,8 @@ def quadratic(
         if lost < DONE and gap < DONE and float(np.max(np.abs(dual))) < DONE * (1 + float(np.max(lam))):
             return d, nu, lam
         matrix = np.block([[hessian + (rows.T * (lam / slack)) @ rows, -equal.T], [equal, np.zeros((e, e))]])
+        if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(dual))):
+            return None
         aim = -slack * lam
         for corrected in (False, True):
             right = np.concatenate([-dual + rows.T @ ((aim - lam * apart) / slack), -off])
