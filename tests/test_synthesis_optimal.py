@@ -167,6 +167,37 @@ def test_stopped_by_hand_it_gives_the_best_so_far():
     assert found.stopped and len(found.history) == 5 and found.objective[0] == min(found.objective)
 
 
+def test_populations_that_have_gathered_in_a_wide_valley_make_room_for_one_that_finds_the_deep_one():
+    def valleys(x):
+        wide, deep = np.sum((x - 0.6) ** 2, axis=1), np.sum((x - 0.15) ** 2, axis=1)
+        return np.minimum(1 + wide, 0.9 + 100 * deep), np.zeros(len(x))
+
+    def found(generations):
+        return [evolve(valleys, 2, population=60, generations=generations, seed=seed).objective[0] for seed in range(3)]
+
+    assert max(found(60)) == pytest.approx(1.0, abs=1e-3)  # from the first populations alone
+    assert found(1500) == pytest.approx([0.9] * 3, abs=1e-3)
+
+
+def test_the_smallest_box_comes_out_the_same_from_two_seeds_although_points_take_turns_at_its_sides():
+    boxes = [
+        slider(f"""
+  objective: box
+  constraints: [{{of: stroke, least: 100}}, {{of: pressure, most: 40 deg}}]
+  seed: {seed}
+""").synthesis.outcome.demands[1].value
+        for seed in (1, 2)
+    ]  # fmt: skip
+    assert boxes[0] == pytest.approx(boxes[1], rel=1e-9)
+
+
+def test_a_start_that_cannot_be_assembled_all_round_is_left_as_it_is():
+    def edge(x):
+        return Local(np.where(x[:, :1] > 0.5, np.nan, x[:, :1]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
+
+    assert polish(edge, np.array([0.5])) == pytest.approx([0.5])
+
+
 def test_polish_solves_a_problem_of_textbooks():
     # J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., example 16.4: the answer is (1.4, 1.7)
     rows = np.array([[1, -2], [-1, -2], [-1, 2], [1, 0], [0, 1.0]])

@@ -51,7 +51,8 @@ def each(
 ) -> NoReturn:  # fmt: skip
     """Do the work on every file, with a progress bar when there are several; exit with the worst code.
 
-    headed: the tables of each of several files come under its name. Bad input is one message and does not keep the other files from being worked on.
+    headed: the tables of each of several files come under its name. Bad input is one message and does not
+    keep the other files from being worked on.
     """
     from tmm_cli.problem.errors import ProblemError
 

@@ -19,7 +19,7 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal, Over
+from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
@@ -38,6 +38,8 @@ ROUNDS = 5
 BLOCK = 125  # candidates at once
 ZOOMS = 9  # of a peak that may be a jump
 CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
+POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
+GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
@@ -77,6 +79,7 @@ class Limit:
 class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
     order. target: the objective is to come near to this. positions: round the cycle, in the search.
+    population, generations: 0 for as many as the number of parameters wants.
     """
 
     low: dict[str, float]
@@ -88,7 +91,7 @@ class Asked:
     target: float | None = None
     positions: int = 72
     population: int = 0
-    generations: int = 200
+    generations: int = 0
     seed: int = 1
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
 
@@ -110,6 +113,7 @@ class Search:
         if any(d.acceleration for d in self.linkage.drivers) and any(goal.of in FORCES for goal in self.goals):
             raise Infeasible("task", f"{W}.accelerated", f"{W}.steady")
         self.program = self._program()
+        self.coarse = self.program.without(CLOSELY)
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
         self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
@@ -120,8 +124,15 @@ class Search:
         loads = self.linkage.loads
         rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
         self.overs = tuple(
-            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough) for goal in self.goals
+            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough, self._counts(goal))
+            for goal in self.goals
         )
+
+    def _counts(self, goal: Goal) -> tuple[int, ...]:
+        if goal.of == "box":
+            return (len(points_of(self.linkage)),)
+        links = (goal.links or tuple(self.linkage.links)) if goal.of == "length" else ()
+        return tuple(len(spans_of(self.linkage, link)) for link in links)
 
     def _program(self) -> Taped | Together | Apart:
         """What moves the candidates, the fastest there is for this linkage."""
@@ -132,6 +143,14 @@ class Search:
             except (Iterated, DependsOnData):
                 continue
         return Apart(self.asked.make, self.first, self._outputs, forces=forces)
+
+    @property
+    def population(self) -> int:
+        return self.asked.population or max(LEAST_POPULATION, POPULATION * len(self.low))
+
+    @property
+    def generations(self) -> int:
+        return self.asked.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
 
     def _first(self) -> list[float]:
         """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
@@ -161,9 +180,9 @@ class Search:
         found: Real = self.low + x * (self.high - self.low)
         return found
 
-    def run(self, x: Real, places: Places) -> Mapping[str, Real]:
-        """All outputs for candidates x (variants, n) in 0..1."""
-        return self.program(self.numbers(x), places)
+    def run(self, x: Real, places: Places, *, closely: bool = True) -> Mapping[str, Real]:
+        """All outputs for candidates x (variants, n) in 0..1, or but for those that are wanted for windows alone."""
+        return (self.program if closely else self.coarse)(self.numbers(x), places)
 
     def over(self, count: int) -> Real:
         """Shares of the way: of a closed one without its end."""
@@ -186,7 +205,7 @@ class Search:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        blocks = [self._evaluate(x[k : k + BLOCK]) for k in range(0, len(x), BLOCK)]
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) // BLOCK))]
         return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:
@@ -201,7 +220,7 @@ class Search:
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
-        found = self.run(x, self.places)
+        found = self.run(x, self.places, closely=False)
         return [
             goal.coarse(_reader(found, n, self.exact[n]), self.overs[n])
             for n, goal in enumerate(self.goals)

@@ -19,6 +19,8 @@ from tmm_cli.vectors import Real
 __all__ = ["PARAMETERS", "Asked", "Limit", "best", "solve"]
 PARAMETERS: Final[dict[str, str]] = {}
 STARTS = 3  # of the polish: the best that differ
+SHRINKING = 40  # generations a parameter, for equalities
+HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
 
@@ -37,14 +39,19 @@ class Best:
 def best(search: Search) -> Best:
     """Search and polish."""
     asked, size = search.asked, len(search.low)
-    population = asked.population or max(40, 15 * size)
+    shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
-        search.evaluate, size, population=population, generations=asked.generations, seed=asked.seed,
-        progress=asked.progress,
+        search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
+        shrinking=shrinking if any(limit.equal for limit in search.limits) else 0, progress=asked.progress,
     )  # fmt: skip
     starts: list[Real] = []
-    for x in evolved.population:
-        if len(starts) < STARTS and all(np.max(np.abs(x - s)) > APART for s in starts):
+    first = evolved.objective[0]
+    for x, f in zip(evolved.population, evolved.objective, strict=True):
+        if (
+            len(starts) < STARTS
+            and not f - first > HOPE * abs(first)
+            and all(np.max(np.abs(x - s)) > APART for s in starts)
+        ):
             starts.append(x)
     found: list[tuple[float, float, Real, list[float]]] = []
     for start in starts:

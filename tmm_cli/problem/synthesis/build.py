@@ -24,21 +24,9 @@ Parameters = dict[str, Quantity]
 Variant = Callable[[Parameters, UnitSystem], Linkage]
 
 
-def with_synthesis(
-    block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None,
-    known: Synthesised | None = None,
-) -> tuple[Parameters, Synthesised]:  # fmt: skip
-    """All parameters of the file, and what was found. Raises ProblemError.
-
-    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
-    """
-    names = _names(block, raw)
-    late = _resting(raw, set(names.values()), units)
-    early = _parameters({name: raw[name] for name in raw if name not in late}, units)
-
-    def with_found(found: Parameters, own: UnitSystem) -> Parameters:
-        known = early | found
-        return known | _parameters({name: raw[name] for name in late}, own, known)
+def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None) -> Any:
+    """What the task is asked, in its own record. Raises ProblemError."""
+    _, late, early, with_found = _parts(block, raw, units)
 
     def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
         assert variant is not None
@@ -49,17 +37,47 @@ def with_synthesis(
         search = getattr(reader(block.task), "SEARCH", False)
         if search and variant is None:
             raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
-        sense = Sense(early, units)
-        try:
-            if known is not None and search:
-                outcome = known.outcome
-            else:
-                asked = reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
-                outcome = task(block.task).solve(asked)
-        except Infeasible as error:
-            raise _refused(error, block, units) from None
+        return reader(block.task).asked(block, Sense(early, units), *((linkage_of,) if search else ()))
+    except Infeasible as error:
+        raise _refused(error, block, units).at("synthesis") from None
     except ProblemError as error:
         raise error.at("synthesis") from None
+
+
+def _parts(
+    block: Block, raw: Mapping[str, object], units: UnitSystem
+) -> tuple[dict[str, str], set[str], Parameters, Callable[[Parameters, UnitSystem], Parameters]]:
+    """Names of what is found, parameters that rest on it, the others, and all of them once it is found."""
+    names = _names(block, raw)
+    late = _resting(raw, set(names.values()), units)
+    early = _parameters({name: raw[name] for name in raw if name not in late}, units)
+
+    def with_found(found: Parameters, own: UnitSystem) -> Parameters:
+        known = early | found
+        return known | _parameters({name: raw[name] for name in late}, own, known)
+
+    return names, late, early, with_found
+
+
+def with_synthesis(
+    block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None,
+    known: Synthesised | None = None,
+) -> tuple[Parameters, Synthesised]:  # fmt: skip
+    """All parameters of the file, and what was found. Raises ProblemError.
+
+    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
+    """
+    names, _, _, with_found = _parts(block, raw, units)
+    if known is not None and getattr(reader(block.task), "SEARCH", False):
+        outcome = known.outcome
+    else:
+        record = asked(block, raw, units, variant)
+        try:
+            outcome = task(block.task).solve(record)
+        except Infeasible as error:
+            raise _refused(error, block, units).at("synthesis") from None
+        except ProblemError as error:
+            raise error.at("synthesis") from None
     found = {
         names[name]: Quantity(_plain(value.value), KINDS[value.kind].dimension)
         for name, value in outcome.parameters.items() if name in names

@@ -71,8 +71,8 @@ class Shape(Block):
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
     positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
-    population: int = Field(default=0, ge=0, le=10_000, description="candidates in a generation; 15 a parameter")
-    generations: int = Field(default=200, ge=1, le=100_000)
+    population: int = Field(default=0, ge=0, le=10_000, description="candidates in a generation; 20 a parameter")
+    generations: int = Field(default=0, ge=0, le=100_000, description="25 times the square of the number of parameters")
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
 
