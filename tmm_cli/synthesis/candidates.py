@@ -19,6 +19,7 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
+from tmm_cli.stack import numbers
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
@@ -34,7 +35,8 @@ W: Final = "synthesis_optimal"
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
 TRIES = 40  # of linkages that could tell the assembly
 SCAN = 720  # places where peaks are looked for before the polish
-ROUNDS = 5
+NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
+ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
 BLOCK = 125  # candidates at once
 ZOOMS = 9  # of a peak that may be a jump
 CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
@@ -107,6 +109,7 @@ class Search:
         self.first = self._first()
         self.linkage = asked.make(self.first)
         self.groups = mobile(self.linkage).solved
+        self._check_use()
         driver = self.linkage.driver
         if driver.kind != "turn" and driver.stroke is None:
             raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
@@ -127,6 +130,25 @@ class Search:
             Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough, self._counts(goal))
             for goal in self.goals
         )
+
+    def fits(self, x: Real) -> bool:
+        """Whether it can be assembled as the file sketches it."""
+        try:
+            linkage = self.asked.make([float(number) for number in self.numbers(x)])
+            assemble(linkage, mobile(linkage))
+        except Refused:
+            return False
+        return True
+
+    def _check_use(self) -> None:
+        """Every parameter changes something. Raises Infeasible."""
+        before = dict(numbers(self.linkage))
+        for k, name in enumerate(self.asked.low):
+            other = list(self.first)
+            other[k] = float(self.low[k] if abs(self.first[k] - self.low[k]) > abs(self.first[k] - self.high[k])
+                             else self.high[k])  # fmt: skip
+            if dict(numbers(self.asked.make(other))) == before:
+                raise Infeasible(("vary", name), f"{W}.unused", f"{W}.used")
 
     def _counts(self, goal: Goal) -> tuple[int, ...]:
         if goal.of == "box":
@@ -232,19 +254,23 @@ class Search:
             return np.abs(value - self.asked.target) / (abs(self.asked.target) or 1.0)
         return -value if self.asked.objective.of in LEAST else value
 
-    def closely(self, x: Real) -> Callable[[Real], list[Real]]:
-        """Pieces of every goal near x, exactly: windows are where x has its peaks."""
+    def closely(self, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+        """Pieces of every goal near x, exactly: windows are where x has its peaks.
+
+        narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
+        """
         scan = self.over(SCAN)
         found = self.run(np.stack([x, x]), Places(scan, np.zeros(0)))
-        step = 2 * self.step / (WINDOW - 1)
+        half = max(self.step * narrow, ABOUT / SCAN)
+        step = 2 * half / (WINDOW - 1)
         blocks, parts = [], []
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
             for name, k in goal.windows(_reader(found, n, slice(None)), self.overs[n]):
-                first = scan[k] - self.step
+                first = scan[k] - half
                 if not self.closed:
-                    first = min(max(first, 0.0), 1 - 2 * self.step)
+                    first = min(max(first, 0.0), 1 - 2 * half)
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
                 at += WINDOW
@@ -294,16 +320,16 @@ class Search:
 
     def polished(self, x: Real) -> Real:
         """The best place near x."""
-        for _ in range(ROUNDS):
+        for narrow in NARROWER:
             before = x
             try:
-                pieces = self.closely(x)
+                pieces = self.closely(x, narrow)
                 top = float(np.max(np.abs(self._pieces(pieces(x)[0])))) or 1.0
                 with np.errstate(all="ignore"):
                     x = polish(lambda some: self._local(pieces(some), top), x)  # noqa: B023
             except np.linalg.LinAlgError:
                 return before
-            if float(np.max(np.abs(x - before))) < 1e-9:
+            if not narrow and float(np.max(np.abs(x - before))) < 1e-9:
                 break
         return x
 

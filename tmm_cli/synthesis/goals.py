@@ -32,7 +32,7 @@ LEAST: Final = ("margin", "crank")  # whose least value counts
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
 OF_A_SIDE = 3  # points that may come to bear on a side of the box
-CLOSE, MOST_SUMS = 0.3, 200  # of sums of which the largest counts
+MOST_SUMS = 200  # of which the largest counts
 CLOSELY = "closely."  # outputs that are wanted for windows alone
 SIDE = 0.3  # of its range: a lower peak so far below the highest one is no rival
 
@@ -326,15 +326,11 @@ def spans_of(linkage: Linkage, link: str) -> list[Any]:
 
 
 def _sums(parts: list[list[Real]]) -> Real:
-    """Sums of one quantity of each part, in all ways: the largest of them is the sum of the largest ones.
+    """Sums of one quantity of each part, in all ways, (variants, sums): the largest is the sum of the largest ones.
 
-    (variants, sums); quantities that are far from being the largest are left out.
+    Where that were too many the largest of a part stands for it.
     """
-    kept = []
-    for part in parts:
-        if part:
-            most = max(float(np.nanmax(q)) for q in part)
-            kept.append([q for q in part if not float(np.nanmax(q)) < (1 - CLOSE) * most])
+    kept = [list(part) for part in parts if part]
     while np.prod([len(part) for part in kept]) > MOST_SUMS:
         longest = max(kept, key=len)
         longest[:] = [reduce(np.maximum, longest)]

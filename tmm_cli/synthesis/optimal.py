@@ -6,6 +6,7 @@ finds it (polish).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -37,7 +38,7 @@ class Best:
 
 
 def best(search: Search) -> Best:
-    """Search and polish."""
+    """Search and polish. Raises Infeasible."""
     asked, size = search.asked, len(search.low)
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
@@ -53,6 +54,11 @@ def best(search: Search) -> Best:
             and all(np.max(np.abs(x - s)) > APART for s in starts)
         ):
             starts.append(x)
+    return _best_of(search, starts, evolved)
+
+
+def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
+    """The best of what the polish leads to from some starts, and of themselves."""
     found: list[tuple[float, float, Real, list[float]]] = []
     for start in starts:
         for x in (search.polished(start), start):
@@ -65,7 +71,8 @@ def best(search: Search) -> Best:
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
         raise Infeasible("vary", f"{W}.never", f"{W}.wider")
-    missed, _, x, values = min(found, key=lambda one: one[:2])
+    found.sort(key=lambda one: one[:2])
+    missed, _, x, values = next((one for one in found if search.fits(one[2])), found[0])
     return Best(x, search.numbers(x), values, missed, evolved)
 
 
@@ -76,16 +83,22 @@ def solve(asked: Asked) -> Outcome:
     search = Search(asked)
     found = best(search)
     if found.missed:
-        raise _unmet(search, found)
+        found = _mended(search, found)
+    if not search.fits(found.x):
+        numbers = ", ".join(f"{name} = {x:.6g}" for name, x in zip(asked.low, found.numbers, strict=True))
+        raise Infeasible("vary", f"{W}.not_as_sketched", f"{W}.other_sketch", {"numbers": (numbers, "word")})
     return told(search, found)
 
 
-def _unmet(search: Search, found: Best) -> Infeasible:
-    """Which constraint is farthest from being met, and how near to it one comes when all the others are kept."""
+def _mended(search: Search, found: Best) -> Best:
+    """Searched for again with the constraint that is farthest from being met as what is wanted.
+
+    Raises Infeasible when it cannot be met while all the others are kept: how near to it one comes then.
+    """
     misses = [float(limit.missed(v)) for limit, v in zip(search.limits, found.values[1:], strict=True)]
     n = int(np.argmax(misses))
     if n == 0:
-        return Infeasible("vary", f"{W}.never", f"{W}.wider")
+        raise Infeasible("vary", f"{W}.never", f"{W}.wider")
     limit = search.limits[n]
     bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
@@ -95,5 +108,9 @@ def _unmet(search: Search, found: Best) -> Infeasible:
     except Infeasible:
         nearest = found
     if nearest.missed:  # the others contradict one another too
-        return Infeasible(limit.at, f"{W}.unmet", f"{W}.others", {"value": (found.values[n + 1], kind)})
-    return Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (nearest.values[0], kind)})
+        raise Infeasible(limit.at, f"{W}.unmet", f"{W}.others", {"value": (found.values[n + 1], kind)})
+    if limit.missed(nearest.values[0]) <= KEPT:
+        again = _best_of(search, [nearest.x], found.evolved)
+        if not again.missed:
+            return again
+    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (nearest.values[0], kind)})

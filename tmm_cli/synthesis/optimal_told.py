@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.construction import Diagram, Line
-from tmm_cli.synthesis.goals import LEAST, PLAIN, Goal
+from tmm_cli.synthesis.goals import FORCES, LEAST, PLAIN, Goal
 from tmm_cli.synthesis.measured_goals import measure
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.reached import reached
@@ -46,6 +46,9 @@ def told(search: Search, found: Best) -> Outcome:
             listings.append(listing)
             drawings.insert(0, diagram)
     notes = (f"{W}.stopped",) if found.evolved.stopped else ()
+    objectives = found.evolved.objective[np.isfinite(found.evolved.objective)]
+    if asked.objective.of in (*PLAIN, *FORCES) and not np.ptp(objectives):
+        notes = (*notes, f"{W}.constant")
     return Outcome(
         tuple(given), tuple(numbers), f"{W}.source", tuple(demands), tuple(drawings), notes, tuple(listings)
     )  # fmt: skip

@@ -24,13 +24,24 @@ Parameters = dict[str, Quantity]
 Variant = Callable[[Parameters, UnitSystem], Linkage]
 
 
+class OfTheFile(Exception):  # noqa: N818  it says whose the error is
+    """What the file around the block is refused for, with numbers that the synthesis tries."""
+
+    def __init__(self, error: ProblemError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
 def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None) -> Any:
     """What the task is asked, in its own record. Raises ProblemError."""
     _, late, early, with_found = _parts(block, raw, units)
 
     def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
         assert variant is not None
-        return variant(with_found(found, own), own)
+        try:
+            return variant(with_found(found, own), own)
+        except ProblemError as error:
+            raise OfTheFile(error) from None
 
     try:
         _not_on(block, late, units)
@@ -40,6 +51,8 @@ def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: V
         return reader(block.task).asked(block, Sense(early, units), *((linkage_of,) if search else ()))
     except Infeasible as error:
         raise _refused(error, block, units).at("synthesis") from None
+    except OfTheFile as error:
+        raise error.error from None
     except ProblemError as error:
         raise error.at("synthesis") from None
 
@@ -76,6 +89,8 @@ def with_synthesis(
             outcome = task(block.task).solve(record)
         except Infeasible as error:
             raise _refused(error, block, units).at("synthesis") from None
+        except OfTheFile as error:
+            raise error.error from None
         except ProblemError as error:
             raise error.at("synthesis") from None
     found = {
