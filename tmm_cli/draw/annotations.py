@@ -90,7 +90,9 @@ def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, nam
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # beyond the edge of a stone
-        sheet.line([vertex + corner * ways[0], vertex + corner * sum(ways), vertex + corner * ways[1]], DARK, 0.8, z=3.2)
+        sheet.line(
+            [vertex + corner * ways[0], vertex + corner * sum(ways), vertex + corner * ways[1]], DARK, 0.8, z=3.2
+        )
         return
     turn = float(np.angle(ways[1] / ways[0]))
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))

@@ -25,6 +25,7 @@ STYLES = {  # colour, width, line
 PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
 SMALLER = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
 FINE = 1.0  # mm between places along an arc
+QUIET = 12.0  # mm about a place on a curve that should be free for its name
 EDGE = 4.0  # mm inside the field where curves are cut
 NAMES = "#7a3d99"
 
@@ -50,12 +51,13 @@ def construction(
         if s.name:
             lines.append(Label(s.name, (start + end) / 2, 10, NAMES, "italic", (start, end)))
     for arc in drawn.arcs:
-        _curve(sheet, [_along(sheet, arc)], arc.style, arc.name)
+        _curve(sheet, [_along(sheet, arc)], arc.style)
     pieces: dict[tuple[str, str], list[list[complex]]] = {}
     for curve in drawn.curves:
         pieces.setdefault((curve.name, curve.style), []).append([sheet.on(p) for p in curve.places])
-    for (name, style), places in pieces.items():
-        _curve(sheet, places, style, name)
+    for named in (False, True):  # names when all curves are drawn
+        for (name, style), places in pieces.items():
+            _curve(sheet, places, style, name, named=named)
     for centre in drawn.centres:
         _centre(sheet, centre, units)
     for angle in drawn.angles:
@@ -120,17 +122,21 @@ def field(sheet: Sheet) -> tuple[complex, complex]:
     return sheet.ground.low + EDGE * (1 + 1j), sheet.ground.high - EDGE * (1 + 1j)
 
 
-def _curve(sheet: Sheet, whole: Sequence[Sequence[complex]], style: str, name: str) -> None:
-    """Pieces of one curve, cut at the edge; its name stands at the middle of the longest."""
+def _curve(
+    sheet: Sheet, whole: Sequence[Sequence[complex]], style: str, name: str = "", *, named: bool = False
+) -> None:
+    """Pieces of one curve, cut at the edge; its name stands where it is alone."""
     colour, width, line = STYLES[style]
     pieces = [piece for places in whole for piece in inside(places, *field(sheet))]
     pieces = [piece for piece in pieces if len(piece) > 1]
-    for piece in pieces:
+    for piece in pieces if not named else ():
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
         sheet.ground.points.append(np.array(piece))
-    if name and pieces:
-        longest = max(pieces, key=lambda piece: float(np.sum(np.abs(np.diff(piece)))))
-        sheet.labels.append(Label(name, longest[len(longest) // 2], 10, NAMES, "italic", far=True))
+    if name and named and pieces:
+        places = [piece[int(share * (len(piece) - 1))] for piece in pieces for share in np.linspace(0.1, 0.9, 9)]
+        crowd = np.concatenate(sheet.ground.points)
+        free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < QUIET)), -abs(z)))
+        sheet.labels.append(Label(name, free, 10, NAMES, "italic", far=True))
 
 
 def _along(sheet: Sheet, arc: Arc) -> list[complex]:

@@ -108,7 +108,7 @@ def candidates(label: Label, width: float, height: float) -> Iterator[tuple[comp
     if label.line is not None:
         start, end = label.line
         way = (end - start) / (abs(end - start) or 1.0)
-        for gap in (1.0, 2.2, 4.0):
+        for gap in (1.0, 2.2, 4.0, 7.0, 11.0, 16.0):
             for share in ALONG:
                 for side in (1j, -1j):
                     out = side * way if (1j * way).imag >= 0 else -side * way  # above first

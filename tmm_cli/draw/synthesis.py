@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from tmm_cli.cycle import DENSE
 from tmm_cli.draw.actuators import cylinders
 from tmm_cli.draw.construction import construction
 from tmm_cli.draw.labels import Label
-from tmm_cli.draw.scheme import HINGE, beyond, box, mechanism, moving_points, skeleton, trajectory
+from tmm_cli.draw.scheme import HINGE, beyond, box, link_places, mechanism, moving_points, skeleton, trajectory
 from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, MM, REACTION, THIN, Sheet, picture, scale_text
 from tmm_cli.linkage import FRAME
 from tmm_cli.pipeline import Results, at_positions
@@ -25,7 +26,7 @@ from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.record import Outcome
 from tmm_cli.words import say
 
-PRIMES = ("′", "″", "‴", "⁗")  # of the ends of strokes, in their order
+ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 
 
 def files(
@@ -84,9 +85,7 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
     return figure
 
 
-def _panel(
-    axes: Axes, lines: Iterable[Line], y: tuple[str, str], across: Dimension, units: UnitSystem
-) -> None:
+def _panel(axes: Axes, lines: Iterable[Line], y: tuple[str, str], across: Dimension, units: UnitSystem) -> None:
     """Curves with their legend and the axis upwards."""
     y_words, y_kind = y
     up, number = KINDS[y_kind].dimension, 0
@@ -125,13 +124,16 @@ def extremes(results: Results) -> Sheet:
     count = len(ends) - 1 if len(strokes.strokes) > 1 else 2
     for k in range(1, count):
         skeleton(sheet, motion, k, INERTIA, 1.6, 2.9)
+        for link in linkage.moving:
+            for start, end in pairwise(link_places(sheet, motion, link, k)):
+                sheet.ground.line(start, end)
         for slide in linkage.slides:
             if slide.name not in cylinders(linkage):
                 box(sheet, motion, slide, k, INERTIA)
     mechanism(sheet, motion, 0)
     named = {sheet.on(complex(motion.named(name).x[0])): name for name in points}
     sheet.labels = [
-        replace(label, text=label.text + PRIMES[0], far=True) if named.get(label.anchor) == label.text else label
+        replace(label, text=label.text + ENDS[0], far=True) if named.get(label.anchor) == label.text else label
         for label in sheet.labels
     ]
     sheet.ground.rivals += list(named)
@@ -143,7 +145,7 @@ def extremes(results: Results) -> Sheet:
                 sheet.circle(at, HINGE * 0.8, edge=INERTIA)
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
-            sheet.labels.append(Label(name + PRIMES[min(k, 3)], at, 10, INERTIA, far=True))
+            sheet.labels.append(Label(name + ENDS[min(k, 3)], at, 10, INERTIA, far=True))
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    sheet.note(say("synthesis.ends", start=PRIMES[0], end=PRIMES[1]))
+    sheet.note(say("synthesis.ends"))
     return sheet

@@ -29,14 +29,13 @@ class Segment:
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc of a circle, counterclockwise from one angle to another; name: written at its middle."""
+    """An arc of a circle, counterclockwise from one angle to another."""
 
     centre: complex
     radius: float
     start: float
     end: float
     style: Style = "thin"
-    name: str = ""
 
 
 @dataclass(frozen=True)

@@ -295,6 +295,7 @@ def construction(found: Found) -> Construction:
     start, end = (first + float(np.mod(np.angle(z - centre) - first, 2 * np.pi)) for z in (over, b2))
     arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
     segments.append(Segment(b1, b2, "thin"))
+    values = (*values, ("θ", theta, "angle"))
     shared["wishes"] = (box(o, r), (centre,), box(centre, radius))
     return Construction(
         f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.bold", f"{W}.angles"), values=values,

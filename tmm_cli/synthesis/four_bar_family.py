@@ -10,6 +10,7 @@ import numpy as np
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
 
 W: Final = "synthesis_four_bar_by_k"
+LINKS: Final = ("l1", "l2", "l3", "l4")
 LONGEST: Final = 4.0  # rods longer than this many of the chosen one (and of the rocker) are not on the diagrams
 
 
@@ -44,11 +45,13 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
                 angles += [Angle(c1, c2, centre, name), Angle(c2, c1, centre, name)]
                 wishes.append((centre,))
             wishes.append(box(centre, radius))
+    values = [(name, float(getattr(asked if name == "l3" else found, name)), "length") for name in LINKS]
+    values += [("ψ", float(asked.swing), "angle"), ("θ", theta, "angle")]
     curves = [Curve(tuple(complex(z) for z in f.a), "bold") for f in family]
     return Construction(
         f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.bold", f"{W}.angles")[: 1 + (theta > 0)],
         tuple(curves), angles=tuple(angles), centres=tuple(centres), wishes=tuple(wishes), chain="four-bar",
-        values=tuple((name, float(getattr(found, name)), "length") for name in ("l1", "l2", "l4")),
+        values=tuple(values),
     )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from tmm_cli.synthesis.burmester import Dyads, Poses, by_turn
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style
 
 FINE: Final = 2881  # turns at which the curves are computed
-AROUND: Final = 1.2  # how far beyond the mechanism the drawing of the curves goes, in its sizes
+AROUND: Final = 0.3  # how far beyond the four-bar the drawing of the curves goes, in its size
 FAR: Final = 8.0  # in the same: how far curves are followed
 
 
@@ -78,9 +78,9 @@ def construction(
     )  # fmt: skip
     few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
     links = [s for s in segments if s.style == "link"]
-    sides = ends.real.min(), ends.real.max(), ends.imag.min(), ends.imag.max()
-    size = AROUND * max(sides[1] - sides[0], sides[3] - sides[2])
-    frame = (complex(sides[0] - size, sides[2] - size), complex(sides[1] + size, sides[3] + size))
+    bar = np.array([s.at for s in few])
+    size = AROUND * max(np.ptp(bar.real), np.ptp(bar.imag)) * (1 + 1j)
+    frame = (complex(bar.real.min(), bar.imag.min()) - size, complex(bar.real.max(), bar.imag.max()) + size)
     wide = Construction(
         f"{words}.curves_alone", tuple(links), (), tuple(few), notes, curves, "curves", chain="four-bar",
         around=frame,

@@ -149,5 +149,5 @@ def construction(f: Found) -> Construction:
     return Construction(
         f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",), angles=tuple(angles),
         sizes=sizes, chain="shaper", wishes=((top,),),
-        values=tuple((name, float(value), "length") for name, value in lengths.items()),
+        values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
     )  # fmt: skip

@@ -194,5 +194,6 @@ def construction(f: Found) -> Construction:
     return Construction(
         f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.square",), angles=tuple(angles),
         chain="slotted-lever", wishes=(box(complex(f.o), float(f.crank)),),
-        values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length")),
+        values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length"),
+                ("θ", float(f.theta), "angle")),
     )  # fmt: skip
