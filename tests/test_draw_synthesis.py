@@ -2,6 +2,7 @@
 
 import math
 from itertools import combinations, product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from tmm_cli.synthesis import (
     slotted_lever,
 )
 
-ROOT = __import__("pathlib").Path(__file__).parents[1]
+ROOT = Path(__file__).parents[1]
 
 
 def drawn(module, **asked):

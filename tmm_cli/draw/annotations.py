@@ -85,7 +85,7 @@ def _in_text(crowd: Vector, middle: complex, u: complex, width: float, height: f
     return found
 
 
-def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, right: bool) -> None:
+def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     """The arc of an angle between the ways to two places (mm), or a square where it is right; its name beside it."""
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:

@@ -61,7 +61,8 @@ def construction(
     for centre in drawn.centres:
         _centre(sheet, centre, units)
     for angle in drawn.angles:
-        angle_mark(sheet, *(sheet.on(p) for p in (angle.vertex, angle.first, angle.last)), angle.name, angle.right)
+        vertex, first, last = (sheet.on(p) for p in (angle.vertex, angle.first, angle.last))
+        angle_mark(sheet, vertex, first, last, angle.name, right=angle.right)
     _notes(sheet, drawn, letters, units)
     sheet.corner()
     for size in drawn.sizes:

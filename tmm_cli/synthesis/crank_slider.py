@@ -9,7 +9,7 @@ All functions take floats or arrays of any precision. Differences of near number
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -282,23 +282,21 @@ def construction(found: Found) -> Construction:
         Spot("O", o, "support"), Spot("A1", pin1, "hinge"), Spot("A2", pin2, "hinge"),
         Spot("B1", b1, "slider"), Spot("B2", b2, "slider"),
     ]  # fmt: skip
-    sizes = [Size(b2, b1, "H", 1 + 0j)]
-    if e > 0:
-        sizes.append(Size(o, b2, "e", 1j))
-    shared = {"sizes": tuple(sizes), "wishes": (box(o, r),), "chain": "crank-slider"}
-    values = (("r", r, "length"), ("l", l, "length"))
+    sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
+    plain = Construction(
+        f"{W}.ends", tuple(segments), tuple(arcs), tuple(spots), sizes=sizes, wishes=(box(o, r),), chain="crank-slider",
+        values=(("r", r, "length"), ("l", l, "length")),
+    )  # fmt: skip
     if not theta > DRAWN:
-        return Construction(f"{W}.ends", tuple(segments), tuple(arcs), tuple(spots), values=values, **shared)
+        return plain
     middle, radius = (b1 + b2) / 2, height / 2 / float(np.sin(theta))
     centre = middle + 1j * height / 2 / np.tan(theta)
     over, first = complex(near, 2 * centre.imag + e), float(np.angle(b1 - centre))
     start, end = (first + float(np.mod(np.angle(z - centre) - first, 2 * np.pi)) for z in (over, b2))
     arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
-    segments.append(Segment(b1, b2, "thin"))
-    values = (*values, ("θ", theta, "angle"))
-    shared["wishes"] = (box(o, r), (centre,), box(centre, radius))
-    return Construction(
-        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.bold", f"{W}.angles"), values=values,
+    return replace(
+        plain, title=f"{W}.construction", segments=(*segments, Segment(b1, b2, "thin")), arcs=tuple(arcs),
         angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
-        centres=(Centre(centre, radius, (b1, b2)),), **shared,
+        centres=(Centre(centre, radius, (b1, b2)),), wishes=(box(o, r), (centre,), box(centre, radius)),
+        values=(*plain.values, ("θ", theta, "angle")), notes=(f"{W}.bold", f"{W}.angles"),
     )  # fmt: skip

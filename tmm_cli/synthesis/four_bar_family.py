@@ -49,7 +49,8 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
     values += [("ψ", float(asked.swing), "angle"), ("θ", theta, "angle")]
     curves = [Curve(tuple(complex(z) for z in f.a), "bold") for f in family]
     return Construction(
-        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.bold", f"{W}.angles")[: 1 + (theta > 0)],
+        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots),
+        (f"{W}.bold", f"{W}.angles") if theta > 0 else (f"{W}.bold",),
         tuple(curves), angles=tuple(angles), centres=tuple(centres), wishes=tuple(wishes), chain="four-bar",
         values=tuple(values),
     )  # fmt: skip
