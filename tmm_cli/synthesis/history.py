@@ -31,6 +31,6 @@ def diagram(history: Real, shown: Callable[[Real], Real], polished: float, of: s
     missed = np.isfinite(violation) & (violation > LEAST)
     lower = (Line(f"{W}.violation", generation, np.where(missed, violation, np.nan)),) if np.any(missed) else ()
     return Diagram(
-        "history", f"{W}.history", (f"{W}.generation", "number"), (f"{W}.best_{of}", kind), tuple(lines), lower,
-        (f"{W}.violation", "number"),
+        "history", f"{W}.history", (f"{W}.generation", "number"), (f"{W}.best_{of}", kind), tuple(lines), lower=lower,
+        lower_y=(f"{W}.violation", "number"),
     )  # fmt: skip

@@ -38,9 +38,14 @@ def told(search: Search, found: Best) -> Outcome:
             demands.append(_demand(search, n, limit.least or 0.0, kinds[n], asked=True))
         else:
             demands.append(_demand(search, n, found.values[n], kinds[n], asked=False))
-    listings, drawings = [_constraints(search, found, kinds)], [
-        diagram(found.evolved.history, partial(_in_its_unit, search), found.values[0], asked.objective.of, kinds[0])
-    ]
+    listings, drawings = (
+        [_constraints(search, found, kinds)],
+        [
+            diagram(
+                found.evolved.history, partial(_in_its_unit, search), found.values[0], _words(search.goals[0]), kinds[0]
+            )
+        ],
+    )
     for n, goal in enumerate(search.goals):
         if goal.wanted:
             listing, drawn = reached(search, found.x, n)
