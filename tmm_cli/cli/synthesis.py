@@ -86,7 +86,7 @@ def _write(
     with Staged(folder) as staged:
         for table in tables(found, measured, units, 15):
             staged.write(f"{table.name}.csv", csv_text(table, units))
-        for name, picture in files(names[1], found.outcome, results, units):
+        for name, picture in files(names[1], found.outcome, results, units, found.names):
             staged.write(name, (picture,))
         staged.write("synthesis.json", (json_bytes({"problem": names[0], **to_json(found, measured)}),))
     return folder

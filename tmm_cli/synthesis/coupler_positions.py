@@ -191,9 +191,10 @@ def solve(asked: Asked) -> Outcome:
         Value("", float(mark.way), "angle", f"{W}.way"),
         Value("", None, "word", f"{W}.defect", f"{W}.{defect or 'sound'}"),
     ]
-    drawn = guidance.construction(asked.poses, one, other, W)
+    by_pivot = {name for name, side in asked.sides.items() if side.pivot is not None}
+    drawn = guidance.construction(asked.poses, one, other, W, ("AB" in by_pivot, "DC" in by_pivot))
     return Outcome(
-        _given(asked), tuple(values), f"{W}.source_{len(asked.places)}", _demands(asked, one, other, mark), (drawn,)
+        _given(asked), tuple(values), f"{W}.source_{len(asked.places)}", _demands(asked, one, other, mark), drawn
     )
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from tmm_cli.synthesis.candidates import Search, W
-from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.goals import FORCES, LEAST, PLAIN, Goal
+from tmm_cli.synthesis.history import diagram
 from tmm_cli.synthesis.measured_goals import measure
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.reached import reached
@@ -39,12 +38,19 @@ def told(search: Search, found: Best) -> Outcome:
             demands.append(_demand(search, n, limit.least or 0.0, kinds[n], asked=True))
         else:
             demands.append(_demand(search, n, found.values[n], kinds[n], asked=False))
-    listings, drawings = [_constraints(search, found, kinds)], [_history(search, found, kinds[0])]
+    listings, drawings = (
+        [_constraints(search, found, kinds)],
+        [
+            diagram(
+                found.evolved.history, partial(_in_its_unit, search), found.values[0], _words(search.goals[0]), kinds[0]
+            )
+        ],
+    )
     for n, goal in enumerate(search.goals):
         if goal.wanted:
-            listing, diagram = reached(search, found.x, n)
+            listing, drawn = reached(search, found.x, n)
             listings.append(listing)
-            drawings.insert(0, diagram)
+            drawings.insert(0, drawn)
     notes = (f"{W}.stopped",) if found.evolved.stopped else ()
     objectives = found.evolved.objective[np.isfinite(found.evolved.objective)]
     if asked.objective.of in (*PLAIN, *FORCES) and not np.ptp(objectives):
@@ -92,18 +98,6 @@ def _words(goal: Goal) -> str:
 
 def _of(goal: Goal) -> str:
     return goal.name or ", ".join(goal.links)
-
-
-def _history(search: Search, found: Best, kind: str) -> Diagram:
-    """The best candidate that keeps the constraints, generation by generation."""
-    history = found.evolved.history
-    kept = history[:, 1] == 0
-    so_far = _in_its_unit(search, np.fmin.accumulate(np.where(kept, history[:, 0], np.nan)))
-    return Diagram(
-        "history", f"{W}.history", (f"{W}.generation", "number"), (f"{W}.best_{search.goals[0].of}", kind),
-        (Line(f"{W}.evolution", np.arange(len(history)), so_far),
-         Line(f"{W}.polished", np.array([len(history)]), np.array([found.values[0]]), dots=True)),
-    )  # fmt: skip
 
 
 def _in_its_unit(search: Search, f: Real) -> Real:

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis import slotted_lever
-from tmm_cli.synthesis.construction import Construction, Segment, Spot
+from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
 from tmm_cli.synthesis.crank_slider import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
@@ -132,13 +132,22 @@ def construction(f: Found) -> Construction:
     lever = slotted_lever.Found(
         f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
     )
-    segments, arcs, spots = slotted_lever.lever_parts(lever, "D")
+    segments, arcs, spots, angles = slotted_lever.lever_parts(lever, "D")
     reach = float(f.rod * np.cos(f.pressure))
     d1, d2 = (spot.at for spot in spots[-2:])
     e1, e2 = (complex(d.real + reach, float(f.level)) for d in (d1, d2))
+    stroke = abs(e2 - e1)
+    ends = sorted((e1.real, e2.real))
     segments += [
-        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed", "H"),
-        Segment(complex(d1.real, e1.imag), e2 + 0.25 * (d2 - d1), "axis"),
+        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed"),
+        Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "guide"),
     ]  # fmt: skip
     spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
-    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",))
+    top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
+    sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
+    lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
+    return Construction(
+        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",), angles=tuple(angles),
+        sizes=sizes, chain="shaper", wishes=((top,),),
+        values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
+    )  # fmt: skip

@@ -37,10 +37,10 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.crank_turns": "crank turns fully (1: yes)",
     "synthesis_four_bar_by_k.source": "circle through C1 and C2 on which C1C2 is seen under theta = "
     "pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD",
-    "synthesis_four_bar_by_k.construction": "Extreme positions of the rocker, and the circles on which C1C2 is seen "
-    "under theta",
-    "synthesis_four_bar_by_k.bold": "bold: where A may be",
-    "synthesis_four_bar_by_k.angles": "dashed: OC1C2 = OC2C1 = 90° − θ",
+    "synthesis_four_bar_by_k.construction": "Extreme positions of the rocker, and the circles on which {C}1{C}2 is "
+    "seen under theta",
+    "synthesis_four_bar_by_k.bold": "red: where {A} may be, so that the crank turns fully",
+    "synthesis_four_bar_by_k.angles": "{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|",
     "synthesis_four_bar_by_k.family_pressure": "Largest pressure angle along the admissible arcs",
     "synthesis_four_bar_by_k.family_lengths": "Lengths of the links along the admissible arcs",
     "synthesis_four_bar_by_k.pressure_inside": "A on D's side of C1C2",

@@ -65,7 +65,9 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.searching": "generations",
     "synthesis_optimal.history": "Best candidate by generation",
     "synthesis_optimal.generation": "generation",
-    "synthesis_optimal.evolution": "differential evolution",
+    "synthesis_optimal.evolution": "best so far that keeps the constraints",
+    "synthesis_optimal.leading": "leading candidate of the generation",
+    "synthesis_optimal.violation": "constraints missed, relative",
     "synthesis_optimal.polished": "after the polish",
     "synthesis_optimal.stopped": "stopped by hand: the best candidate so far, polished",
     "synthesis_optimal.source": "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then "
