@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.goals import FORCES, LEAST, PLAIN, Goal
 from tmm_cli.synthesis.history import diagram
