@@ -71,6 +71,7 @@ REFUSED = {
         "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
     "{task: crank-slidr, stroke: 20}":
         "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
+    "{task: [a]}": "synthesis.task: ", "{task: {a: b}}": "synthesis.task: ", "{task: 3}": "synthesis.task: ",
     "{stroke: 20}": "synthesis.task: the key `task` is missing\n",
     "3": "synthesis: keys with values are wanted\n  found:   3\n"
          "  allowed: a task whose answer becomes parameters: {task: ...}",
@@ -145,6 +146,16 @@ def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
     assert done.returncode == 2 and "there is no linkage that could use what is found" in done.stderr
     done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
     assert done.returncode == 2 and "this file has no synthesis" in done.stderr
+
+
+def test_numbers_of_what_is_found_are_numbers_in_the_table_and_texts_are_no_formulas(tmp_path):
+    file = tmp_path / "guided.yaml"
+    block = "{task: coupler-positions, positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]}"
+    file.write_text(f"tmm: 1\nsynthesis: {block}\n", encoding="utf-8")
+    assert tmm("synthesis", file, "-o", tmp_path).returncode == 0
+    rows = (tmp_path / "guided" / "synthesis-found.csv").read_text(encoding="utf-8").splitlines()
+    values = {row.split(",")[0]: row.split(",")[-2] for row in rows[1:]}
+    assert min(float(values[name]) for name in ("Ax", "Ay", "Dx", "Dy")) < 0
 
 
 def test_explain_says_where_parameters_come_from():
