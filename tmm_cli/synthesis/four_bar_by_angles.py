@@ -20,6 +20,7 @@ from tmm_cli.synthesis.functions import Function
 from tmm_cli.synthesis.grashof import FourBar, four_bar
 from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.parallelogram import parallelogram
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final = {
@@ -89,6 +90,8 @@ def quality(one: Bars, asked: Asked) -> Quality:
 def through(asked: Asked) -> list[Bars]:
     """All four-bars that are found for the task, over l4."""
     if len(asked.phi) > 2:
+        if (one := parallelogram(asked.phi, asked.psi, asked.phi0, asked.psi0)) is not None:
+            return [one]
         found = freudenstein.solutions([asked.phi], [asked.psi], asked.phi0, asked.psi0)
         return [found[0, k] for k in range(found.l1.shape[1]) if _real(found[0, k])]
     phi, psi = (np.asarray([row], freudenstein.EXACT) for row in (asked.phi, asked.psi))
@@ -247,14 +250,16 @@ def solve(asked: Asked) -> Outcome:
         for k, (a, b) in enumerate(zip(asked.phi, asked.psi, strict=True))
     ]
     demands.append(Demand(f"{W}.transmission", mark.least, "angle", partial(_transmission, mark.worst), False, 1.0))
-    demands.append(Demand(f"{W}.crank_turns", float(mark.crank), "number", crank_turns, asked=False))
+    free = parallelogram(asked.phi, asked.psi, asked.phi0, asked.psi0) is not None
+    if not free:  # it has change points
+        demands.append(Demand(f"{W}.crank_turns", float(mark.crank), "number", crank_turns, asked=False))
     drawings: list[Any] = [construction(one, asked.phi, asked.psi, float(size), W)]
     if asked.function and not mark.defect:
         curve, error = errors(one, asked)
         values.append(Value("", error, "angle", f"{W}.error"))
         demands.append(Demand(f"{W}.error", error, "angle", partial(_largest, one, asked), False, 1.0))
         drawings.append(curve)
-    notes = (f"{W}.reversed",) if mark.reversed else ()
+    notes = ((f"{W}.parallelogram",) if free else ()) + ((f"{W}.reversed",) if mark.reversed else ())
     return Outcome(_given(asked), tuple(values), f"{W}.source", tuple(demands), tuple(drawings), notes)
 
 
