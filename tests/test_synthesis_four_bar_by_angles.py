@@ -316,6 +316,22 @@ def test_the_nearest_output_angle_that_is_told_is_good_and_one_that_is_nearer_is
         problem("pairs: [[30, 60], [80, 60], [120, 82.729]], l4: 100")
 
 
+@pytest.mark.parametrize("block", [
+    "pairs: [[30, 60], [60, 60], [90, 60]]", "function: x^2, x: [0, 1], input: [30, 120], output: [0, 90], points: 4",
+    "pairs: [[30, 60], [80, 60], [120, 100]]",
+])  # fmt: skip
+def test_the_four_bar_of_the_angle_that_is_told_can_be_made(block):
+    with pytest.raises(ProblemError) as caught:
+        problem(f"{block}, l4: 100")
+    told = str(caught.value).partition("the last output angle ")[2].partition(" deg")[0]
+    assert told
+    last = block.rpartition("output: [0, ")[0] + f"output: [0, {told}], points: 4" if "function" in block else (
+        block.rpartition(", ")[0] + f", {told}]]")
+    found = problem(f"{last}, l4: 100").synthesis.outcome.parameters
+    links = [float(found[name].value) for name in ("l1", "l2", "l3", "l4")]
+    assert max(links) < 51 * min(links)
+
+
 def test_a_branch_defect_that_is_kept_shows_on_the_mechanism():
     found = problem("pairs: [[30, 60], [80, 60], [120, 100]], l4: 100, defects: keep")
     every = measured(found.synthesis.outcome, solve(found, "kinematics"))

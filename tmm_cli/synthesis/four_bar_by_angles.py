@@ -31,6 +31,7 @@ W: Final = "synthesis_four_bar_by_angles"
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
 LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
 ERRORS: Final = 721  # places of the curve of structural error
+SENSIBLE: Final = 50.0  # the longest link over the shortest one of a four-bar that is told instead
 INWARDS: Final = 2e-6  # rad, from the edge, so that six digits of it are still good
 STEPS: Final = np.radians(np.arange(1, 241) * 0.25)  # by which the last output angle is changed for the nearest task
 
@@ -145,6 +146,11 @@ def _real(one: Bars) -> bool:
     return bool(np.all(np.isfinite(numbers)) and np.all(numbers[:3] > 1e-9) and np.all(numbers[:3] < 1e9))
 
 
+def _sensible(one: Bars) -> bool:
+    links = [float(one.l1), float(one.l2), float(one.l3), 1.0]
+    return max(links) < SENSIBLE * min(links)
+
+
 def chosen(asked: Asked, found: list[Bars]) -> int:
     """Which of the four-bars is taken, -1: none has no defect."""
     marks = [quality(one, asked) for one in found]
@@ -188,7 +194,9 @@ def _refuse_found(asked: Asked, found: list[Bars]) -> None:
 
 
 def _nearest(asked: Asked) -> float | None:
-    """The nearest end of the output for which there is a four-bar without defects (rad); None: not within 60 deg."""
+    """The nearest end of the output for which there is a four-bar without defects, of links that can be made (rad); None:
+    not within 60 deg.
+    """
 
     def ends(change: float) -> Asked:
         if asked.function:
@@ -198,7 +206,7 @@ def _nearest(asked: Asked) -> float | None:
         return replace(asked, psi=(*asked.psi[:-1], asked.psi[-1] + change))
 
     def good(change: float) -> bool:
-        return chosen(ends(change), through(ends(change))) >= 0
+        return chosen(ends(change), [one for one in through(ends(change)) if _sensible(one)]) >= 0
 
     if len(asked.phi) < 3:
         return None
