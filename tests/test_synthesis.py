@@ -94,6 +94,42 @@ REFUSED = {
 }  # fmt: skip
 
 
+NO_MECHANISM = {
+    "crank-slider, stroke: 10, k: 1, ratio: 1e250": "ratio: this is too large",
+    "crank-slider, stroke: 10, nu: 1e200, pressure: 30": "nu: this is too large",
+    "crank-slider, stroke: 10, k: 1, pressure: 1e-200": "pressure: this is too small",
+    "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
+    "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
+    "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2":
+        "l3: this is too large for a mechanism\n  found:   1e+250\n  allowed: 0.001 to 1e+09 mm",
+    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]":
+        "near[0]: this is too large for a mechanism\n  found:   1e+200\n  allowed: 1e+09 mm or less",
+    "four-bar-by-k, l3: 100, psi1: 1e16, psi2: 10000000000000050, k: 1.2": "psi1: this is too large",
+    "shaper, stroke: 10, k: 1.7, frame_ratio: .499, rod_ratio: 3e9": "rod_ratio: this is too large",
+    "grashof, l1: 1e200, l2: 1e200, l3: 1e200, l4: 1e199": "l1: this is too large",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("block", NO_MECHANISM)
+def test_sizes_that_no_mechanism_has_are_refused_before_numbers_overflow(block):
+    assert refusal(f"{{task: {block}}}").startswith(f"synthesis.{NO_MECHANISM[block]}")
+
+
+def test_sizes_at_the_bounds_give_numbers():
+    for more in (
+        "k: 1, ratio: 1e6",
+        "nu: 1e6, pressure: 0.001",
+        "nu: 0, pressure: 1e-6 rad",
+        "k: 1.0000000001, ratio: 1e6",
+    ):
+        found = build(
+            read_text(
+                f"tmm: 1\nsynthesis: {{task: crank-slider, stroke: 10, {more}}}\n{LINKAGE.format(speed=1.0)}", "x"
+            )
+        )
+        assert all(np.isfinite(float(v.value)) for v in found.synthesis.outcome.found if v.kind != "word")
+
+
 @pytest.mark.parametrize("text", REFUSED)
 def test_what_cannot_be_is_refused_with_the_reason_and_what_could(text):
     assert refusal(text).startswith(REFUSED[text])

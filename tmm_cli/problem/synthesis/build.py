@@ -15,6 +15,7 @@ from tmm_cli.problem.expressions import check_parameter, resolve_parameters
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block, reader
+from tmm_cli.problem.synthesis.bounded import Bounded
 from tmm_cli.problem.units import KINDS, Quantity, UnitSystem, plain_text
 from tmm_cli.synthesis import task
 from tmm_cli.synthesis.record import Infeasible
@@ -49,7 +50,7 @@ def with_synthesis(
         search = getattr(reader(block.task), "SEARCH", False)
         if search and variant is None:
             raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
-        sense = Sense(early, units)
+        sense = Sense(early, units) if search else Bounded(early, units)
         try:
             if known is not None and search:
                 outcome = known.outcome
