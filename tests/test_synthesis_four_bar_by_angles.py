@@ -172,7 +172,9 @@ def test_no_four_bar_through_five_near_pairs_is_lost(span):
         count += 1
         truth = sorted(exact_lengths(*made))
         found = solutions(*made, None, None)
-        own = sorted((float(a), float(b)) for a, b in zip(found.l1[0], found.l3[0], strict=True) if np.isfinite(float(a)))
+        own = sorted(
+            (float(a), float(b)) for a, b in zip(found.l1[0], found.l3[0], strict=True) if np.isfinite(float(a))
+        )
         assert len(own) == len(truth)
         assert np.array(own) == pytest.approx(np.array(truth), rel=1e-6)
 
@@ -191,7 +193,8 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
 
 
 @pytest.mark.parametrize("block", [
-    "[[30, 30], [60, 60], [90, 90]]", "[[30, 210], [60, 240], [90, 270]]", "[[20, 40], [50, 70], [90, 110], [100, 120]]",
+    "[[30, 30], [60, 60], [90, 90]]", "[[30, 210], [60, 240], [90, 270]]",
+    "[[20, 40], [50, 70], [90, 110], [100, 120]]",
     "[[0, 10], [20, 30], [40, 50], [60, 70], [90, 100]]", "[[30, 50], [60, 80], [90, 110]], psi0: -20",
 ])  # fmt: skip
 def test_equal_angles_are_those_of_any_parallelogram(block):
@@ -325,8 +328,11 @@ def test_the_four_bar_of_the_angle_that_is_told_can_be_made(block):
         problem(f"{block}, l4: 100")
     told = str(caught.value).partition("the last output angle ")[2].partition(" deg")[0]
     assert told
-    last = block.rpartition("output: [0, ")[0] + f"output: [0, {told}], points: 4" if "function" in block else (
-        block.rpartition(", ")[0] + f", {told}]]")
+    last = (
+        block.rpartition("output: [0, ")[0] + f"output: [0, {told}], points: 4"
+        if "function" in block
+        else (block.rpartition(", ")[0] + f", {told}]]")
+    )
     found = problem(f"{last}, l4: 100").synthesis.outcome.parameters
     links = [float(found[name].value) for name in ("l1", "l2", "l3", "l4")]
     assert max(links) < 51 * min(links)

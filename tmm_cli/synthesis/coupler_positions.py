@@ -14,8 +14,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis import guidance, loop
-from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, Poses, beside, by_turn, centre, marks
+from tmm_cli.synthesis import burmester_search, guidance, loop
+from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, Poses, beside, by_turn, centre, marks, unit
+from tmm_cli.synthesis.burmester_search import Limits
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final = {
@@ -24,8 +25,9 @@ PARAMETERS: Final = {
 }
 W: Final = "synthesis_coupler_positions"
 SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
-TURNS: Final = 240  # turns of AB, and of DC, that are compared on Burmester's curves
 SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
+FAR, NEAR = 100.0, 10.0  # reach of a given turn, over that size: beyond it is refused; of what is told instead
+SURE: Final = 1e-6  # rad: with less than that of transmission it is not sure that a four-bar passes
 SIDES: Final = {"left": 1.0, "right": -1.0}
 
 
@@ -91,16 +93,29 @@ def dyad(asked: Asked, name: str) -> Dyads:
 
 def of_turn(asked: Asked, name: str) -> Dyads:
     """The dyad of four positions that turns as wanted. Raises Infeasible with the nearest turn that one has."""
-    side = asked.sides[name]
+    side, steps = asked.sides[name], np.radians(np.arange(0, 3600) * 0.05)
     found = by_turn(asked.poses, np.asarray(side.turn, np.longdouble), side.branch)
-    if np.isfinite(found.pivot) and abs(found.pivot) < asked.size / SAME:
+    reach = float(_reach(asked, found))
+    if reach < FAR:
         return found
-    steps = np.radians(np.arange(1, 3600) * 0.05)
-    for step in steps:
-        for turn in (side.turn + step, side.turn - step):
-            if np.isfinite(by_turn(asked.poses, np.asarray(turn, np.longdouble), side.branch).pivot):
-                raise Infeasible(f"{name}_turn", f"{W}.no_turn", f"{W}.nearest_turn", {"turn": (float(turn), "angle")})
-    raise Infeasible(f"{name}_turn", f"{W}.no_turn", f"{W}.other_positions")
+    values: dict[str, Any] = {"name": (name, "word")}
+    reason = "no_turn" if not np.isfinite(reach) else "far_turn"
+    if reason == "far_turn":
+        values["length"] = (float(abs(asked.poses.on_frame(found.pin)[..., 0] - found.pivot)), "length")
+    turns = np.stack([side.turn + steps, side.turn - steps], -1).ravel()
+    near = _reach(asked, by_turn(asked.poses, turns.astype(np.longdouble), side.branch)) < NEAR
+    if not np.any(near):
+        raise Infeasible(f"{name}_turn", f"{W}.{reason}", f"{W}.other_positions", values)
+    values["turn"] = (float(turns[np.argmax(near)]), "angle")
+    raise Infeasible(f"{name}_turn", f"{W}.{reason}", f"{W}.nearest_turn", values)
+
+
+def _reach(asked: Asked, found: Dyads) -> Any:
+    """How far pivots (from place 1), pins and links reach, over the size of the task; inf where there is no dyad."""
+    with np.errstate(all="ignore"):
+        ends = (found.pivot - asked.poses.places[0], found.pin)
+        largest = np.maximum(*(np.abs(x) for x in ends)) / asked.size
+    return np.where(np.isnan(largest), np.inf, largest)
 
 
 def both(asked: Asked) -> tuple[Dyads, Dyads]:
@@ -108,52 +123,66 @@ def both(asked: Asked) -> tuple[Dyads, Dyads]:
     names = ("AB", "DC")
     if len(asked.places) < 4:
         return dyad(asked, "AB"), dyad(asked, "DC")
+    if still(asked.poses):
+        return parallel(asked)
     given = {name: of_turn(asked, name) for name in names if name in asked.sides}
     if len(given) == 2:
         return given["AB"], given["DC"]
     return best(asked, given)
 
 
+def still(poses: Poses) -> bool:
+    """Whether the coupler does not turn between any positions."""
+    return bool(np.all(np.abs(unit(poses.angles - poses.angles[0]) - 1) < SAME))
+
+
+def parallel(asked: Asked) -> tuple[Dyads, Dyads]:
+    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
+
+    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
+    """
+    places, angles = asked.poses.places, asked.poses.angles
+    middle = min((centre(places[[k for k in range(4) if k != out]]) for out in range(4)), key=lambda z: float(
+        np.nan_to_num(abs(z), nan=np.inf)))  # fmt: skip
+    arms = places - middle
+    radius = abs(arms[0])
+    if not (np.isfinite(radius) and radius < FAR * asked.size):
+        raise Infeasible("positions", f"{W}.still_line", f"{W}.still_slider")
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
+        other = centre(places[:3])
+        on = other + abs(places[0] - other) * (places[3] - other) / abs(places[3] - other)
+        values = {"x": (float(on.real), "length exact"), "y": (float(on.imag), "length exact")}
+        raise Infeasible(("positions", 3), f"{W}.still_off", f"{W}.still_on", values)
+    turn = float(np.angle(complex(arms[1] / arms[0])))
+    for name, side in asked.sides.items():
+        if abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
+            raise Infeasible(f"{name}_turn", f"{W}.still_turn", f"{W}.nearest_turn", {"turn": (turn, "angle exact")})
+    steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
+    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
+    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, asked.size)
+    one, other = (sign * frame / 2 for sign in (-1, 1))
+    return Dyads(middle + one, one * unit(-angles[0])), Dyads(middle + other, other * unit(-angles[0]))
+
+
 def best(asked: Asked, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such."""
-    turns = {name: (-np.pi + 2 * np.pi * (np.arange(TURNS) + 0.5) / TURNS) for name in ("AB", "DC")}
-    picked: dict[str, tuple[float, int]] = {}
-    step = np.pi / TURNS
-    for _ in range(16):  # the whole curves first, then nearer and nearer to the best
-        rows = {name: _rows(asked, given, turns[name], picked.get(name), name) for name in ("AB", "DC")}
-        (one, of_one), (other, of_other) = rows["AB"], rows["DC"]
-        if not len(of_one) or not len(of_other):
-            raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")
-        found = marks(asked.poses, one[:, None], other[None, :])
-        score = found.least - 10.0 * (found.defect > 0) - 20.0 * ~_fair(asked, one[:, None], other[None, :])
-        i, j = np.unravel_index(int(np.argmax(np.nan_to_num(score, nan=-99.0))), score.shape)
-        picked = {"AB": of_one[i], "DC": of_other[j]}
-        taken = one[int(i)], other[int(j)]
-        turns = {name: picked[name][0] + step * np.linspace(-2, 2, 9) for name in picked}
-        step /= 2
-    return taken
+    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+    first, size = asked.poses.places[0], asked.size
+    reach = [max((float(abs(x)) for x in row), default=0.0) for row in (
+        [one.pivot - first for one in given.values()], [one.pin for one in given.values()])]  # fmt: skip
+    limits = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + reach[0], LONGEST * size + reach[1])
+    for loose in (False, True):  # without a sound one: one whose branches only are not the same
+        found = burmester_search.best(asked.poses, size, limits, dict(given), loose)
+        if found is not None and found[2] > SURE:
+            return found[:2]
+    if found is not None and _fair(found[0], found[1], limits):
+        return found[:2]
+    raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")
 
 
-def _rows(
-    asked: Asked, given: Mapping[str, Dyads], turns: Any, picked: tuple[float, int] | None, name: str
-) -> tuple[Dyads, list[tuple[float, int]]]:
-    """Dyads at these turns, and turn and branch of each; that which is given alone."""
-    if name in given:
-        return Dyads(*(np.asarray(x)[None] for x in (given[name].pivot, given[name].pin))), [(0.0, 0)]
-    branches = (0, 1) if picked is None else (picked[1],)
-    parts = [by_turn(asked.poses, turns, branch) for branch in branches]
-    pivot, pin = np.concatenate([p.pivot for p in parts]), np.concatenate([p.pin for p in parts])
-    of = [(float(turn), branch) for branch in branches for turn in turns]
-    length = np.abs(asked.poses.on_frame(pin)[..., 0] - pivot)
-    with np.errstate(all="ignore"):
-        good = np.isfinite(length) & (length < LONGEST * asked.size) & (length > SHORTEST * asked.size)
-    return Dyads(pivot[good], pin[good]), [one for one, keep in zip(of, good, strict=True) if keep]
-
-
-def _fair(asked: Asked, one: Dyads, other: Dyads) -> Any:
+def _fair(one: Dyads, other: Dyads, limits: Limits) -> bool:
     """Whether frame and coupler are neither too short nor too long."""
-    sizes = (np.abs(one.pivot - other.pivot), np.abs(one.pin - other.pin))
-    return np.all([(x > SHORTEST * asked.size) & (x < LONGEST * asked.size) for x in sizes], axis=0)
+    frame, coupler = abs(one.pivot - other.pivot), abs(one.pin - other.pin)
+    return bool(limits.shortest <= min(frame, coupler) and frame <= limits.frame and coupler <= limits.coupler)
 
 
 def _refuse(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
@@ -192,9 +221,10 @@ def solve(asked: Asked) -> Outcome:
         Value("", None, "word", f"{W}.defect", f"{W}.{defect or 'sound'}"),
     ]
     drawn = guidance.construction(asked.poses, one, other, W)
-    return Outcome(
-        _given(asked), tuple(values), f"{W}.source_{len(asked.places)}", _demands(asked, one, other, mark), (drawn,)
-    )
+    free = len(asked.places) == 4 and still(asked.poses)
+    source = f"{W}.source_{'still' if free else len(asked.places)}"
+    notes = (f"{W}.any_parallelogram",) if free else ()
+    return Outcome(_given(asked), tuple(values), source, _demands(asked, one, other, mark), (drawn,), notes)
 
 
 def lengths(asked: Asked, one: Dyads, other: Dyads) -> dict[str, Any]:

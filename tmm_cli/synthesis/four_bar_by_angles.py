@@ -194,8 +194,8 @@ def _refuse_found(asked: Asked, found: list[Bars]) -> None:
 
 
 def _nearest(asked: Asked) -> float | None:
-    """The nearest end of the output for which there is a four-bar without defects, of links that can be made (rad); None:
-    not within 60 deg.
+    """The nearest end of the output (rad) for which there is a four-bar without defects and of links that can be made;
+    None: not within 60 deg.
     """
 
     def ends(change: float) -> Asked:

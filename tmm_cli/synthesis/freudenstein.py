@@ -121,7 +121,7 @@ def five(phi: Any, psi: Any) -> tuple[Any, Any]:
 
 
 def angles_of_form(form: Any) -> list[Any]:
-    """Angles (rad, in a half turn) where a form f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of their cosine and sine vanishes.
+    """Angles (rad, in a half turn) where a form f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine and sine vanishes.
 
     Between the angles where it is extreme (its slope is a form too) it has one sign change or none: no root is lost
     because two are near each other, and none is made of two complex ones.

@@ -67,8 +67,8 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.level_nearest": "best transmission, l4 or near; at best A is {offset} higher than D",
     "synthesis_four_bar_by_k.near_end": "the nearest place of the admissible arcs is an end of them, where the rocker "
     "is dead",
-    "synthesis_four_bar_by_k.near_inside": "x = {x}, y = {y}: the nearest pivot with a largest pressure angle of {pressure} or "
-    "less",
+    "synthesis_four_bar_by_k.near_inside": "x = {x}, y = {y}: the nearest pivot with a largest pressure "
+    "angle of {pressure} or less",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "more than {low} and less than {high}",
     "synthesis_four_bar_by_k.l4_range_line": "more than {low}",

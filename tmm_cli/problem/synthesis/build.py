@@ -139,8 +139,9 @@ def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError
     def shown(value: Any, kind: str) -> str:
         if kind == "word":
             return str(value)
-        dimension = KINDS[kind].dimension
-        return f"{units.from_si(float(value), dimension):.6g} {units.symbol(dimension)}".rstrip()
+        digits = 15 if kind.endswith(" exact") else 6  # a value that is met by itself only, not on one side of a limit
+        dimension = KINDS[kind.removesuffix(" exact")].dimension
+        return f"{units.from_si(float(value), dimension):.{digits}g} {units.symbol(dimension)}".rstrip()
 
     values = {name: shown(*value) for name, value in error.values.items()}
     return ProblemError(
