@@ -19,9 +19,9 @@ from tmm_cli.synthesis.burmester_curve import Curve, One, Part, curve, parts
 
 COUNT: Final = 400  # places on a curve, about
 STARTS: Final = 160
-FINAL: Final = 10  # starts that are searched to the end
 COARSE: Final = 24  # rounds of all starts
-OUTER, INNER, ROUNDS, INNER_ROUNDS = 9, 17, 13, 9  # places of AB, of DC for each, that are compared in a round; rounds
+OUTER, INNER = 9, 17  # places of AB, and of DC for each of them, that are compared in a round of the last search
+LAST: Final = ((10, 10, 8), (2, 20, 12))  # how many are searched on, for how many rounds, and rounds within a round
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,8 @@ def best(
     table = score(np.arange(len(one.t))[:, None], np.arange(len(other.t))[None, :])
     x, y = _starts(table, one, other)
     x, y, value = _climbed(score, x, y, one, other)
-    x, y, value = _finished(score, x, y, value, one, other)
+    for last in LAST:
+        x, y, value = _finished(score, (x, y, value), one, other, last)
     at = int(np.argmax(value))
     return one.at(x[at : at + 1])[0], other.at(y[at : at + 1])[0], float(value[at])
 
@@ -110,7 +111,8 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
         turned = np.mod(np.diff(np.angle(b - a[..., None]), axis=-1), 2 * np.pi)
         l2, l4 = np.abs(np.asarray(one.pin - other.pin, complex)), np.abs(a - d)
         start = np.angle((b[..., 0] - a) / (d - a))
-        low_sine, high_sine, largest = np.inf, -np.inf, 0.0
+        low_sine, high_sine = np.asarray(np.inf), np.asarray(-np.inf)
+        largest: Any = 0.0
         for k in range(b.shape[-1]):
             span = (c[..., k] - b[..., k]) * np.conj(c[..., k] - d)
             sine = span.imag / (l2 * l3)
@@ -171,25 +173,29 @@ def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows) -> tuple[Any, A
     return x, y, value
 
 
-def _finished(score: Any, x: Any, y: Any, value: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
+def _finished(
+    score: Any, starts: tuple[Any, Any, Any], one: Rows, other: Rows, last: tuple[int, int, int]
+) -> tuple[Any, Any, Any]:
     """The best of the starts, by the best place of DC for every place of AB."""
+    x, y, value = starts
+    count, rounds, inner_rounds = last
     order = np.argsort(-value, kind="stable")
     kept: list[int] = []
     for k in order:
         if all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > 0.05 for m in kept):
             kept.append(int(k))
-        if len(kept) == FINAL:
+        if len(kept) == count:
             break
     x, y, value = x[kept], y[kept], value[kept]
-    first, last = (ends[x.astype(int)] for ends in (one.low, one.high))
+    first, end_x = (ends[x.astype(int)] for ends in (one.low, one.high))
     start, end = (ends[y.astype(int)] for ends in (other.low, other.high))
     middle_y, found = y, (x, y, value)
     wide = np.full(len(x), 2.0)
-    for _ in range(ROUNDS):
-        xs = np.clip(found[0][:, None] + wide[:, None] * np.linspace(-1, 1, OUTER), first[:, None], last[:, None])
+    for _ in range(rounds):
+        xs = np.clip(found[0][:, None] + wide[:, None] * np.linspace(-1, 1, OUTER), first[:, None], end_x[:, None])
         low = np.maximum(np.minimum(middle_y, found[1]) - 2, start)[:, None] + 0 * xs
         high = np.minimum(np.maximum(middle_y, found[1]) + 2, end)[:, None] + 0 * xs
-        for _ in range(INNER_ROUNDS):
+        for _ in range(inner_rounds):
             ys = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, INNER)
             table = score(xs[..., None] + 0 * ys, ys)
             at = np.argmax(table, axis=-1)[..., None]
