@@ -226,3 +226,19 @@ def test_the_schema_for_editors_knows_the_keys_of_every_task():
 @pytest.mark.parametrize("task", TASKS)
 def test_every_task_is_told_of_in_the_readme(task):
     assert f"- `{task}`" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_a_run_tells_the_synthesis_with_the_rest(tmp_path):
+    done = tmm("run", ROOT / "problems" / "press-synthesis.yaml", "-o", tmp_path, "--no-drawings")
+    assert done.returncode == 0, done.stderr
+    assert "Found" in done.stdout and "measured on the mechanism" in done.stdout
+    folder = tmp_path / "press-synthesis"
+    result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    assert result["synthesis"]["met"] is True and set(result["synthesis"]["parameters"]) == {"OA", "AB", "e"}
+    assert (folder / "synthesis-measured.csv").exists()
+
+
+def test_tables_of_several_files_come_under_their_names():
+    files = [ROOT / "problems" / f"{name}.yaml" for name in ("press-synthesis", "pump-synthesis")]
+    done = tmm("synthesis", *files)
+    assert [line for line in done.stdout.splitlines() if line.startswith("==")] == [f"== {file} ==" for file in files]

@@ -219,7 +219,9 @@ def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
     assert round(90 - math.degrees(f.pressure[0])) == 35
 
 
-@pytest.mark.parametrize("more", ["", ", l4: 300", ", choose: supports level", ", near: [300, 40]", ", turns: cw"])
+@pytest.mark.parametrize(
+    "more", ["", ", l1: 60", ", l2: 250", ", l4: 300", ", choose: supports level", ", near: [300, 40]", ", turns: cw"]
+)
 @pytest.mark.parametrize("angles", [("50 deg", "105 deg"), ("100 deg", "60 deg"), ("0", "-70 deg")])
 def test_the_ordinary_stages_measure_what_was_asked(more, angles):
     if angles[0] != "50 deg":
@@ -279,7 +281,15 @@ REFUSED = [
      ".choose: no pivot of the admissible arcs is as high as D",
      "'supports level'", "best transmission, l4 or near; at best A is 137.749 mm higher than D"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
-     "choose and l4", "one of choose, l4, near"),
+     "choose and l4", "one of choose, l1, l2, l4, near"),
+    (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
+     "95", "more than 30.8647 mm and less than 92.3497 mm"),
+    (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
+     "70", "l2, l4, near or supports level; the crank is 92.3497 mm"),
+    (", l2: 60", {}, ".l2: no pivot of the admissible arcs gives such a coupler",
+     "60", "more than 92.3497 mm and less than 612.375 mm"),
+    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs gives such a coupler",
+     "60", "more than 92.3497 mm"),
 ]  # fmt: skip
 
 
@@ -342,6 +352,15 @@ def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
         assert choose(replace(one, choose="l4", l4=end - 1e-6)).l4 == pytest.approx(end - 1e-6, rel=1e-12)
     with pytest.raises(Infeasible):
         choose(replace(one, choose="l4", l4=end + 1e-6))
+
+
+def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_arcs():
+    one = Asked(0.2, math.radians(50), math.radians(105), 1.2)
+    for name, value in (("l1", 0.088), ("l2", 0.25)):
+        found = choose(replace(one, choose=name, **{name: value}))
+        assert getattr(found, name) == pytest.approx(value, rel=1e-14)
+        other = choose(replace(one, choose=name, sense=-int(found.sense), **{name: value}))
+        assert getattr(other, name) == pytest.approx(value, rel=1e-14) and other.pressure > found.pressure
 
 
 def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():

@@ -184,7 +184,7 @@ def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
 @pytest.mark.parametrize("keys", [
     "B1: [-150, 400], B2: [250, 450], k: 1.6, OC: 300", "B1: [-150, 400], B2: [250, 450], k: 1.6, C: left, OC: 300",
     "CB: 500, k: 1.4, within: [100, 300]", "CB: 500, swing: 60 deg, support: [20, -300], axis: 120 deg, OC: 200",
-    "CB: 500, k: 1.4, within: [100, 300], choose: shortest",
+    "CB: 500, k: 1.4, within: [100, 300], choose: shortest", "B1: [-150, 400], B2: [250, 450], k: 1.6, OA: 60",
 ])  # fmt: skip
 @pytest.mark.parametrize("sense", ["cw", "ccw"])
 def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
@@ -202,7 +202,7 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
 
 @pytest.mark.parametrize("keys", [
     "stroke: 400, k: 1.5, OC: 350, DE: 200", "stroke: 400, k: 1.8, frame_ratio: 0.6, rod_ratio: 0.3",
-    "stroke: 90, k: 1.3, frame_ratio: 0.6, pressure: 4 deg",
+    "stroke: 90, k: 1.3, frame_ratio: 0.6, pressure: 4 deg", "stroke: 400, k: 1.5, OA: 100, DE: 200",
 ])  # fmt: skip
 def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
     found = shaping(keys)
@@ -242,6 +242,10 @@ REFUSED_LEVERS = {
         "\n  found:   '190 deg'\n  allowed: more than zero and less than 180 deg"
     ),
     "CB: 500, k: 1.3, OC: -2": (".OC: there is no such link\n  found:   -2\n  allowed: more than zero"),
+    "CB: 500, k: 1.3, OA: -2": (".OA: there is no such link\n  found:   -2\n  allowed: more than zero"),
+    "CB: 500, k: 1.3, OC: 200, OA: 20": (
+        ": these keys do not determine a slotted lever\n  found:   OC, OA\n  allowed: OC; or OA; or within"
+    ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (
         ".B2: B1 and B2 are the same place\n  found:   a list of 2\n  allowed: a place other than B1"
     ),
@@ -278,6 +282,10 @@ REFUSED_SHAPERS = {
     "stroke: 400, k: 1.5, OC: 500, DE: 200": (
         ".OC: the stone would pass the hinge D of the rod\n  found:   500\n  allowed: less than 494.427 mm"
     ),
+    "stroke: 400, k: 1.5, OA: 155, DE: 200": (
+        ".OA: the stone would pass the hinge D of the rod\n  found:   155\n  allowed: less than 152.786 mm"
+    ),
+    "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: there is no such motion\n  found:   0\n  allowed: more than zero"),
     "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
         ".frame_ratio: the stone would pass the hinge D of the rod\n  found:   0.8\n  allowed: less than 0.763932"
     ),

@@ -17,7 +17,7 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Law, Motion, move, towards
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem.record import Problem, Synthesised
 from tmm_cli.refused import NoStrokes, NoSuchPosition
 from tmm_cli.structure.assur import Structure
 from tmm_cli.vectors import Real
@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.pressure import Pressure
     from tmm_cli.quality import DeadPosition, Range
     from tmm_cli.strokes import Strokes, Travel
+    from tmm_cli.synthesis.check import Measured
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -110,6 +111,18 @@ class Results:
     def linkage(self) -> Linkage:
         return self.problem.linkage
 
+    @property
+    def synthesis(self) -> Synthesised | None:
+        """What the file's synthesis found, if it has one."""
+        return self.problem.synthesis
+
+    @cached_property
+    def measured(self) -> tuple[Measured, ...]:
+        """What the synthesis asked and foretold, on the mechanism."""
+        from tmm_cli.synthesis.check import measured
+
+        return () if self.synthesis is None or self.of else measured(self.synthesis.outcome, self)
+
     @cached_property
     def asked(self) -> Real:
         """The driver's places of all positions of the file, whether they were computed or not (rad or m)."""
@@ -137,6 +150,11 @@ class Results:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
         return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
+
+    @property
+    def sound(self) -> bool:
+        """Whether the checks hold: of the lever, and of what the synthesis asked."""
+        return self.lever_holds and (self.motion is None or all(m.met for m in self.measured))
 
     @property
     def lever_holds(self) -> bool:

@@ -46,15 +46,20 @@ def say(text: str) -> None:
     typer.echo(text, err=True)
 
 
-def each(files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False) -> NoReturn:
+def each(
+    files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False, headed: bool = True
+) -> NoReturn:  # fmt: skip
     """Do the work on every file, with a progress bar when there are several; exit with the worst code.
 
-    Bad input is one message and does not keep the other files from being worked on.
+    headed: the tables of each of several files come under its name. Bad input is one message and does not
+    keep the other files from being worked on.
     """
     from tmm_cli.problem.errors import ProblemError
 
     worst = OK
     for file in _progress(files):
+        if headed and len(files) > 1 and not as_json:
+            console().print(f"== {file} ==", style="bold")
         try:
             code = work(file)
         except ProblemError as error:
@@ -126,7 +131,7 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
 
         for warning in warnings(results):
             say(f"warning: {warning}")
-    return OK if results.lever_holds else CHECK_FAILED
+    return OK if results.sound else CHECK_FAILED
 
 
 def show(results: Results, names: Iterable[str], found: Trusted | None = None, digits: bool = False) -> None:

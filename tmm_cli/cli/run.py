@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
 
 
+SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle")
+
+
 def run(
     files: Files,
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
@@ -37,15 +40,19 @@ def run(
         if as_json:
             emit_results(results, found)
         elif len(files) == 1:
-            show(results, ("structure", "links", "groups", "quality", "cycle"), found)
+            show(
+                results,
+                ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle"),
+                found,
+            )
         for warning in warnings(results):
             say(f"warning: {results.problem.name}: {warning}")
         say(f"written: {folder}")
-        return OK if results.lever_holds else CHECK_FAILED
+        return OK if results.sound else CHECK_FAILED
 
     def drawn(results: Results) -> Iterable[tuple[str, bytes]]:
         from tmm_cli.draw import files as drawing_files
 
         return drawing_files(results)
 
-    each(files, work, as_json=as_json)
+    each(files, work, as_json=as_json, headed=False)

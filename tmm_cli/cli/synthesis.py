@@ -31,11 +31,9 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
         name, title, found, units, results = _solved(file)
         measured = None
         if results is not None:
-            from tmm_cli.synthesis.check import measured as measure
-
-            measured = measure(found.outcome, results)
+            measured = results.measured
         if as_json:
-            emit_json(to_json(name, found, measured))
+            emit_json({"problem": name, **to_json(found, measured)})
         else:
             screen = console()
             for table in tables(found, measured, units):
@@ -88,7 +86,7 @@ def _write(
     with Staged(folder) as staged:
         for table in tables(found, measured, units, 15):
             staged.write(f"{table.name}.csv", csv_text(table, units))
-        for name, picture in files(names[1], found.outcome, results, units):
+        for name, picture in files(names[1], found.outcome, results, units, found.names):
             staged.write(name, (picture,))
-        staged.write("synthesis.json", (json_bytes(to_json(names[0], found, measured)),))
+        staged.write("synthesis.json", (json_bytes({"problem": names[0], **to_json(found, measured)}),))
     return folder

@@ -12,9 +12,11 @@ from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.plans import acceleration, forces, lever, velocity
 from tmm_cli.draw.sheet import picture
 from tmm_cli.draw.structure import structure
+from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.pipeline import Results
 
 Drawn = Iterable[tuple[str, Figure]]
+OF_THE_SYNTHESIS: tuple[Callable[[Results], Drawn], ...] = (synthesised,)
 OF_THE_STRUCTURE: tuple[Callable[[Results], Drawn], ...] = (structure, groups)
 OF_THE_CYCLE: tuple[Callable[[Results], Drawn], ...] = (all_positions, diagrams)
 OF_A_POSITION: tuple[Callable[[Results, int], Drawn], ...] = (position, velocity, acceleration, forces, lever)
@@ -26,6 +28,8 @@ def sheets(results: Results) -> Drawn:
         yield from of_structure(results)
     if results.motion is None:
         return
+    for of_synthesis in OF_THE_SYNTHESIS:
+        yield from of_synthesis(results)
     if bool(results.motion.placed.any()):
         for of_cycle in OF_THE_CYCLE:
             yield from of_cycle(results)

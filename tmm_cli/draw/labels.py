@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,28 +12,43 @@ from numpy.typing import NDArray
 
 STEP = 1.2  # mm between the points that stand for a line
 RINGS = (1.2, 3.0, 5.5, 9.0)  # mm from the anchor to the label's near side
+FARTHER = (13.0, 18.0, 24.0)
 DIRECTIONS = 16
+ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)  # where a text stands beside a line, shares of its length
+NARROW, WIDE = frozenset("ᵗⁿ₀₁₂₃₄₅₆₇₈₉.,'′il1|() :"), frozenset("MWmw=−+<>%")  # letters of DejaVu Sans
+
+Box = tuple[float, float, float, float]  # left, right, low, high
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text asked for at an anchor (mm on paper), `size` points high."""
+    """A text asked for at an anchor (mm on paper), `size` points high.
+
+    line: it stands beside this line, wherever along it. far: it may stand farther off, a thin line leads to it then.
+    """
 
     text: str
     anchor: complex
     size: float
     colour: str
     style: str = "normal"
+    line: tuple[complex, complex] | None = None
+    far: bool = False
 
 
 @dataclass
 class Ground:
-    """What is drawn already, as points on paper (mm), and the labels put down so far as boxes."""
+    """What is drawn already, as points on paper (mm), and the labels put down so far as boxes.
+
+    rivals: lettered places; no label stands nearer to one of them than to its own; likewise lines that have names.
+    """
 
     low: complex
     high: complex
     points: list[NDArray[Any]] = field(default_factory=list)
-    boxes: list[tuple[float, float, float, float]] = field(default_factory=list)
+    boxes: list[Box] = field(default_factory=list)
+    rivals: list[complex] = field(default_factory=list)
+    lines: list[tuple[complex, complex]] = field(default_factory=list)
 
     def line(self, start: complex, end: complex) -> None:
         """A line is in the way."""
@@ -47,24 +63,31 @@ class Ground:
     def place(self, label: Label) -> complex:
         """The middle of the label where it covers the least; the label is then in the way of others."""
         width, height = extent(label)
+        reach = abs(label.line[1] - label.line[0]) / 2 if label.line else (FARTHER if label.far else RINGS)[-1]
         crowd = np.concatenate(self.points) if self.points else np.zeros(0, dtype=complex)
-        near = crowd[np.abs(crowd - label.anchor) < RINGS[-1] + 2 * width + 5]
-        best, best_cost = label.anchor, math.inf
-        for ring, reach in enumerate(RINGS):
-            for step in range(DIRECTIONS):
-                angle = 2 * math.pi * (step + 0.5 * (ring % 2)) / DIRECTIONS + math.pi / 4
-                along = complex(math.cos(angle), math.sin(angle))
-                # the box touches a circle about the anchor
-                middle = label.anchor + reach * along + complex(along.real * width / 2, along.imag * height / 2)
-                cost = self._cost(middle, width, height, near) + 0.35 * reach
-                if cost < best_cost:
-                    best, best_cost = middle, cost
-            if best_cost < 0.35 * reach + 0.2:
+        near = crowd[np.abs(crowd - label.anchor) < reach + 2 * width + 5]
+        best, best_cost, last = label.anchor, math.inf, 0.0
+        for middle, price in candidates(label, width, height):
+            if price > last + 1e-9 and best_cost < last + 0.2:
                 break
-        self.boxes.append(
-            (best.real - width / 2, best.real + width / 2, best.imag - height / 2, best.imag + height / 2)
-        )
+            last = max(last, price)
+            cost = self._cost(middle, width, height, near) + price + self._mistaken(label, middle, width, height)
+            if cost < best_cost:
+                best, best_cost = middle, cost
+        self.boxes.append(about(best, width, height))
         return best
+
+    def _mistaken(self, label: Label, middle: complex, width: float, height: float) -> float:
+        """The price of standing nearer to another lettered place, or to another line, than to one's own."""
+        if label.line is not None:
+            here = aside(middle, *label.line)
+            others = [aside(middle, *line) for line in self.lines if line != label.line]
+            return 6.0 if others and min(others) < here + 0.5 else 0.0
+        if not self.rivals:
+            return 0.0
+        box = about(middle, width, height)
+        others = [away(box, r) for r in self.rivals if abs(r - label.anchor) > 0.5]
+        return 6.0 if others and min(others) < away(box, label.anchor) + 0.8 else 0.0
 
     def _cost(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
         left, right = middle.real - width / 2 - 0.4, middle.real + width / 2 + 0.4
@@ -80,8 +103,50 @@ class Ground:
         return cost
 
 
+def candidates(label: Label, width: float, height: float) -> Iterator[tuple[complex, float]]:
+    """Middles of a label's box and what each costs, cheapest first."""
+    if label.line is not None:
+        start, end = label.line
+        way = (end - start) / (abs(end - start) or 1.0)
+        for gap in (1.0, 2.2, 4.0, 7.0, 11.0, 16.0):
+            for share in ALONG:
+                for side in (1j, -1j):
+                    out = side * way if (1j * way).imag >= 0 else -side * way  # above first
+                    off = gap + abs(out.real) * width / 2 + abs(out.imag) * height / 2
+                    yield start + share * (end - start) + off * out, 1.5 * gap + 3 * abs(share - 0.5)
+        return
+    for ring, reach in enumerate((*RINGS, *FARTHER) if label.far else RINGS):
+        for step in range(DIRECTIONS):
+            angle = 2 * math.pi * (step + 0.5 * (ring % 2)) / DIRECTIONS + math.pi / 4
+            along = complex(math.cos(angle), math.sin(angle))
+            # the box touches a circle about the anchor
+            yield label.anchor + reach * along + complex(along.real * width / 2, along.imag * height / 2), 0.35 * reach
+
+
+def aside(place: complex, start: complex, end: complex) -> float:
+    """How far a place is from a stretch of a line."""
+    way = end - start
+    share = ((place - start) * way.conjugate()).real / (abs(way) ** 2 or 1.0)
+    return abs(place - start - min(max(share, 0.0), 1.0) * way)
+
+
+def about(middle: complex, width: float, height: float) -> Box:
+    """The box about its middle."""
+    return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
+
+
+def nearest(box: Box, place: complex) -> complex:
+    """The place of a box that is nearest to another place."""
+    return complex(min(max(place.real, box[0]), box[1]), min(max(place.imag, box[2]), box[3]))
+
+
+def away(box: Box, place: complex) -> float:
+    """How far a place is from a box."""
+    return abs(nearest(box, place) - place)
+
+
 def extent(label: Label) -> tuple[float, float]:
     """Width and height of a text on paper, mm (a measure good enough to keep labels apart)."""
     point = 25.4 / 72
-    narrow = sum(0.35 if c in "ᵗⁿ₀₁₂₃₄₅₆₇₈₉.,'il1|() " else 0.62 for c in label.text)
-    return max(narrow, 0.6) * label.size * point + 0.6, label.size * point
+    width = sum(0.36 if c in NARROW else 0.88 if c in WIDE else 0.62 for c in label.text)
+    return max(width, 0.6) * label.size * point + 0.6, label.size * point

@@ -157,7 +157,7 @@ def body(sheet: Sheet, motion: Motion, link: str, k: int) -> None:
         sheet.line(places, DARK, 2.4, z=3)
 
 
-def box(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
+def box(sheet: Sheet, motion: Motion, slide: Slide, k: int, colour: str = DARK) -> None:
     """The sliding link as a box along its guide; arms to its other points."""
     pose = motion.poses[slide.runner]
     at = sheet.on(complex(pose.x[k] + slide.at * pose.z[k]))
@@ -166,7 +166,7 @@ def box(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:
     along = complex(motion.poses[slide.carrier].z[k] * unit(slide.direction))
     length, width = BOX if FRAME in (slide.carrier, slide.runner) else STONE
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-    sheet.area(corners, "white", DARK, 1.3, 4)
+    sheet.area(corners, "white", colour, 1.3, 4)
 
 
 def frame_guide(sheet: Sheet, motion: Motion, slide: Slide, k: int) -> None:

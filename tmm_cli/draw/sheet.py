@@ -12,7 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
-from tmm_cli.draw.labels import Ground, Label
+from tmm_cli.draw.labels import Ground, Label, about, nearest
+from tmm_cli.draw.labels import extent as label_extent
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
 from tmm_cli.words import say
 
@@ -22,6 +23,7 @@ COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
     "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
 }  # fmt: skip
+LEADER = 4.0  # mm from which a line leads from a place to its label
 
 # Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
 mpl.rcParams["svg.hashsalt"] = "tmm"
@@ -161,14 +163,35 @@ class Sheet:
 
     def finish(self) -> Figure:
         """Put the notes into the emptiest corner, place the labels."""
-        if self.notes:
-            self._corner()
+        self.corner()
         for label in self.labels:
             at = self.ground.place(label)
             self.text(at, label.text, label.size, colour=label.colour, ha="center", style=label.style)
+            edge = nearest(self.ground.boxes[-1], label.anchor)
+            if label.far and abs(edge - label.anchor) > LEADER:
+                self.line([label.anchor, edge], THIN, 0.5, z=1.1)
         return self.figure
 
-    def _corner(self) -> None:
+    def along(self, at: complex, text: str, size: float, way: complex) -> None:
+        """A text along a direction, its middle at a place (mm); it is in the way of labels."""
+        turn = float(np.degrees(np.angle(way)))
+        turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
+        self.axes.text(
+            at.real, at.imag, text, fontsize=size, color=DARK, rotation=turn, rotation_mode="anchor", ha="center",
+            va="center", parse_math=False, zorder=9,
+        )  # fmt: skip
+        width, height = label_extent(Label(text, at, size, DARK))
+        c, s = abs(np.cos(np.radians(turn))), abs(np.sin(np.radians(turn)))
+        if min(c, s) < 0.1:
+            self.ground.boxes.append(about(at, width * c + height * s, width * s + height * c))
+            return
+        for share in np.linspace(-0.5, 0.5, max(2, int(width / 2))):  # a slanting text: a row of small boxes
+            self.ground.boxes.append(about(at + share * width * complex(way) / abs(way), height, height))
+
+    def corner(self) -> None:
+        """Put the notes into the emptiest corner."""
+        if not self.notes:
+            return
         width = max(len(t) for t in self.notes) * 2.0 + 5
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
@@ -197,6 +220,7 @@ class Sheet:
         for k, text in enumerate(self.notes):
             self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
         self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))
+        self.notes = []
 
 
 def scale_text(symbol: str, mu: float, unit: str) -> str:

@@ -50,6 +50,10 @@ def sections(results: Results | ChainResults, digits: Trusted | None = None) -> 
         return
     yield "structure", _structure(results.structure, results)
     yield "space", _space(results)
+    if results.synthesis is not None and results.motion is not None:
+        from tmm_cli.results.synthesis import to_json as synthesis_json
+
+        yield "synthesis", synthesis_json(results.synthesis, results.measured)
     yield from numbers(results)
     if digits is not None:
         yield "digits", digits.json()

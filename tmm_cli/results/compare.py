@@ -37,6 +37,8 @@ def differences(expected: dict[str, Any], found: dict[str, Any], tolerance: floa
     for path, values in want.items():
         if path in have and path[-1] not in DERIVED and path[-2:-1] != ("angle",):
             scale = 1.0 if set(path) & SHARES else max(vectors.get(path, _peak(values)), FLOOR * largest[_kind(path)])
+            if path[-1] == "at":  # a place on the driver's way, which may be the zero
+                scale = max(scale, largest.get("driver", 0.0))
             worst = _worst(path, values, have[path], scale)
             if worst is not None and (worst.size is None or worst.size > tolerance):
                 out.append(worst)

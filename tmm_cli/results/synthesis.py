@@ -11,7 +11,7 @@ from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 from tmm_cli.synthesis.check import Measured
-from tmm_cli.synthesis.record import Value
+from tmm_cli.synthesis.record import Listing, Value
 from tmm_cli.words import say
 
 DIGITS = 10  # on a terminal; files have 15
@@ -27,6 +27,8 @@ def tables(
     source = say("synthesis.source", source=say(outcome.source))
     notes = (*map(say, outcome.notes), source)
     yield _values("synthesis-found", say("synthesis.found"), outcome.found, found.names, units, digits, notes)
+    for listing in outcome.listings:
+        yield _listing(listing, units, digits)
     if measured:
         yield _measured(measured, units, digits)
 
@@ -46,6 +48,26 @@ def _values(
     keys = ["synthesis.name", "synthesis.quantity", "word.value", "word.unit"]
     columns = [Column(say(key), [row[k] for row in rows]) for k, key in enumerate(keys)]
     return Table(name, title, tuple(columns[0 if names else 1 :]), notes=notes)
+
+
+def _listing(listing: Listing, units: UnitSystem, digits: int) -> Table:
+    unit = next((k for k, (_, kind) in enumerate(listing.columns) if kind == "unit"), None)
+    columns = []
+    for k, (words, kind) in enumerate(listing.columns):
+        if kind == "unit":
+            values: list[Any] = [units.symbol(KINDS[row[k]].dimension) if row[k] else "" for row in listing.rows]
+            columns.append(Column(say(words), values))
+        elif kind == "name":
+            columns.append(Column(say(words), [row[k] or "" for row in listing.rows]))
+        elif kind == "word":
+            columns.append(Column(say(words), [say(row[k]) if row[k] else "" for row in listing.rows]))
+        elif kind == "mixed":
+            assert unit is not None
+            shown = ["" if row[k] is None else _shown(row[k], row[unit], "", units, digits)[0] for row in listing.rows]
+            columns.append(Column(say(words), shown))
+        else:
+            columns.append(Column(say(words), [row[k] for row in listing.rows], KINDS[kind].dimension))
+    return Table(f"synthesis-{listing.name}", say(listing.title), tuple(columns))
 
 
 def _shown(value: Any, kind: str, text: str, units: UnitSystem, digits: int) -> tuple[str, str]:
@@ -82,7 +104,7 @@ def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
             yield say("synthesis.not_met", quantity=say(m.demand.words), wanted=f"{wanted} {unit}".rstrip(), found=on)
 
 
-def to_json(name: str, found: Synthesised, measured: Sequence[Measured] | None) -> dict[str, Any]:
+def to_json(found: Synthesised, measured: Sequence[Measured] | None) -> dict[str, Any]:
     """Everything in SI and radians."""
 
     def value(v: Value) -> dict[str, Any]:
@@ -90,11 +112,11 @@ def to_json(name: str, found: Synthesised, measured: Sequence[Measured] | None) 
         return {"name": v.name or None, "quantity": say(v.words), "kind": v.kind, "value": shown}
 
     return {
-        "problem": name,
         "task": found.task,
         "asked": [value(v) for v in found.outcome.asked],
         "found": [value(v) for v in found.outcome.found],
         "parameters": {found.names[n]: _number(v.value) for n, v in found.outcome.parameters.items()},
+        "tables": {listing.name: _records(listing) for listing in found.outcome.listings},
         "source": say(found.outcome.source),
         "measured": None if measured is None else [
             {"quantity": say(m.demand.words), "kind": m.demand.kind, "asked": m.demand.asked,
@@ -103,6 +125,21 @@ def to_json(name: str, found: Synthesised, measured: Sequence[Measured] | None) 
         ],
         "met": None if measured is None else all(m.met for m in measured),
     }  # fmt: skip
+
+
+def _records(listing: Listing) -> list[dict[str, Any]]:
+    """Rows by the names of their columns, SI and radians."""
+
+    def plain(value: Any, kind: str) -> Any:
+        if value is None or kind in ("name", "unit"):
+            return value
+        return say(value) if kind == "word" else _number(value)
+
+    keys = [words.rpartition(".")[2].removeprefix("column_") for words, _ in listing.columns]
+    kinds = [kind for _, kind in listing.columns]
+    return [
+        {key: plain(value, kind) for key, value, kind in zip(keys, row, kinds, strict=True)} for row in listing.rows
+    ]
 
 
 def _number(value: Any) -> float | None:

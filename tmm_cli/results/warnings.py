@@ -12,6 +12,7 @@ from tmm_cli.forces.springs import twisted
 from tmm_cli.motion import Law, move
 from tmm_cli.pipeline import Results, at_positions
 from tmm_cli.problem.dimensions import ANGLE, LENGTH
+from tmm_cli.results.synthesis import missed
 from tmm_cli.vectors import dot
 from tmm_cli.words import say
 
@@ -100,6 +101,8 @@ def warnings(results: Results) -> Iterable[str]:
     for asked in results.linkage.loads:
         if asked.working_stroke_only and (results.strokes is None or not results.strokes.strokes):
             yield say("warning.always", load=asked.name)
+    if results.synthesis is not None:
+        yield from missed(results.measured, units)
     if results.lever is not None and not results.lever_holds:
         worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
         k = int(np.argmax(worst))

@@ -19,7 +19,8 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, Goal, Over
+from tmm_cli.stack import numbers
+from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
@@ -34,10 +35,13 @@ W: Final = "synthesis_optimal"
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
 TRIES = 40  # of linkages that could tell the assembly
 SCAN = 720  # places where peaks are looked for before the polish
-ROUNDS = 5
+NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
+ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
 BLOCK = 125  # candidates at once
 ZOOMS = 9  # of a peak that may be a jump
 CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
+POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
+GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
@@ -77,6 +81,7 @@ class Limit:
 class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
     order. target: the objective is to come near to this. positions: round the cycle, in the search.
+    population, generations: 0 for as many as the number of parameters wants.
     """
 
     low: dict[str, float]
@@ -88,7 +93,7 @@ class Asked:
     target: float | None = None
     positions: int = 72
     population: int = 0
-    generations: int = 200
+    generations: int = 0
     seed: int = 1
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
 
@@ -104,14 +109,17 @@ class Search:
         self.first = self._first()
         self.linkage = asked.make(self.first)
         self.groups = mobile(self.linkage).solved
+        self._check_use()
         driver = self.linkage.driver
         if driver.kind != "turn" and driver.stroke is None:
             raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
         if any(d.acceleration for d in self.linkage.drivers) and any(goal.of in FORCES for goal in self.goals):
             raise Infeasible("task", f"{W}.accelerated", f"{W}.steady")
         self.program = self._program()
+        self.coarse = self.program.without(CLOSELY)
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
+        self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
         for at, goal in ((("objective",), self.goals[0]), *((limit.at, limit.goal) for limit in asked.limits)):
             if goal.of in CYCLIC and not self.closed:
                 raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
@@ -119,8 +127,34 @@ class Search:
         loads = self.linkage.loads
         rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
         self.overs = tuple(
-            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough) for goal in self.goals
+            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough, self._counts(goal))
+            for goal in self.goals
         )
+
+    def fits(self, x: Real) -> bool:
+        """Whether it can be assembled as the file sketches it."""
+        try:
+            linkage = self.asked.make([float(number) for number in self.numbers(x)])
+            assemble(linkage, mobile(linkage))
+        except Refused:
+            return False
+        return True
+
+    def _check_use(self) -> None:
+        """Every parameter changes something. Raises Infeasible."""
+        before = dict(numbers(self.linkage))
+        for k, name in enumerate(self.asked.low):
+            other = list(self.first)
+            other[k] = float(self.low[k] if abs(self.first[k] - self.low[k]) > abs(self.first[k] - self.high[k])
+                             else self.high[k])  # fmt: skip
+            if dict(numbers(self.asked.make(other))) == before:
+                raise Infeasible(("vary", name), f"{W}.unused", f"{W}.used")
+
+    def _counts(self, goal: Goal) -> tuple[int, ...]:
+        if goal.of == "box":
+            return (len(points_of(self.linkage)),)
+        links = (goal.links or tuple(self.linkage.links)) if goal.of == "length" else ()
+        return tuple(len(spans_of(self.linkage, link)) for link in links)
 
     def _program(self) -> Taped | Together | Apart:
         """What moves the candidates, the fastest there is for this linkage."""
@@ -131,6 +165,14 @@ class Search:
             except (Iterated, DependsOnData):
                 continue
         return Apart(self.asked.make, self.first, self._outputs, forces=forces)
+
+    @property
+    def population(self) -> int:
+        return self.asked.population or max(LEAST_POPULATION, POPULATION * len(self.low))
+
+    @property
+    def generations(self) -> int:
+        return self.asked.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
 
     def _first(self) -> list[float]:
         """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
@@ -160,9 +202,9 @@ class Search:
         found: Real = self.low + x * (self.high - self.low)
         return found
 
-    def run(self, x: Real, places: Places) -> Mapping[str, Real]:
-        """All outputs for candidates x (variants, n) in 0..1."""
-        return self.program(self.numbers(x), places)
+    def run(self, x: Real, places: Places, *, closely: bool = True) -> Mapping[str, Real]:
+        """All outputs for candidates x (variants, n) in 0..1, or but for those that are wanted for windows alone."""
+        return (self.program if closely else self.coarse)(self.numbers(x), places)
 
     def over(self, count: int) -> Real:
         """Shares of the way: of a closed one without its end."""
@@ -185,7 +227,7 @@ class Search:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        blocks = [self._evaluate(x[k : k + BLOCK]) for k in range(0, len(x), BLOCK)]
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) // BLOCK))]
         return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:
@@ -200,7 +242,7 @@ class Search:
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
-        found = self.run(x, self.places)
+        found = self.run(x, self.places, closely=False)
         return [
             goal.coarse(_reader(found, n, self.exact[n]), self.overs[n])
             for n, goal in enumerate(self.goals)
@@ -212,19 +254,23 @@ class Search:
             return np.abs(value - self.asked.target) / (abs(self.asked.target) or 1.0)
         return -value if self.asked.objective.of in LEAST else value
 
-    def closely(self, x: Real) -> Callable[[Real], list[Real]]:
-        """Pieces of every goal near x, exactly: windows are where x has its peaks."""
+    def closely(self, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+        """Pieces of every goal near x, exactly: windows are where x has its peaks.
+
+        narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
+        """
         scan = self.over(SCAN)
         found = self.run(np.stack([x, x]), Places(scan, np.zeros(0)))
-        step = 2 * self.step / (WINDOW - 1)
+        half = max(self.step * narrow, ABOUT / SCAN)
+        step = 2 * half / (WINDOW - 1)
         blocks, parts = [], []
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
             for name, k in goal.windows(_reader(found, n, slice(None)), self.overs[n]):
-                first = scan[k] - self.step
+                first = scan[k] - half
                 if not self.closed:
-                    first = min(max(first, 0.0), 1 - 2 * self.step)
+                    first = min(max(first, 0.0), 1 - 2 * half)
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
                 at += WINDOW
@@ -274,16 +320,16 @@ class Search:
 
     def polished(self, x: Real) -> Real:
         """The best place near x."""
-        for _ in range(ROUNDS):
+        for narrow in NARROWER:
             before = x
             try:
-                pieces = self.closely(x)
+                pieces = self.closely(x, narrow)
                 top = float(np.max(np.abs(self._pieces(pieces(x)[0])))) or 1.0
                 with np.errstate(all="ignore"):
                     x = polish(lambda some: self._local(pieces(some), top), x)  # noqa: B023
             except np.linalg.LinAlgError:
                 return before
-            if float(np.max(np.abs(x - before))) < 1e-9:
+            if not narrow and float(np.max(np.abs(x - before))) < 1e-9:
                 break
         return x
 

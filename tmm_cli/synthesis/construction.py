@@ -5,16 +5,21 @@ Places in metres, angles in radians.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
-Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
-Mark = Literal["hinge", "support", "slider", "dot", "none"]
+Style = Literal["link", "link2", "thin", "dashed", "axis", "bold", "guide"]
+Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
+Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
+LETTERS: Final[Mapping[Chain, str]] = {  # of the joints along the chain from the driver's pivot, as constructions say
+    "four-bar": "ABCD", "crank-slider": "OAB", "slotted-lever": "OACB", "shaper": "OACDE",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight line; name: written at its middle."""
+    """A straight line; name: written beside it."""
 
     start: complex
     end: complex
@@ -24,19 +29,21 @@ class Segment:
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc of a circle, counterclockwise from one angle to another; name: written at its middle."""
+    """An arc of a circle, counterclockwise from one angle to another."""
 
     centre: complex
     radius: float
     start: float
     end: float
     style: Style = "thin"
-    name: str = ""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve through places that lie close together (locus of pivots, coupler curve); name: written at its middle."""
+    """A curve through places that lie close together (locus of pivots, coupler curve); name: written beside it.
+
+    It is cut at the edge of the sheet. Pieces of one curve have one name, which is written once.
+    """
 
     places: tuple[complex, ...]
     style: Style = "thin"
@@ -45,7 +52,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Spot:
-    """A lettered point; along: direction of a slider's guide."""
+    """A lettered point; along: direction of a slider's guide, or of the link that a stone is on."""
 
     name: str
     at: complex
@@ -54,8 +61,43 @@ class Spot:
 
 
 @dataclass(frozen=True)
+class Angle:
+    """The angle at a vertex between the ways to two places; right: drawn as a right angle is."""
+
+    vertex: complex
+    first: complex
+    last: complex
+    name: str = ""
+    right: bool = False
+
+
+@dataclass(frozen=True)
+class Size:
+    """A dimension line: the distance of two places along a direction (of the line between them if it is 0)."""
+
+    start: complex
+    end: complex
+    name: str
+    along: complex = 0j
+
+
+@dataclass(frozen=True)
+class Centre:
+    """Centre of a circle of construction, with lines to it from places on the circle; it may be far off the sheet."""
+
+    at: complex
+    radius: float
+    legs: tuple[complex, ...]
+    name: str = "M"
+
+
+@dataclass(frozen=True)
 class Construction:
-    """A sheet to scale. title: key of its words; notes: keys of words for the corner; name: of its file."""
+    """A sheet to scale. title: key of its words; notes: keys of words for the corner; name: of its file.
+
+    wishes: what else is on the sheet if the mechanism stays large enough on it, first wish first. Places that are not
+    in `places` or granted are cut at the edge. chain: which mechanism it is, so that joints can be called as in a file.
+    """
 
     title: str
     segments: tuple[Segment, ...] = ()
@@ -64,29 +106,53 @@ class Construction:
     notes: tuple[str, ...] = ()
     curves: tuple[Curve, ...] = ()
     name: str = "construction"
+    angles: tuple[Angle, ...] = ()
+    sizes: tuple[Size, ...] = ()
+    centres: tuple[Centre, ...] = ()
+    wishes: tuple[tuple[complex, ...], ...] = ()
+    chain: Chain = ""
+    values: tuple[tuple[str, float, str], ...] = ()  # name, value in SI, kind: for the corner
+    around: tuple[complex, ...] = ()  # what the sheet must hold besides
 
     def places(self) -> list[complex]:
-        """What must be on the sheet: bold arcs and points; thin circles are cut at the edge."""
+        """What must be on the sheet."""
         ends = [place for s in self.segments for place in (s.start, s.end)]
-        return ends + [s.at for s in self.spots] + [place for c in self.curves for place in c.places]
+        sizes = [place for s in self.sizes for place in (s.start, s.end)]
+        return [*ends, *(s.at for s in self.spots), *sizes, *self.around]
+
+
+def box(centre: complex, radius: float) -> tuple[complex, ...]:
+    """Places that hold a whole circle."""
+    return tuple(centre + radius * way for way in (1, 1j, -1, -1j))
 
 
 @dataclass(frozen=True)
 class Line:
-    """A curve of a diagram: values over its x (SI, rad); words: key of its name; dots: drawn as single points."""
+    """A curve of a diagram: values over its x (SI, rad); words: key of its name; dots: drawn as single points.
+
+    faint: behind the others.
+    """
 
     words: str
     x: Any
     y: Any
     dots: bool = False
+    faint: bool = False
 
 
 @dataclass(frozen=True)
 class Diagram:
-    """A diagram (largest pressure angle along an arc, structural error). x, y: words and kind of the axes."""
+    """A diagram (largest pressure angle along an arc, structural error). x, y: words and kind of the axes.
+
+    equal: both to one scale, as a path has to be.
+    lower: curves of a panel below it over the same x, with an axis (words, kind) that is logarithmic.
+    """
 
     name: str
     title: str
     x: tuple[str, str]
     y: tuple[str, str]
     lines: tuple[Line, ...]
+    equal: bool = False
+    lower: tuple[Line, ...] = ()
+    lower_y: tuple[str, str] = ("", "number")

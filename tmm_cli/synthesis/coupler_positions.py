@@ -220,11 +220,12 @@ def solve(asked: Asked) -> Outcome:
         Value("", float(mark.way), "angle", f"{W}.way"),
         Value("", None, "word", f"{W}.defect", f"{W}.{defect or 'sound'}"),
     ]
-    drawn = guidance.construction(asked.poses, one, other, W)
+    by_pivot = {name for name, side in asked.sides.items() if side.pivot is not None}
+    drawn = guidance.construction(asked.poses, one, other, W, ("AB" in by_pivot, "DC" in by_pivot))
     free = len(asked.places) == 4 and still(asked.poses)
     source = f"{W}.source_{'still' if free else len(asked.places)}"
     notes = (f"{W}.any_parallelogram",) if free else ()
-    return Outcome(_given(asked), tuple(values), source, _demands(asked, one, other, mark), (drawn,), notes)
+    return Outcome(_given(asked), tuple(values), source, _demands(asked, one, other, mark), drawn, notes)
 
 
 def lengths(asked: Asked, one: Dyads, other: Dyads) -> dict[str, Any]:

@@ -9,19 +9,20 @@ All functions take floats or arrays of any precision. Differences of near number
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.roots import roots
-from tmm_cli.synthesis.construction import Arc, Construction, Segment, Spot
+from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 W: Final = "synthesis_crank_slider"
+DRAWN: Final = 0.01  # rad: the least theta that shows on a drawing
 
 
 @dataclass(frozen=True)
@@ -262,44 +263,40 @@ def solve(asked: Asked) -> Outcome:
 
 
 def construction(found: Found) -> Construction:
-    """The extreme positions, and the circle on which B1B2 is seen under theta, with A on it at the distance e.
+    """The extreme positions, and the circle on which B1B2 is seen under theta, with O on it at the distance e.
 
-    B1 is the far extreme position (the rod in line with the crank), B2 the near one; A is the origin.
+    B1 is the far extreme position (the rod in line with the crank), B2 the near one; the crank's pivot O is the origin.
+    It may be on the circle from B2 to the place over B2, where e = H cot(theta).
     """
     r, l, e, height, theta = (float(getattr(found, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
     near, far = (float(np.sqrt((x - e) * (x + e))) for x in (l - r, l + r))
-    a, b1, b2 = 0j, complex(far, -e), complex(near, -e)
+    o, b1, b2 = 0j, complex(far, -e), complex(near, -e)
     pin1, pin2 = r * b1 / abs(b1), -r * b2 / abs(b2)
     segments = [
-        Segment(complex(min(0.0, near) - 0.1 * height, -e), complex(far + 0.15 * height, -e), "axis"),
-        Segment(a, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
-        Segment(pin2, a, "link2", "r"), Segment(a, b2, "link2", "l − r"),
+        Segment(complex(near - 0.12 * height, -e), complex(far + 0.12 * height, -e), "guide"),
+        Segment(o, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
+        Segment(pin2, o, "link2", "r"), Segment(o, b2, "link2", "l − r"),
     ]  # fmt: skip
-    arcs = [Arc(a, r, 0.0, 2 * np.pi, "dashed")]
+    arcs = [Arc(o, r, 0.0, 2 * np.pi, "dashed")]
     spots = [
-        Spot("A", a, "support"), Spot("C1", pin1, "hinge"), Spot("C2", pin2, "hinge"),
+        Spot("O", o, "support"), Spot("A1", pin1, "hinge"), Spot("A2", pin2, "hinge"),
         Spot("B1", b1, "slider"), Spot("B2", b2, "slider"),
     ]  # fmt: skip
-    notes: tuple[str, ...] = ()
-    if e > 0:
-        segments.append(Segment(a, complex(0, -e), "thin", "e"))
-    if theta > 0.01:
-        middle, radius = (b1 + b2) / 2, height / 2 / np.sin(theta)
-        centre = middle + 1j * height / 2 / np.tan(theta)
-        start, end = float(np.angle(b1 - centre)), float(np.angle(b2 - centre)) + 2 * np.pi
-        if radius < 1.2 * (l + r):
-            segments += [Segment(b1, centre, "dashed"), Segment(b2, centre, "dashed")]
-            spots.append(Spot("O", centre, "dot"))
-        else:  # only the part of the arc beside A has room on the sheet
-            ray = 0.4 * (l + r) * (centre - middle) / abs(centre - middle) / (np.cos(theta))
-            segments += [
-                Segment(b, complex(b + ray * np.exp(1j * turn)), "dashed") for b, turn in ((b1, theta), (b2, -theta))
-            ]
-            here = float(np.mod(np.angle(a - centre) - start, 2 * np.pi)) + start
-            start = here - 0.3 * (end - here)
-        notes = (f"{W}.angles",)
-        arcs.append(Arc(centre, radius, start, end, "bold"))
-        turned = float(np.angle(b1)), float(np.angle(b2))
-        arcs.append(Arc(a, 0.8 * near, min(turned), max(turned), "thin", "θ"))
-    title = f"{W}.construction" if theta > 0.01 else f"{W}.ends"
-    return Construction(title, tuple(segments), tuple(arcs), tuple(spots), notes)
+    sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
+    plain = Construction(
+        f"{W}.ends", tuple(segments), tuple(arcs), tuple(spots), sizes=sizes, wishes=(box(o, r),), chain="crank-slider",
+        values=(("r", r, "length"), ("l", l, "length")),
+    )  # fmt: skip
+    if not theta > DRAWN:
+        return plain
+    middle, radius = (b1 + b2) / 2, height / 2 / float(np.sin(theta))
+    centre = middle + 1j * height / 2 / np.tan(theta)
+    over, first = complex(near, 2 * centre.imag + e), float(np.angle(b1 - centre))
+    start, end = (first + float(np.mod(np.angle(z - centre) - first, 2 * np.pi)) for z in (over, b2))
+    arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
+    return replace(
+        plain, title=f"{W}.construction", segments=(*segments, Segment(b1, b2, "thin")), arcs=tuple(arcs),
+        angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
+        centres=(Centre(centre, radius, (b1, b2)),), wishes=(box(o, r), (centre,), box(centre, radius)),
+        values=(*plain.values, ("θ", theta, "angle")), notes=(f"{W}.bold", f"{W}.angles"),
+    )  # fmt: skip

@@ -15,9 +15,10 @@ import numpy as np
 from tmm_cli.vectors import Real
 
 Evaluate = Callable[[Real], tuple[Real, Real]]  # (variants, n) in 0..1 -> objective, violation (0: none)
-SHRINKING = 0.6  # of the generations, over which the tolerance goes to zero
+SIDES, FEWEST = 2, 8  # populations beside each other; candidates in each at least
 BEST = 0.15  # share of the population that draws the others
-ALIKE = 1e-7  # the population has gathered
+PATIENCE, SLOW = 60, 1e-4  # generations in which the best must improve by such a share, or the population has gathered
+FINE = 1e-6  # a violation that the polish takes away
 
 
 @dataclass(frozen=True)
@@ -42,42 +43,100 @@ def better(f: Real, v: Real, than_f: Real, than_v: Real, tolerance: float) -> Re
 
 
 def evolve(
-    evaluate: Evaluate, size: int, *, population: int, generations: int, seed: int,
+    evaluate: Evaluate, size: int, *, population: int, generations: int, seed: int, shrinking: int = 0,
     progress: Callable[[int, int], None] = lambda at, of: None,
 ) -> Evolved:  # fmt: skip
-    """Search 0..1 in `size` dimensions; the same seed gives the same answer."""
-    chance = np.random.default_rng(seed)
-    x = chance.permuted(np.tile(np.arange(population), (size, 1)), axis=1).T + chance.random((population, size))
-    x = x / population  # a Latin square: every coordinate is spread evenly
-    f, v = evaluate(x)
-    tolerance0 = float(np.quantile(np.where(v < 10, v, 10.0), 0.2))
-    history, stopped, rows = [], False, np.arange(population)
+    """Search 0..1 in `size` dimensions; the same seed gives the same answer.
+
+    SIDES populations go on beside each other, for they are evaluated quicker together; one that gets no better makes
+    room for a new one. population: of all; shrinking: generations in which the tolerance of a population goes to zero;
+    without equalities none is wanted, and the search is better without.
+    """
+    each = max(FEWEST, population // SIDES)
+    sides = [_Population(each, size, shrinking, chance) for chance in np.random.default_rng(seed).spawn(SIDES)]
+    trials = [side.spread() for side in sides]
+    earlier: list[tuple[Real, Real, Real]] = []  # the best of populations that have made room
+    history: list[tuple[float, float]] = []
+    stopped = False
     try:
         for generation in range(generations):
             progress(generation, generations)
-            left = max(0.0, 1 - generation / (SHRINKING * generations))
-            tolerance = tolerance0 * left**4
-            order = np.lexsort((np.where(np.isfinite(f), f, np.inf), np.where(v <= tolerance, 0.0, v)))
-            history.append((f[order[0]], v[order[0]]))
-            if v[order[0]] == 0 and left == 0 and np.ptp(x, axis=0).max() < ALIKE:
-                break
-            best = x[order[chance.integers(0, max(2, int(BEST * population)), population)]]
-            a, b = (rows + chance.integers(1, population, population)) % population, chance.permutation(population)
-            scale = np.clip(chance.normal(0.6, 0.2, (population, 1)), 0.1, 1.0)
-            drawn = chance.random((population, 1)) < 0.7
-            base = np.where(drawn, x + scale * (best - x), x[chance.permutation(population)])
-            trial = base + scale * (x[a] - x[b])
-            keep = chance.random((population, size)) < np.where(chance.random((population, 1)) < 0.5, 0.9, 0.5)
-            keep[rows, chance.integers(0, size, population)] = True
-            trial = np.where(keep, trial, x)
-            trial = np.where(trial < 0, x * chance.random(x.shape), trial)
-            trial = np.where(trial > 1, 1 - (1 - x) * chance.random(x.shape), trial)
-            new_f, new_v = evaluate(trial)
-            won = better(new_f, new_v, f, v, tolerance)
-            x, f, v = np.where(won[:, None], trial, x), np.where(won, new_f, f), np.where(won, new_v, v)
+            f, v = evaluate(np.concatenate(trials))
+            for k, side in enumerate(sides):
+                side.take(trials[k], f[k * each : (k + 1) * each], v[k * each : (k + 1) * each])
+            history.append(min((side.history[-1] for side in sides), key=lambda best: (best[1], best[0])))
+            earlier += [side.best for side in sides if side.settled]
+            trials = [side.spread() if side.settled else side.trial() for side in sides]
     except KeyboardInterrupt:
         stopped = True
     finally:
         progress(generations, generations)
+    there = [(side.x, side.f, side.v) for side in sides if side.history]
+    if not there and not earlier:
+        raise KeyboardInterrupt
+    x, f, v = (np.concatenate(parts) for parts in zip(*earlier, *there, strict=True))
     order = np.lexsort((np.where(np.isfinite(f), f, np.inf), v))
-    return Evolved(x[order], f[order], v[order], np.array(history or [(f[order[0]], v[order[0]])]), stopped)
+    return Evolved(x[order], f[order], v[order], np.array(history), stopped)
+
+
+class _Population:
+    """One population; history: its best by generation, objective and violation."""
+
+    def __init__(self, population: int, size: int, shrinking: int, chance: np.random.Generator) -> None:
+        self.population, self.size, self.shrinking, self.chance = population, size, shrinking, chance
+        self.rows = np.arange(population)
+        self.x = self.f = self.v = np.empty(0)
+        self.history: list[tuple[float, float]] = []
+        self.start = self.tolerance = 0.0
+        self.order = self.rows
+
+    def spread(self) -> Real:
+        """Candidates anew: a Latin square, in which every coordinate is spread evenly."""
+        self.history = []
+        square = self.chance.permuted(np.tile(self.rows, (self.size, 1)), axis=1).T
+        found: Real = (square + self.chance.random(square.shape)) / self.population
+        return found
+
+    def take(self, trial: Real, f: Real, v: Real) -> None:
+        """Candidates that were evaluated take the places of worse ones."""
+        if not self.history:
+            self.x, self.f, self.v = trial, f, v
+            self.start = float(np.quantile(np.where(v < 10, v, 10.0), 0.2)) if self.shrinking else 0.0
+        else:
+            won = better(f, v, self.f, self.v, self.tolerance)
+            self.x, self.f = np.where(won[:, None], trial, self.x), np.where(won, f, self.f)
+            self.v = np.where(won, v, self.v)
+        age = len(self.history)
+        self.tolerance = self.start * max(0.0, 1 - age / self.shrinking) ** 4 if self.shrinking else 0.0
+        allowed = np.where(self.v <= self.tolerance, 0.0, self.v)
+        self.order = np.lexsort((np.where(np.isfinite(self.f), self.f, np.inf), allowed))
+        best = self.order[0]
+        self.history.append((float(self.f[best]), float(self.v[best])))
+
+    @property
+    def best(self) -> tuple[Real, Real, Real]:
+        first = self.order[:1]
+        return self.x[first], self.f[first], self.v[first]
+
+    @property
+    def settled(self) -> bool:
+        """Whether the best has hardly changed: neither its objective nor what it violates, if that is anything."""
+        if len(self.history) <= self.shrinking + PATIENCE:
+            return False
+        (f0, v0), (f, v) = self.history[-1 - PATIENCE], self.history[-1]
+        return abs(f0 - f) <= SLOW * abs(f) and (v0 <= FINE or v0 - v <= SLOW * v0)
+
+    def trial(self) -> Real:
+        """Candidates to be evaluated."""
+        x, rows, chance, count = self.x, self.rows, self.chance, self.population
+        best = x[self.order[chance.integers(0, max(2, int(BEST * count)), count)]]
+        a, b = (rows + chance.integers(1, count, count)) % count, chance.permutation(count)
+        scale = np.clip(chance.normal(0.6, 0.2, (count, 1)), 0.1, 1.0)
+        drawn = chance.random((count, 1)) < 0.7
+        base = np.where(drawn, x + scale * (best - x), x[chance.permutation(count)])
+        trial = base + scale * (x[a] - x[b])
+        keep = chance.random(x.shape) < np.where(chance.random((count, 1)) < 0.5, 0.9, 0.5)
+        keep[rows, chance.integers(0, self.size, count)] = True
+        trial = np.where(keep, trial, x)
+        trial = np.where(trial < 0, x * chance.random(x.shape), trial)
+        return np.where(trial > 1, 1 - (1 - x) * chance.random(x.shape), trial)

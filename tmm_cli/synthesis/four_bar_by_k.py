@@ -7,7 +7,8 @@ C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a place along the ar
 The triangles A C1 D and A C2 D make the crank turn fully; both positions belong to one motion when C1 and C2 lie on one
 side of AD, so that the rocker does not pass its dead position, and AC2 > AC1 is the order of the positions:
     0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
-Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a circle lie on the line to its centre.
+Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a circle lie on the line to its centre;
+l2 grows from h on, l1 falls from h on (with k = 1 it is h everywhere).
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is t
 class Asked:
     """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
 
-    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, l4 (m) or near (a place).
-    sense: of the crank (1: counterclockwise) whose slow stroke leads from psi1 to psi2; 0: any.
+    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, near (a
+    place), l1, l2 or l4 (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
     """
 
     l3: Any
@@ -50,6 +51,8 @@ class Asked:
     k: Any
     support: Any = 0j
     choose: str = "best"
+    l1: Any = None
+    l2: Any = None
     l4: Any = None
     near: Any = None
     sense: int = 0
@@ -167,6 +170,8 @@ def _rise(f: Found, asked: Asked) -> Any:
 # what is least at the pivot that is asked for, and what vanishes there
 LEAST: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {"best": _pressure, "near": _away}
 EQUATIONS: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {
+    "l1": lambda found, asked: found.l1 - asked.l1,
+    "l2": lambda found, asked: found.l2 - asked.l2,
     "l4": lambda found, asked: found.l4 - asked.l4,
     "level": lambda found, asked: np.imag(found.a - asked.support),
     "best": _rise,
@@ -263,6 +268,13 @@ def _not_there(asked: Asked) -> None:
         offsets = np.concatenate([np.imag(at(asked, places(asked, s), s).a - asked.support) for s in arcs(asked)])
         nearest = float(offsets[np.argmin(np.abs(offsets))])
         raise Infeasible("choose", f"{W}.level_none", f"{W}.level_nearest", {"offset": (nearest, "length")})
+    h, name = float(asked.l3 * np.sin(asked.swing / 2)), asked.choose
+    if name == "l1" and asked.k == 1:
+        raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", {"l1": (h, "length")})
+    if name in ("l1", "l2"):
+        last = [float(getattr(at(asked, places(asked, side)[-1], side), name)) for side in arcs(asked)]
+        values = {"low": (min(h, *last), "length"), "high": (max(h, *last), "length")}
+        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", values)
     l3 = float(asked.l3)
     if asked.k == 1:
         raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length")})
@@ -274,7 +286,7 @@ def _not_there(asked: Asked) -> None:
 
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
-    for name in ("l3", "l4"):
+    for name in ("l1", "l2", "l3", "l4"):
         value = getattr(asked, name)
         if value is not None and not value > 0:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
@@ -298,7 +310,9 @@ def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(asked)
     f = choose(asked)
-    kinds = {"l3": "length", "psi1": "angle", "psi2": "angle", "k": "number", "l4": "length"}
+    kinds = {
+        "l3": "length", "psi1": "angle", "psi2": "angle", "k": "number", "l1": "length", "l2": "length", "l4": "length",
+    }  # fmt: skip
     given = [
         Value(n, getattr(asked, n), kind, f"{W}.{n}") for n, kind in kinds.items() if getattr(asked, n) is not None
     ]

@@ -7,17 +7,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.construction import Arc, Construction, Curve, Diagram, Line, Segment, Spot
+from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
 
 W: Final = "synthesis_four_bar_by_k"
-SHEET: Final = 2.5  # how far from C1C2 an arc is drawn, in sizes of the mechanism
-ROOM: Final = 1.6  # the largest circle that has room whole, in the same
+LINKS: Final = ("l1", "l2", "l3", "l4")
 LONGEST: Final = 4.0  # rods longer than this many of the chosen one (and of the rocker) are not on the diagrams
 
 
 def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
     """Both extreme positions, the circles on which C1C2 is seen under theta, and the pivots that may be A."""
-    d, a = asked.support, complex(found.a)
+    d, a = complex(asked.support), complex(found.a)
     c1, c2 = (complex(d + asked.l3 * np.exp(1j * psi)) for psi in (asked.psi1, asked.psi2))
     way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
     pin1, pin2 = a - found.l1 * way1, a + found.l1 * way2
@@ -30,28 +29,31 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
         Spot("D", d, "support"), Spot("A", a, "support"), Spot("B1", pin1, "hinge"), Spot("B2", pin2, "hinge"),
         Spot("C1", c1, "hinge"), Spot("C2", c2, "hinge"),
     ]  # fmt: skip
-    middle, size = (c1 + c2) / 2, float(max(asked.l3, found.l1 + found.l2, found.l4))
+    middle, theta, half = (c1 + c2) / 2, float(asked.theta), abs(c2 - c1) / 2
     arcs = [Arc(a, float(found.l1), 0.0, 2 * np.pi, "dashed")]
-    theta, half = float(asked.theta), abs(c2 - c1) / 2
-    circles = theta > 0 and half / np.sin(theta) < ROOM * size
-    if circles:
-        out = (middle - d) / abs(middle - d)
-        for f in family:
-            side = int(f.side)
-            centre = middle + side * out * half / np.tan(theta)
-            arcs.append(Arc(centre, half / float(np.sin(theta)), 0.0, 2 * np.pi, "dashed"))
-            if side == int(found.side):
-                segments += [Segment(c1, centre, "dashed"), Segment(c2, centre, "dashed")]
-                spots.append(Spot("O", centre, "dot"))
-    turned = np.angle(way1), np.angle(way1) + np.angle(way2 / way1)
-    if theta > 0.01:
-        arcs.append(Arc(a, 0.7 * abs(c1 - a), float(min(turned)), float(max(turned)), "thin", "θ"))
-    curves = []
-    for f in family:
-        places = [complex(z) for z in f.a if abs(z - middle) < SHEET * size]
-        curves.append(Curve(tuple(places), "bold"))
-    notes = (f"{W}.bold", f"{W}.angles") if circles else (f"{W}.bold",)
-    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), notes, tuple(curves))
+    angles = [Angle(d, c1, c2, "ψ")]
+    centres, wishes = [], [box(a, float(found.l1))]
+    if theta > 0:
+        out, radius = (middle - d) / abs(middle - d), half / float(np.sin(theta))
+        angles.append(Angle(a, c1, c2, "θ"))
+        for f in sorted(family, key=lambda one: int(one.side) != int(found.side)):
+            centre = middle + int(f.side) * out * half / float(np.tan(theta))
+            arcs.append(Arc(centre, radius, 0.0, 2 * np.pi, "dashed"))
+            if int(f.side) == int(found.side):
+                centres.append(Centre(centre, radius, (c1, c2)))
+                name = "90° − θ" if theta < np.pi / 2 else "θ − 90°"
+                angles += [Angle(c1, c2, centre, name), Angle(c2, c1, centre, name)]
+                wishes.append((centre,))
+            wishes.append(box(centre, radius))
+    values = [(name, float(getattr(asked if name == "l3" else found, name)), "length") for name in LINKS]
+    values += [("ψ", float(asked.swing), "angle"), ("θ", theta, "angle")]
+    curves = [Curve(tuple(complex(z) for z in f.a), "bold") for f in family]
+    return Construction(
+        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots),
+        (f"{W}.bold", f"{W}.angles") if theta > 0 else (f"{W}.bold",),
+        tuple(curves), angles=tuple(angles), centres=tuple(centres), wishes=tuple(wishes), chain="four-bar",
+        values=tuple(values),
+    )  # fmt: skip
 
 
 def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Diagram]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import reduce
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -29,7 +29,11 @@ PLAIN: Final = ("length", "mass")
 ALL: Final = (*PLAIN, *PEAKS, *STROKES, *PLACES)
 FORCES: Final = ("moment", "reaction")
 LEAST: Final = ("margin", "crank")  # whose least value counts
+SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
+OF_A_SIDE = 3  # points that may come to bear on a side of the box
+MOST_SUMS = 200  # of which the largest counts
+CLOSELY = "closely."  # outputs that are wanted for windows alone
 SIDE = 0.3  # of its range: a lower peak so far below the highest one is no rival
 
 Read = Callable[[str], Real]  # an output by name, (variants, places)
@@ -40,12 +44,14 @@ class Over:
     """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
 
     swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
+    counts: of points in a box, of distances on each link whose length counts.
     """
 
     swings: bool
     closed: bool = True
     cycle: float = 2 * np.pi
     rough: bool = False
+    counts: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -85,8 +91,9 @@ class Goal:
         groups = tuple(kernel.group for kernel in motion.kernels)
         output = output_link(linkage, groups)
         if self.of == "length":
-            names = self.links or tuple(linkage.links)
-            return {"value": sum(length(linkage, name) for name in names)}
+            spans = [spans_of(linkage, name) for name in self.links or tuple(linkage.links)]
+            closely = {f"{CLOSELY}{n}.{k}": span for n, own in enumerate(spans) for k, span in enumerate(own)}
+            return closely | {"value": sum(reduce(np.maximum, own, 0.0) for own in spans)}
         if self.of == "mass":
             return {"value": sum(linkage.links[name].mass for name in linkage.moving)}
         if self.of == "pressure":
@@ -109,9 +116,13 @@ class Goal:
             both = zip(motion.kernels, motion.placements, strict=True)
             return {"y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])}
         if self.of == "box":
-            spots = [motion.poses[name].at(p) for name in linkage.moving for p in linkage.links[name].points.values()]
-            turned = (1, -1, -1j, 1j)  # to the right, left, top and bottom
-            return {f"y{k}": reduce(np.maximum, [(p * z).real for p in spots]) for k, z in enumerate(turned)}
+            spots = [motion.spot(p) for p in points_of(linkage)]
+            x, y = [p.real for p in spots], [p.imag for p in spots]
+            closely = {f"{CLOSELY}{axis}{k}": v for axis, vs in (("x", x), ("y", y)) for k, v in enumerate(vs)}
+            return closely | {
+                "y0": reduce(np.maximum, x), "y1": -reduce(np.minimum, x),
+                "y2": reduce(np.maximum, y), "y3": -reduce(np.minimum, y),
+            }  # fmt: skip
         if self.of in STROKES:
             assert output is not None
             found = {"slope": output_slope(motion, output)}
@@ -139,7 +150,7 @@ class Goal:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
             if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
-                travel[past] = np.ptp(np.unwrap(run[past], axis=1), axis=1)
+                travel[past] = _swept(run[past])
             if self.of == "stroke":
                 return np.asarray(travel)
             found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * read("rate")[:, 0] / over.cycle
@@ -179,10 +190,20 @@ class Goal:
     # finely
 
     def windows(self, read: Read, over: Over) -> list[tuple[str, int]]:
-        """Curves and places about which to look closely, from a scan of one variant over the way."""
+        """Curves and places about which to look closely, from a scan of one variant over the way.
+
+        A curve of the box is its side and a point, whose own path is smooth.
+        """
+        if self.of == "box":
+            found = []
+            for side, (axis, sign) in enumerate(SIDES):
+                ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(sum(over.counts))}
+                tops = [(y[at], k, at) for k, y in ys.items() for at in _peaks(y, MOST_PEAKS, over.closed)]
+                tops.sort(reverse=True)
+                found += [(f"{side}{axis}{k}", at) for _, k, at in tops[:OF_A_SIDE]]
+            return found
         if self.of in PEAKS:
-            most = MOST_PEAKS if self.of != "box" else 1
-            return [(name, k) for name in self.curves for k in _peaks(read(name)[0], most, over.closed)]
+            return [("y0", k) for k in _peaks(read("y0")[0], MOST_PEAKS, over.closed)]
         if self.of in STROKES:
             slope = read("slope")[0]
             moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
@@ -200,14 +221,20 @@ class Goal:
         parts: curve, first place and outputs of every window; exact: outputs at the goal's own places; step: of places
         in windows. Places are shares of the way.
         """
+        if self.of == "length":
+            return _sums([[exact(f"{CLOSELY}{n}.{k}")[:, 0] for k in range(m)] for n, m in enumerate(over.counts)])
         if self.of in PLAIN:
             return exact("value")[:, :1]
+        if self.of == "box":
+            sides: list[list[Real]] = [[], [], [], []]
+            for curve, _, read in parts:
+                side = int(curve[0])
+                sides[side].append(peak(SIDES[side][1] * read(CLOSELY + curve[1:])))
+            return _sums(sides)
         if self.of in PEAKS:
             ys = [np.arctan(read(c)) if self.of == "pressure" else read(c) for c, _, read in parts]
             rough = over.rough and self.of in FORCES
             found: Real = np.stack([np.max(y, axis=1) if rough else peak(y) for y in ys], axis=1)
-            if self.of == "box":
-                found = found.sum(axis=1, keepdims=True)
             return -found if self.of in LEAST else found
         if self.of in STROKES:
             if not parts:
@@ -242,6 +269,15 @@ class Goal:
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
 
 
+def _swept(angles: Real) -> Real:
+    """The range of angles that are told within -pi..pi and lie nearer than pi to the next ones; (variants,)."""
+    turns = np.rint(np.diff(angles, axis=1) / (2 * np.pi))
+    whole = angles.copy()
+    whole[:, 1:] -= 2 * np.pi * np.cumsum(turns, axis=1)
+    found: Real = np.max(whole, axis=1) - np.min(whole, axis=1)
+    return found
+
+
 def _square(read: Read, wanted: complex) -> Real:
     """Of the distance of a path from a point."""
     found: Real = (read("px") - wanted.real) ** 2 + (read("py") - wanted.imag) ** 2
@@ -254,27 +290,51 @@ def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
     Of the corner that is nearest, and of the sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    square, rows, found = (x * x + y * y) / 2, np.arange(len(x)), []
-    for w in wanted:
-        k = np.argmin(square - (w.real * x + w.imag * y), axis=1)  # of half the square of the distance, but for w^2
-        px, py = x[rows, k] - w.real, y[rows, k] - w.imag
-        best = px * px + py * py
-        last = x.shape[1] - 1
-        sides = (k - 1, (k + 1) % x.shape[1]) if closed else (np.maximum(k - 1, 0), np.minimum(k + 1, last))
-        for other in sides:
-            sx, sy = x[rows, other] - w.real - px, y[rows, other] - w.imag - py
-            with np.errstate(all="ignore"):
-                share = np.clip(-(px * sx + py * sy) / (sx * sx + sy * sy), 0, 1)
-            best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
-        found.append(np.sqrt(best))
-    return np.stack(found, axis=1)
+    square, rows, corners = (x * x + y * y) / 2, np.arange(len(x)), x.shape[1]
+    near, work, other = np.empty((len(wanted), len(x)), dtype=int), np.empty_like(x), np.empty_like(x)
+    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
+        np.multiply(x, w.real, out=work)
+        np.subtract(square, work, out=work)
+        np.multiply(y, w.imag, out=other)
+        np.subtract(work, other, out=work)
+        np.argmin(work, axis=1, out=k)
+    wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
+    px, py = x[rows, near] - wx, y[rows, near] - wy
+    best = px * px + py * py
+    after = np.where(near + 1 == corners, 0 if closed else near, near + 1)
+    for beside in (near - 1 if closed else np.maximum(near - 1, 0), after):
+        sx, sy = x[rows, beside] - wx - px, y[rows, beside] - wy - py
+        with np.errstate(all="ignore"):
+            share = np.minimum(np.maximum(-(px * sx + py * sy) / (sx * sx + sy * sy), 0), 1)
+        best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
+    found: Real = np.sqrt(best).T
+    return found
 
 
-def length(linkage: Linkage, link: str) -> Any:
-    """The farthest two points of a link, of the frame its farthest hinges (m)."""
+def points_of(linkage: Linkage) -> list[str]:
+    """Points of moving links, those on the frame first."""
+    fixed = linkage.links[FRAME].points
+    points = {p for name in linkage.moving for p in linkage.links[name].points}
+    return sorted(points, key=lambda p: (p not in fixed, p))
+
+
+def spans_of(linkage: Linkage, link: str) -> list[Any]:
+    """Distances of a link's points, of the frame those of its hinges, m; the largest is its length."""
     points = linkage.links[link].points
     names = [n for n in points if link != FRAME or any(n == h.point and FRAME in h.links for h in linkage.hinges)]
-    return reduce(np.maximum, [np.abs(points[a] - points[b]) for a, b in combinations(names, 2)], 0.0)
+    return [np.abs(points[a] - points[b]) for a, b in combinations(names, 2)]
+
+
+def _sums(parts: list[list[Real]]) -> Real:
+    """Sums of one quantity of each part, in all ways, (variants, sums): the largest is the sum of the largest ones.
+
+    Where that were too many the largest of a part stands for it.
+    """
+    kept = [list(part) for part in parts if part]
+    while np.prod([len(part) for part in kept]) > MOST_SUMS:
+        longest = max(kept, key=len)
+        longest[:] = [reduce(np.maximum, longest)]
+    return np.stack([np.sum(some, axis=0) for some in product(*kept)], axis=1)
 
 
 def _forward(slope: Real) -> Real:
@@ -302,4 +362,4 @@ def _peaks(y: Real, most: int, closed: bool) -> list[int]:
     if not found.size:
         return [int(np.argmax(y))]
     found = found[np.argsort(-y[found], kind="stable")][:most]
-    return [int(k) for k in found if y[k] >= np.max(y) - SIDE * np.ptp(y)]
+    return [int(k) for k in found if not y[k] < np.max(y) - SIDE * np.ptp(y)]  # some are kept where not all is known

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -9,28 +10,46 @@ import numpy as np
 from tmm_cli.synthesis.burmester import Dyads, Poses, by_turn
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style
 
-FINE: Final = 1441  # turns at which the curves are computed
-BEYOND: Final = 0.12  # of the sheet's size, on each side, where curves end
+FINE: Final = 2881  # turns at which the curves are computed
+AROUND: Final = 0.3  # how far beyond the four-bar the drawing of the curves goes, in its size
+FAR: Final = 8.0  # in the same: how far curves are followed
 
 
-def construction(poses: Poses, one: Dyads, other: Dyads, words: str) -> Construction:
-    """The four-bar in its first position, the others thin, arcs of pins and bisectors of their chords."""
+def construction(
+    poses: Poses, one: Dyads, other: Dyads, words: str, by_pivot: tuple[bool, bool] = (False, False)
+) -> tuple[Construction, ...]:
+    """The four-bar in its first position, the others thin, arcs of pins, and how its dyads were found.
+
+    by_pivot: of each dyad, whether its pivot was given: then the pivot's places seen from the plane in position 1 lie
+    on a circle about its pin (inversion). Else the places of its pin lie on a circle about its pivot. With four
+    positions the curves, near the mechanism and on a sheet of their own.
+    """
+    rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (one, other)]
+    count = len(poses.places)
     segments: list[Segment] = []
     spots: list[Spot] = []
     arcs: list[Arc] = []
-    rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (one, other)]
-    count = len(poses.places)
-    for (places, pivot), (name, pin) in zip(rows, (("A", "B"), ("D", "C")), strict=True):
-        radius = abs(places[0] - pivot)
+    for k, (name, pin) in enumerate((("A", "B"), ("D", "C"))):
+        dyad, inverted = (one, other)[k], by_pivot[k]
+        places, pivot = rows[k]
+        first = complex(places[0])
+        radius = abs(first - pivot)
         turns = np.unwrap(np.angle(places - pivot))
         arcs.append(Arc(pivot, float(radius), float(turns.min()), float(turns.max()), "thin"))
-        segments.append(Segment(pivot, complex(places[0]), "link", "l1" if name == "A" else "l3"))
-        spots += [Spot(name, pivot, "support"), Spot(f"{pin}1", complex(places[0]), "hinge")]
-        for k in range(1, count):
-            before, here = complex(places[k - 1]), complex(places[k])
-            spots.append(Spot(f"{pin}{k + 1}", here, "dot"))
-            if count < 4:
-                segments += [Segment(before, here, "thin"), Segment((before + here) / 2, pivot, "dashed")]
+        segments.append(Segment(pivot, first, "link", "l1" if name == "A" else "l3"))
+        spots += [Spot(name, pivot, "support"), Spot(f"{pin}1", first, "hinge")]
+        spots += [Spot(f"{pin}{n + 1}", complex(places[n]), "dot") for n in range(1, count)]
+        if count == 4:
+            continue
+        row, centre = [complex(z) for z in places], pivot
+        if inverted:
+            local = np.asarray(poses.in_plane(dyad.pivot), complex)
+            row, centre = [complex(z) for z in np.asarray(poses.on_frame(local), complex)[:, 0]], first
+            about = np.unwrap(np.angle(np.array(row) - centre))
+            arcs.append(Arc(centre, float(radius), float(about.min()), float(about.max()), "dashed"))
+            spots += [Spot(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
+        for before, here in pairwise(row):
+            segments += [Segment(before, here, "thin"), Segment((before + here) / 2, centre, "dashed")]
     (b, a), (c, d) = rows
     segments += [Segment(a, d, "axis", "l4"), Segment(complex(b[0]), complex(c[0]), "link", "l2")]
     for k in range(count):
@@ -39,20 +58,43 @@ def construction(poses: Poses, one: Dyads, other: Dyads, words: str) -> Construc
             segments.append(Segment(complex(b[k]), complex(c[k]), "link2"))
         segments += [Segment(complex(b[k]), p, "thin"), Segment(p, complex(c[k]), "thin")]
         spots.append(Spot(f"P{k + 1}", p, "dot"))
+    values = tuple(
+        (name, float(abs(z)), "length")
+        for name, z in (("l1", b[0] - a), ("l2", c[0] - b[0]), ("l3", c[0] - d), ("l4", d - a))
+    )
+    if count < 4:
+        kinds = {f"{words}.inversion" if x else f"{words}.bisectors" for x in by_pivot}
+        title = f"{words}.construction" if not any(by_pivot) else (
+            f"{words}.construction_pivots" if all(by_pivot) else f"{words}.construction_both"
+        )  # fmt: skip
+        return (Construction(title, tuple(segments), tuple(arcs), tuple(spots), tuple(sorted(kinds)), chain="four-bar",
+                             values=values),)  # fmt: skip
     ends = np.array([s.at for s in spots])
-    curves = _curves(poses, ends) if count == 4 else ()
-    notes = (f"{words}.curves",) if curves else (f"{words}.bisectors",)
-    title = f"{words}.construction_4" if count == 4 else f"{words}.construction"
-    return Construction(title, tuple(segments), tuple(arcs), tuple(spots), notes, curves)
+    curves = _curves(poses, ends)
+    notes = (f"{words}.curves",)
+    near = Construction(
+        f"{words}.construction_4", tuple(segments), tuple(arcs), tuple(spots), notes, curves, chain="four-bar",
+        values=values,
+    )  # fmt: skip
+    few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
+    links = [s for s in segments if s.style == "link"]
+    bar = np.array([s.at for s in few])
+    size = AROUND * max(np.ptp(bar.real), np.ptp(bar.imag)) * (1 + 1j)
+    frame = (complex(bar.real.min(), bar.imag.min()) - size, complex(bar.real.max(), bar.imag.max()) + size)
+    wide = Construction(
+        f"{words}.curves_alone", tuple(links), (), tuple(few), notes, curves, "curves", chain="four-bar",
+        around=frame,
+    )  # fmt: skip
+    return near, wide
 
 
 def _curves(poses: Poses, around: Any) -> tuple[Curve, ...]:
-    """Centre points (bold) and circle points in position 1 (dashed), near what else is drawn."""
+    """Centre points (bold) and circle points in position 1 (dashed)."""
     step = 2 * np.pi / FINE
     turns = -np.pi + step * (np.arange(FINE) + 0.37)  # not just 0 or a turn of the plane: no link is told by these
     size = max(np.ptp(around.real), np.ptp(around.imag))
-    box = (around.real.min() - BEYOND * size, around.real.max() + BEYOND * size,
-           around.imag.min() - BEYOND * size, around.imag.max() + BEYOND * size)  # fmt: skip
+    box = (around.real.min() - FAR * size, around.real.max() + FAR * size,
+           around.imag.min() - FAR * size, around.imag.max() + FAR * size)  # fmt: skip
     found: list[Curve] = []
     for branch in (0, 1):
         dyads = by_turn(poses, turns, branch)
@@ -60,8 +102,8 @@ def _curves(poses: Poses, around: Any) -> tuple[Curve, ...]:
             (dyads.pivot, "bold", "m"), (poses.on_frame(dyads.pin)[..., 0], "dashed", "k1"),
         )  # fmt: skip
         for places, style, name in kinds:
-            for number, part in enumerate(_parts(np.asarray(places, complex), box, 0.1 * size)):
-                found.append(Curve(tuple(complex(p) for p in part), style, name if number == 0 else ""))
+            for part in _parts(np.asarray(places, complex), box, 0.5 * size):
+                found.append(Curve(tuple(complex(p) for p in part), style, name))
     return tuple(found)
 
 

@@ -39,4 +39,7 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float, words: 
         segments += [Segment(before, here, "thin"), Segment((before + here) / 2, complex(b[0]), "dashed")]
         spots.append(Spot(f"C{k + 1}′", here, "dot"))
         before = here
-    return Construction(f"{words}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{words}.inversion",))
+    lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
+    values = tuple((name, value, "length") for name, value in lengths)
+    return Construction(f"{words}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{words}.inversion",),
+                        chain="four-bar", values=values)  # fmt: skip

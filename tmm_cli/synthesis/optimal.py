@@ -6,26 +6,24 @@ finds it (polish).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from tmm_cli.synthesis.candidates import Asked, Limit, Search, W
-from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.evolution import Evolved, evolve
-from tmm_cli.synthesis.goals import LEAST, PLAIN
-from tmm_cli.synthesis.measured_goals import measure
-from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
 
 __all__ = ["PARAMETERS", "Asked", "Limit", "best", "solve"]
 PARAMETERS: Final[dict[str, str]] = {}
 STARTS = 3  # of the polish: the best that differ
+SHRINKING = 40  # generations a parameter, for equalities
+HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
-ACTIVE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -40,17 +38,27 @@ class Best:
 
 
 def best(search: Search) -> Best:
-    """Search and polish."""
+    """Search and polish. Raises Infeasible."""
     asked, size = search.asked, len(search.low)
-    population = asked.population or max(40, 15 * size)
+    shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
-        search.evaluate, size, population=population, generations=asked.generations, seed=asked.seed,
-        progress=asked.progress,
+        search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
+        shrinking=shrinking if any(limit.equal for limit in search.limits) else 0, progress=asked.progress,
     )  # fmt: skip
     starts: list[Real] = []
-    for x in evolved.population:
-        if len(starts) < STARTS and all(np.max(np.abs(x - s)) > APART for s in starts):
+    first = evolved.objective[0]
+    for x, f in zip(evolved.population, evolved.objective, strict=True):
+        if (
+            len(starts) < STARTS
+            and not f - first > HOPE * abs(first)
+            and all(np.max(np.abs(x - s)) > APART for s in starts)
+        ):
             starts.append(x)
+    return _best_of(search, starts, evolved)
+
+
+def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
+    """The best of what the polish leads to from some starts, and of themselves."""
     found: list[tuple[float, float, Real, list[float]]] = []
     for start in starts:
         for x in (search.polished(start), start):
@@ -63,70 +71,46 @@ def best(search: Search) -> Best:
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
         raise Infeasible("vary", f"{W}.never", f"{W}.wider")
-    missed, _, x, values = min(found, key=lambda one: one[:2])
+    found.sort(key=lambda one: one[:2])
+    missed, _, x, values = next((one for one in found if search.fits(one[2])), found[0])
     return Best(x, search.numbers(x), values, missed, evolved)
 
 
 def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
+    from tmm_cli.synthesis.optimal_told import told
+
     search = Search(asked)
     found = best(search)
-    kinds = [goal.kind(search.linkage, search.groups) for goal in search.goals]
     if found.missed:
-        misses = [limit.missed(v) for limit, v in zip(search.limits, found.values[1:], strict=True)]
-        n = int(np.argmax(misses))
-        if n == 0:
-            raise Infeasible("vary", f"{W}.never", f"{W}.wider")
-        raise Infeasible(
-            search.limits[n].at, f"{W}.unmet", f"{W}.nearest", {"value": (found.values[n + 1], kinds[n + 1])}
-        )  # fmt: skip
-    given = [
-        Value(name, side[name], asked.kinds[name], f"{W}.{word}")
-        for name in asked.low for word, side in (("low", asked.low), ("high", asked.high))
-    ]  # fmt: skip
-    numbers = [
-        Value(name, float(x), asked.kinds[name], f"{W}.parameter")
-        for name, x in zip(asked.low, found.numbers, strict=True)
-    ]
-    more = [Value("", found.values[0], kinds[0], f"{W}.best_{asked.objective.of}")]
-    demands = [Demand(f"{W}.crank", 1.0, "number", crank_turns, asked=False)]
-    demands.append(_demand(search, 0, found.values[0], kinds[0], asked=False))
-    for n, limit in enumerate(search.limits[1:], 2):
-        value = found.values[n]
-        given += [
-            Value("", side, kinds[n], f"{W}.{word}_{limit.goal.of}")
-            for word, side in (("least", limit.least), ("most", limit.most)) if side is not None
-        ]  # fmt: skip
-        margin = limit.margin(value)
-        state = "equal" if limit.equal else "active" if margin <= ACTIVE * limit.scale else "free"
-        more.append(Value("", value, kinds[n], f"{W}.{limit.goal.of}"))
-        more.append(Value("", margin, kinds[n], f"{W}.margin_{limit.goal.of}"))
-        more.append(Value("", state, "word", f"{W}.state_{limit.goal.of}", f"{W}.{state}"))
-        demands.append(_demand(search, n, limit.least or 0.0 if limit.equal else value, kinds[n], asked=limit.equal))
-    for name, x in zip(asked.low, found.x, strict=True):
-        if min(x, 1 - x) < ACTIVE:
-            more.append(Value("", name, "word", f"{W}.bound", name))
-    history = found.evolved.history
-    kept = history[:, 1] == 0
-    generation = np.arange(len(history))
-    so_far = _shown(search, np.fmin.accumulate(np.where(kept, history[:, 0], np.nan)))
-    curve = Diagram(
-        "history", f"{W}.history", (f"{W}.generation", "number"), (f"{W}.best_{asked.objective.of}", kinds[0]),
-        (Line(f"{W}.evolution", generation, so_far),
-         Line(f"{W}.polished", np.array([len(history)]), np.array([found.values[0]]), dots=True)),
-    )  # fmt: skip
-    notes = (f"{W}.stopped",) if found.evolved.stopped else ()
-    return Outcome(tuple(given), (*numbers, *more), f"{W}.source", tuple(demands), (curve,), notes)
+        found = _mended(search, found)
+    if not search.fits(found.x):
+        numbers = ", ".join(f"{name} = {x:.6g}" for name, x in zip(asked.low, found.numbers, strict=True))
+        raise Infeasible("vary", f"{W}.not_as_sketched", f"{W}.other_sketch", {"numbers": (numbers, "word")})
+    return told(search, found)
 
 
-def _shown(search: Search, f: Real) -> Real:
-    """The history of the objective in its own unit; of a target as far above it as the best candidate is from it."""
-    if search.asked.target is not None:
-        return search.asked.target * (1 + f)
-    return -f if search.asked.objective.of in LEAST else f
+def _mended(search: Search, found: Best) -> Best:
+    """Searched for again with the constraint that is farthest from being met as what is wanted.
 
-
-def _demand(search: Search, n: int, value: float, kind: str, *, asked: bool) -> Demand:
-    goal = search.goals[n]
-    at = 1e-6 if kind in ("length", "angle") and goal.of not in PLAIN else 0.0
-    return Demand(f"{W}.{goal.of}", value, kind, lambda results: measure(goal, results), asked=asked, at=at)
+    Raises Infeasible when it cannot be met while all the others are kept: how near to it one comes then.
+    """
+    misses = [float(limit.missed(v)) for limit, v in zip(search.limits, found.values[1:], strict=True)]
+    n = int(np.argmax(misses))
+    if n == 0:
+        raise Infeasible("vary", f"{W}.never", f"{W}.wider")
+    limit = search.limits[n]
+    bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
+    others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
+    kind = limit.goal.kind(search.linkage, search.groups)
+    try:
+        nearest = best(Search(replace(search.asked, objective=limit.goal, limits=others, target=bound)))
+    except Infeasible:
+        nearest = found
+    if nearest.missed:  # the others contradict one another too
+        raise Infeasible(limit.at, f"{W}.unmet", f"{W}.others", {"value": (found.values[n + 1], kind)})
+    if limit.missed(nearest.values[0]) <= KEPT:
+        again = _best_of(search, [nearest.x], found.evolved)
+        if not again.missed:
+            return again
+    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (nearest.values[0], kind)})

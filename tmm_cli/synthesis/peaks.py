@@ -6,6 +6,8 @@ over 7! and less; arrays are (variants, places).
 
 from __future__ import annotations
 
+from math import perm
+
 import numpy as np
 
 from tmm_cli.vectors import Real
@@ -14,6 +16,7 @@ WINDOW = 33  # places about a peak
 SIDE = 3  # neighbours on either side
 _FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
 NEWTON = 6
+FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
 
 
 def _near(y: Real, k: Real) -> tuple[Real, Real]:
@@ -23,10 +26,9 @@ def _near(y: Real, k: Real) -> tuple[Real, Real]:
 
 
 def _value(c: Real, u: Real, order: int = 0) -> Real:
-    found = np.zeros_like(u)
-    for power in range(2 * SIDE, order - 1, -1):
-        factor = float(np.prod(np.arange(power - order + 1, power + 1))) if order else 1.0
-        found = found * u + factor * c[:, power]
+    found = FACTORS[order][-1] * c[:, -1]
+    for power in range(2 * SIDE - 1, order - 1, -1):
+        found = found * u + FACTORS[order][power] * c[:, power]
     return found
 
 

@@ -54,6 +54,8 @@ def quadratic(
         if lost < DONE and gap < DONE and float(np.max(np.abs(dual))) < DONE * (1 + float(np.max(lam))):
             return d, nu, lam
         matrix = np.block([[hessian + (rows.T * (lam / slack)) @ rows, -equal.T], [equal, np.zeros((e, e))]])
+        if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(dual))):
+            return None
         aim = -slack * lam
         for corrected in (False, True):
             right = np.concatenate([-dual + rows.T @ ((aim - lam * apart) / slack), -off])
@@ -91,6 +93,8 @@ def polish(evaluate: Callable[[Real], Local], x: Real, iterations: int = 60) -> 
         g, rows_c, rows_e = slope(found.pieces), slope(found.least), slope(found.equal)
         f, c, e = found.pieces[0], found.least[0], found.equal[0]
         top = float(np.max(f))
+        if not all(np.all(np.isfinite(part)) for part in (f, c, e, g, rows_c, rows_e)):
+            break  # at the edge of what can be assembled
         if last is not None:  # damped BFGS on the Lagrangian
             x0, lam_f, lam_c, lam_e, old = last
             hessian = _updated(hessian, x - x0, lam_f @ g - lam_c @ rows_c - lam_e @ rows_e - old)

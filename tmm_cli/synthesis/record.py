@@ -24,6 +24,20 @@ class Value:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file.
+
+    kind `word`: keys of words; `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind
+    `unit`. None: there is none.
+    """
+
+    name: str
+    title: str
+    columns: tuple[tuple[str, Kind], ...]
+    rows: tuple[tuple[Any, ...], ...]
+
+
+@dataclass(frozen=True)
 class Demand:
     """What must come back when the mechanism is analysed: value (SI, rad), and how it is measured on the Results.
 
@@ -48,7 +62,7 @@ class Outcome:
     """What a task gives. parameters: what the linkage may use, by name; source: key of the words on the formula.
 
     asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
-    notes: keys of words below what was found.
+    notes: keys of words below what was found; listings: further tables.
     """
 
     asked: tuple[Value, ...]
@@ -57,6 +71,7 @@ class Outcome:
     demands: tuple[Demand, ...] = ()
     drawings: tuple[Construction | Diagram, ...] = ()
     notes: tuple[str, ...] = field(default=())
+    listings: tuple[Listing, ...] = ()
 
     @property
     def parameters(self) -> dict[str, Value]:

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis import slotted_lever
-from tmm_cli.synthesis.construction import Construction, Segment, Spot
+from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
 from tmm_cli.synthesis.crank_slider import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
@@ -25,12 +25,13 @@ W: Final = "synthesis_shaper"
 
 @dataclass(frozen=True)
 class Asked:
-    """Stroke (m) and k; the frame OC (m) or its ratio to CD; the rod DE (m), its ratio, or the pressure angle (rad)."""
+    """Stroke, k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio or the pressure angle (m, rad)."""
 
     stroke: Any
     k: Any
     frame: Any = None
     frame_ratio: Any = None
+    crank: Any = None
     rod: Any = None
     rod_ratio: Any = None
     pressure: Any = None
@@ -54,7 +55,10 @@ def find(asked: Asked) -> Found:
     theta = theta_of(asked.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
     lever = np.asarray(asked.stroke) / (2 * sine)
-    frame = lever * asked.frame_ratio if asked.frame is None else np.asarray(asked.frame)
+    if asked.crank is not None:
+        frame = np.asarray(asked.crank) / sine
+    else:
+        frame = lever * asked.frame_ratio if asked.frame is None else np.asarray(asked.frame)
     rise = lever * half_height
     if asked.pressure is not None:
         rod = rise / np.sin(asked.pressure)
@@ -66,7 +70,10 @@ def find(asked: Asked) -> Found:
 
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
-    names = {"stroke": "stroke", "frame": "OC", "frame_ratio": "frame_ratio", "rod": "DE", "rod_ratio": "rod_ratio"}
+    names = {
+        "stroke": "stroke", "frame": "OC", "frame_ratio": "frame_ratio", "crank": "OA", "rod": "DE",
+        "rod_ratio": "rod_ratio",
+    }  # fmt: skip
     for name, key in names.items():
         value = getattr(asked, name)
         if value is not None and not value > 0:
@@ -80,15 +87,18 @@ def refuse(asked: Asked) -> None:
     lever, half = float(f.lever), float(f.theta) / 2
     most = 1 / (1 + np.sin(half))
     if not f.frame < lever * most:
-        by_ratio = asked.frame is None
-        limit: tuple[float, str] = (most, "number") if by_ratio else (lever * most, "length")
-        raise Infeasible("frame_ratio" if by_ratio else "OC", f"{W}.frame_above", f"{W}.frame_most", {"most": limit})
+        limits: dict[str, tuple[float, str]] = {
+            "frame": (lever * most, "length"), "frame_ratio": (most, "number"),
+            "crank": (lever * most * np.sin(half), "length"),
+        }  # fmt: skip
+        by = next(name for name in limits if getattr(asked, name) is not None)
+        raise Infeasible(names[by], f"{W}.frame_above", f"{W}.frame_most", {"most": limits[by]})
     if not f.pressure < np.pi / 2 - half:  # beyond, the ram turns back before the lever does
         if asked.pressure is not None:
             raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", {"most": (np.pi / 2 - half, "angle")})
         share = np.sin(half / 2) ** 2 / np.cos(half)
         by_ratio = asked.rod is None
-        limit = (share, "number") if by_ratio else (lever * share, "length")
+        limit: tuple[float, str] = (share, "number") if by_ratio else (lever * share, "length")
         raise Infeasible("rod_ratio" if by_ratio else "DE", f"{W}.turns_back", f"{W}.rod_least", {"least": limit})
 
 
@@ -96,7 +106,7 @@ def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(asked)
     f = find(asked)
-    kinds = {"stroke": "length", "frame": "length", "rod": "length", "pressure": "angle"}
+    kinds = {"stroke": "length", "frame": "length", "crank": "length", "rod": "length", "pressure": "angle"}
     given = tuple(
         Value(name, value, kinds.get(name, "number"), f"{W}.{name}")
         for name, value in vars(asked).items() if value is not None
@@ -122,13 +132,22 @@ def construction(f: Found) -> Construction:
     lever = slotted_lever.Found(
         f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
     )
-    segments, arcs, spots = slotted_lever.lever_parts(lever, "D")
+    segments, arcs, spots, angles = slotted_lever.lever_parts(lever, "D")
     reach = float(f.rod * np.cos(f.pressure))
     d1, d2 = (spot.at for spot in spots[-2:])
     e1, e2 = (complex(d.real + reach, float(f.level)) for d in (d1, d2))
+    stroke = abs(e2 - e1)
+    ends = sorted((e1.real, e2.real))
     segments += [
-        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed", "H"),
-        Segment(complex(d1.real, e1.imag), e2 + 0.25 * (d2 - d1), "axis"),
+        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed"),
+        Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "guide"),
     ]  # fmt: skip
     spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
-    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",))
+    top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
+    sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
+    lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
+    return Construction(
+        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.midway",), angles=tuple(angles),
+        sizes=sizes, chain="shaper", wishes=((top,),),
+        values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
+    )  # fmt: skip

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.construction import Arc, Construction, Segment, Spot
+from tmm_cli.synthesis.construction import Angle, Arc, Construction, Segment, Spot, box
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
@@ -29,8 +29,8 @@ class Asked:
     """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
 
     k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
-    lever clockwise from b1 to b2. OC (m), or bounds of it and which is chosen: force (the longest with the stone on
-    CB) or shortest.
+    lever clockwise from b1 to b2. OC (m), or the crank OA (m), or bounds of OC and which is chosen: force (the longest
+    with the stone on CB) or shortest.
     """
 
     b1: Any = None
@@ -42,6 +42,7 @@ class Asked:
     k: Any = None
     swing: Any = None
     frame: Any = None
+    crank: Any = None
     within: tuple[Any, Any] | None = None
     choose: str = "force"
 
@@ -80,7 +81,9 @@ def find(asked: Asked) -> Found:
         along = np.cos(asked.axis) + 1j * np.sin(asked.axis)
         psi1, psi2 = asked.axis - asked.side * theta / 2, asked.axis + asked.side * theta / 2
     longest = lever / (1 + sine)
-    if asked.within is None:
+    if asked.crank is not None:
+        frame = np.asarray(asked.crank) / sine
+    elif asked.within is None:
         frame = np.asarray(asked.frame)
     elif asked.choose == "force":
         frame = np.minimum(asked.within[1], longest)
@@ -99,7 +102,7 @@ def refuse(asked: Asked) -> None:
         raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
     if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
         raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed")
-    for name, value in (("CB", asked.length), ("OC", asked.frame)):
+    for name, value in (("CB", asked.length), ("OC", asked.frame), ("OA", asked.crank)):
         if value is not None and not value > 0:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
     if asked.length is None and abs(asked.b2 - asked.b1) == 0:
@@ -127,7 +130,7 @@ def solve(asked: Asked) -> Outcome:
         for name in ("b1", "b2") if getattr(asked, name) is not None
         for axis, part in (("x", np.real(getattr(asked, name))), ("y", np.imag(getattr(asked, name))))
     ]  # fmt: skip
-    kinds = {"length": "length", "k": "number", "swing": "angle", "frame": "length"}
+    kinds = {"length": "length", "k": "number", "swing": "angle", "frame": "length", "crank": "length"}
     given += [
         Value(n, getattr(asked, n), kind, f"{W}.{n}") for n, kind in kinds.items() if getattr(asked, n) is not None
     ]
@@ -159,7 +162,7 @@ def solve(asked: Asked) -> Outcome:
     return Outcome(tuple(given), tuple(found), f"{W}.source", demands, (construction(f),), notes)
 
 
-def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot]]:
+def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot], list[Angle]]:
     """The lever in its extreme positions, the bisector, the pin's circle that touches both; end: letter of its end."""
     c, o = complex(f.c), complex(f.o)
     lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
@@ -168,24 +171,29 @@ def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot
     ends = [c + lever * way for way in ways]
     first, last = sorted((float(f.psi1), float(f.psi1) + float(np.angle(ways[1] / ways[0]))))
     axis = (o - c) / abs(o - c)
+    top = c + 1.1 * max(lever, frame + crank) * axis
     segments = [
         Segment(c, ends[0], "link", f"C{end}"), Segment(o, pins[0], "link", "OA"),
         Segment(c, ends[1], "link2"), Segment(o, pins[1], "link2", "OA"),
-        Segment(c - 0.1 * lever * axis, c + 1.15 * max(lever, frame + crank) * axis, "axis"),
+        Segment(c, o, "axis", "OC"), Segment(o, top, "axis"),
     ]  # fmt: skip
-    arcs = [
-        Arc(o, crank, 0.0, 2 * np.pi, "dashed"), Arc(c, lever, first, last, "bold"),
-        Arc(c, 0.3 * frame, first, last, "thin", "θ"),
-    ]  # fmt: skip
+    arcs = [Arc(o, crank, 0.0, 2 * np.pi, "dashed"), Arc(c, lever, first, last, "dashed")]
     spots = [
-        Spot("C", c, "support"), Spot("O", o, "support"), Spot("A1", pins[0], "hinge"), Spot("A2", pins[1], "hinge"),
-        Spot(f"{end}1", ends[0], "hinge"), Spot(f"{end}2", ends[1], "hinge"),
+        Spot("C", c, "support"), Spot("O", o, "support"), Spot("A1", pins[0], "stone", ways[0]),
+        Spot("A2", pins[1], "stone", ways[1]), Spot(f"{end}1", ends[0], "hinge"), Spot(f"{end}2", ends[1], "hinge"),
     ]  # fmt: skip
-    return segments, arcs, spots
+    corners = [Angle(pin, o, c, right=True) for pin in pins]
+    return segments, arcs, spots, [Angle(c, ends[0], ends[1], "θ"), *corners]
 
 
 def construction(f: Found) -> Construction:
     """Both extreme positions, with C by the isosceles triangle on B1B2 and O on the bisector."""
-    segments, arcs, spots = lever_parts(f, "B")
-    segments.append(Segment(spots[-2].at, spots[-1].at, "dashed"))
-    return Construction(f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.square",))
+    segments, arcs, spots, angles = lever_parts(f, "B")
+    b1, b2 = spots[-2].at, spots[-1].at
+    segments.append(Segment(b1, b2, "dashed"))
+    return Construction(
+        f"{W}.construction", tuple(segments), tuple(arcs), tuple(spots), (f"{W}.square",), angles=tuple(angles),
+        chain="slotted-lever", wishes=(box(complex(f.o), float(f.crank)),),
+        values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length"),
+                ("θ", float(f.theta), "angle")),
+    )  # fmt: skip

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.tape.terms import ONE_BY_ONE, Term
+from tmm_cli.tape.terms import ONE_BY_ONE, Term, axes_of
 
 CHUNK = 9000  # numbers in a register: shorter ones cost more calls, longer ones no fewer misses of the cache
 
@@ -130,7 +130,7 @@ class _Code:
             writer.outer,
         )
         names: dict[str, Any] = {f"f_{name}": function for name, function in ONE_BY_ONE.items()}
-        names |= {"copy": np.copyto, "read": _read} | writer.constants
+        names |= {"copy": np.copyto, "where": np.where, "read": _read} | writer.constants
         exec(compile(self.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
@@ -276,7 +276,10 @@ class _Writer:
                 self.kinds.append(term.truth)
             to = self._owned[term.number] = self._where[term.number] = free.pop()
         if op == "where":
-            self.lines += [f"copy({to}, {read[2]})", f"copy({to}, {read[1]}, where={read[0]})"]
+            if axes_of(args[0]) == 1:  # neighbours differ, which masked copying is slow at
+                self.lines.append(f"copy({to}, where({', '.join(read)}))")
+            else:
+                self.lines += [f"copy({to}, {read[2]})", f"copy({to}, {read[1]}, where={read[0]})"]
             self._release(k, args)
         else:
             out = f"out={to}" if op in ("maximum", "minimum") else to

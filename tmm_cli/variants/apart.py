@@ -36,6 +36,10 @@ class Apart:
         turns = Mechanism(self.ordinary, self.structure).way.turns
         return Way.of(self.ordinary, len(columns), turns)
 
+    def without(self, part: str) -> Self:
+        """The same: what is not wanted costs little here."""
+        return self
+
     def about(self, numbers: Real) -> Self:
         """For variants near one: no other than for all."""
         return self

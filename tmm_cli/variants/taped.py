@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from typing import Self
 
 import numpy as np
@@ -29,9 +30,20 @@ class Taped:
         program = family(make, first, asked, forces=forces)
         self.program = program.only(*(name for name in program.outputs if name not in UNUSED))
 
+    @property
+    def operations(self) -> int:
+        """Operations on arrays, for all variants and places."""
+        return self.program.operations
+
     def way(self, columns: Real) -> Way:
         """The crank's turn."""
         return Way.of(self.ordinary, len(columns), 1)
+
+    def without(self, part: str) -> Taped:
+        """Without results whose names have such a part."""
+        new = copy(self)
+        new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
+        return new
 
     def about(self, numbers: Real) -> Self:
         """For variants near one: no other than for all."""

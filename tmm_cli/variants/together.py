@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -107,6 +108,10 @@ class Together:
     def way(self, columns: Real) -> Way:
         """The drivers' ways."""
         return Way.of(self.linkage(columns), len(columns), self.turns)
+
+    def without(self, part: str) -> Self:
+        """The same: what is not wanted costs little here."""
+        return self
 
     def about(self, numbers: Real) -> Program:
         """The same for variants near one, whose groups are not followed anew but start from where its own are."""

@@ -11,6 +11,7 @@ from importlib import import_module
 
 FILES = (
     "common", "structure", "results", "warnings", "drawings", "accuracy", "speed", "bench", "stability", "synthesis",
+    "searches",
 )  # fmt: skip
 OF_TASKS = "synthesis_"  # files that are named by their keys, one a task of synthesis
 

@@ -18,6 +18,9 @@ WORDS: dict[str, str] = {
     "synthesis.no_block": "this file has no synthesis",
     "synthesis.no_linkage": "the file has no linkage: nothing was measured",
     "synthesis.extremes": "Extreme positions of the output",
+    "synthesis.ends": "I: start of the working stroke, II: its end",
+    "synthesis.sizes": "sizes in {unit}",
+    "synthesis.to_centre": "to {centre}, {radius}",
     "synthesis.explain": "Parameters found by synthesis",
     "synthesis.task": "task",
 }

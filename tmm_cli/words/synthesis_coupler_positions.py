@@ -25,9 +25,15 @@ WORDS: dict[str, str] = {
     f"{_W}.source_4": "pins on the circle-point curve and pivots on the centre-point curve of four positions "
     "(Burmester), by W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1",
     f"{_W}.construction": "Pivots on the bisectors of the places of the pins",
+    f"{_W}.construction_pivots": "Pins on the bisectors of the places of the pivots, seen from the coupler in "
+    "position 1",
+    f"{_W}.construction_both": "Pivot on the bisectors of the places of its pin; pin on those of its pivot, seen from "
+    "the coupler",
+    f"{_W}.curves_alone": "Centre-point curve and circle-point curve of the four positions (Burmester)",
     f"{_W}.construction_4": "Four positions: pivots on the centre-point curve, pins on the circle-point curve",
-    f"{_W}.bisectors": "dashed: bisectors",
-    f"{_W}.curves": "bold: centre points m; dashed: circle points k1, in position 1",
+    f"{_W}.bisectors": "dashed: bisectors of the places of the pin",
+    f"{_W}.inversion": "dashed: bisectors of the pivot and its places ′, turned back with the coupler to position 1",
+    f"{_W}.curves": "red: centre points m (pivots); dashed: circle points k1 (pins), in position 1",
     f"{_W}.still": "{point} does not move between these positions, or not against the coupler: it is the pole",
     f"{_W}.elsewhere": "another {point}",
     f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",

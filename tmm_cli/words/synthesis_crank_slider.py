@@ -18,10 +18,11 @@ WORDS: dict[str, str] = {
     "synthesis_crank_slider.crank_turns": "crank turns fully (1: yes)",
     "synthesis_crank_slider.source": "triangle of the crank's pivot and the slider's extreme positions: sides l + r, "
     "l - r, angle theta = pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l",
-    "synthesis_crank_slider.construction": "Extreme positions of the slider, and the circle on which B1B2 is seen "
-    "under theta",
+    "synthesis_crank_slider.construction": "Extreme positions of the slider, and the circle on which {B}1{B}2 is "
+    "seen under theta",
     "synthesis_crank_slider.ends": "Extreme positions of the slider",
-    "synthesis_crank_slider.angles": "dashed: OB1B2 = OB2B1 = 90° − θ",
+    "synthesis_crank_slider.bold": "red: where {O} may be, so that the crank turns fully",
+    "synthesis_crank_slider.angles": "{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ",
     "synthesis_crank_slider.positive": "there is no such motion",
     "synthesis_crank_slider.more_than_zero": "more than zero",
     "synthesis_crank_slider.k_below": "k is the time of the working stroke over that of the idle one, the shorter",

@@ -30,9 +30,9 @@ WORDS: dict[str, str] = {
     f"{_W}.phi": "input angle phi",
     f"{_W}.source": "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) "
     "+ (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = cos(phi - psi), angles from AD; Trans. ASME 76 (1954)",
-    f"{_W}.construction": "Pairs turned back about A to the first input: B1 is the centre of the circle "
-    "through C1, C2′ ...",
-    f"{_W}.inversion": "dashed: bisectors, and arcs CC′ about A by the input's turn back",
+    f"{_W}.construction": "Pairs turned back about {A} to the first input: {B}1 is the centre of the "
+    "circle through {C}1, {C}2′ ...",
+    f"{_W}.inversion": "dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back",
     f"{_W}.order": "the input turns back: pair {this} cannot be reached after pair {last} in order",
     f"{_W}.in_order": "input angles that only grow, or only fall; pair {last} has {phi}",
     f"{_W}.turn": "the input has come round before the last pair",

@@ -30,15 +30,17 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.choose": "choice of A",
     "synthesis_four_bar_by_k.choose_best": "best transmission: the least largest pressure angle",
     "synthesis_four_bar_by_k.choose_level": "supports level: A as high as D",
+    "synthesis_four_bar_by_k.choose_l1": "by the length of the crank",
+    "synthesis_four_bar_by_k.choose_l2": "by the length of the coupler",
     "synthesis_four_bar_by_k.choose_l4": "by the length of the frame",
     "synthesis_four_bar_by_k.choose_near": "nearest to a given place",
     "synthesis_four_bar_by_k.crank_turns": "crank turns fully (1: yes)",
     "synthesis_four_bar_by_k.source": "circle through C1 and C2 on which C1C2 is seen under theta = "
     "pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD",
-    "synthesis_four_bar_by_k.construction": "Extreme positions of the rocker, and the circles on which C1C2 is seen "
-    "under theta",
-    "synthesis_four_bar_by_k.bold": "bold: where A may be",
-    "synthesis_four_bar_by_k.angles": "dashed: OC1C2 = OC2C1 = 90° − θ",
+    "synthesis_four_bar_by_k.construction": "Extreme positions of the rocker, and the circles on which {C}1{C}2 is "
+    "seen under theta",
+    "synthesis_four_bar_by_k.bold": "red: where {A} may be, so that the crank turns fully",
+    "synthesis_four_bar_by_k.angles": "{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|",
     "synthesis_four_bar_by_k.family_pressure": "Largest pressure angle along the admissible arcs",
     "synthesis_four_bar_by_k.family_lengths": "Lengths of the links along the admissible arcs",
     "synthesis_four_bar_by_k.pressure_inside": "A on D's side of C1C2",
@@ -69,6 +71,10 @@ WORDS: dict[str, str] = {
     "is dead",
     "synthesis_four_bar_by_k.near_inside": "x = {x}, y = {y}: the nearest pivot with a largest pressure "
     "angle of {pressure} or less",
+    "synthesis_four_bar_by_k.l1_none": "no pivot of the admissible arcs gives such a crank",
+    "synthesis_four_bar_by_k.l2_none": "no pivot of the admissible arcs gives such a coupler",
+    "synthesis_four_bar_by_k.l1_same": "with k = 1 every crank is half of C1C2",
+    "synthesis_four_bar_by_k.l1_others": "l2, l4, near or supports level; the crank is {l1}",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "more than {low} and less than {high}",
     "synthesis_four_bar_by_k.l4_range_line": "more than {low}",

@@ -5,6 +5,7 @@ WORDS: dict[str, str] = {
     "synthesis_shaper.k": "k",
     "synthesis_shaper.frame": "frame OC",
     "synthesis_shaper.frame_ratio": "OC/CD",
+    "synthesis_shaper.crank": "crank OA",
     "synthesis_shaper.rod": "rod DE",
     "synthesis_shaper.rod_ratio": "DE/CD",
     "synthesis_shaper.pressure": "largest pressure angle of the ram",
@@ -19,7 +20,7 @@ WORDS: dict[str, str] = {
     "synthesis_shaper.source": "D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = "
     "pi (k - 1)/(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc",
     "synthesis_shaper.construction": "Extreme positions of the shaper",
-    "synthesis_shaper.midway": "guide midway between D1D2 and the top of the arc",
+    "synthesis_shaper.midway": "guide midway between {D}1{D}2 and the top of the arc",
     "synthesis_shaper.positive": "there is no such motion",
     "synthesis_shaper.more_than_zero": "more than zero",
     "synthesis_shaper.k_below": "a lever that swings goes back faster: k is the time of the slow stroke over that of "

@@ -9,6 +9,7 @@ WORDS: dict[str, str] = {
     "synthesis_slotted_lever.k": "k",
     "synthesis_slotted_lever.swing": "swing of the lever",
     "synthesis_slotted_lever.frame": "frame OC",
+    "synthesis_slotted_lever.crank": "crank OA",
     "synthesis_slotted_lever.low": "frame OC, at least",
     "synthesis_slotted_lever.high": "frame OC, at most",
     "synthesis_slotted_lever.choose": "choice of OC",
@@ -36,7 +37,7 @@ WORDS: dict[str, str] = {
     "pi (k - 1)/(k + 1), CB1 = CB2, O on the bisector, OA = OC sin(theta/2)",
     "synthesis_slotted_lever.passes": "the stone passes B: the slot goes on beyond it",
     "synthesis_slotted_lever.construction": "Extreme positions of the slotted lever",
-    "synthesis_slotted_lever.square": "OA1 ⊥ CB1, OA2 ⊥ CB2",
+    "synthesis_slotted_lever.square": "{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2",
     "synthesis_slotted_lever.k_below": "a lever that swings goes back faster: k is the time of the slow stroke over "
     "that of the quick one",
     "synthesis_slotted_lever.k_least": "more than 1; {k} for the same strokes",

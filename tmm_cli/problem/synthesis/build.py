@@ -25,14 +25,44 @@ Parameters = dict[str, Quantity]
 Variant = Callable[[Parameters, UnitSystem], Linkage]
 
 
-def with_synthesis(
-    block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None,
-    known: Synthesised | None = None,
-) -> tuple[Parameters, Synthesised]:  # fmt: skip
-    """All parameters of the file, and what was found. Raises ProblemError.
+class OfTheFile(Exception):  # noqa: N818  it says whose the error is
+    """What the file around the block is refused for, with numbers that the synthesis tries."""
 
-    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
-    """
+    def __init__(self, error: ProblemError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None) -> Any:
+    """What the task is asked, in its own record. Raises ProblemError."""
+    _, late, early, with_found = _parts(block, raw, units)
+
+    def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
+        assert variant is not None
+        try:
+            return variant(with_found(found, own), own)
+        except ProblemError as error:
+            raise OfTheFile(error) from None
+
+    try:
+        _not_on(block, late, units)
+        search = getattr(reader(block.task), "SEARCH", False)
+        if search and variant is None:
+            raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
+        sense = Sense(early, units) if search else Bounded(early, units)
+        return reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
+    except Infeasible as error:
+        raise _refused(error, block, units).at("synthesis") from None
+    except OfTheFile as error:
+        raise error.error from None
+    except ProblemError as error:
+        raise error.at("synthesis") from None
+
+
+def _parts(
+    block: Block, raw: Mapping[str, object], units: UnitSystem
+) -> tuple[dict[str, str], set[str], Parameters, Callable[[Parameters, UnitSystem], Parameters]]:
+    """Names of what is found, parameters that rest on it, the others, and all of them once it is found."""
     names = _names(block, raw)
     late = _resting(raw, set(names.values()), units)
     early = _parameters({name: raw[name] for name in raw if name not in late}, units)
@@ -41,26 +71,30 @@ def with_synthesis(
         known = early | found
         return known | _parameters({name: raw[name] for name in late}, own, known)
 
-    def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
-        assert variant is not None
-        return variant(with_found(found, own), own)
+    return names, late, early, with_found
 
-    try:
-        _not_on(block, late, units)
-        search = getattr(reader(block.task), "SEARCH", False)
-        if search and variant is None:
-            raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
-        sense = Sense(early, units) if search else Bounded(early, units)
+
+def with_synthesis(
+    block: Block, raw: Mapping[str, object], units: UnitSystem, variant: Variant | None = None,
+    known: Synthesised | None = None,
+) -> tuple[Parameters, Synthesised]:  # fmt: skip
+    """All parameters of the file, and what was found. Raises ProblemError.
+
+    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
+    """
+    names, _, _, with_found = _parts(block, raw, units)
+    if known is not None and getattr(reader(block.task), "SEARCH", False):
+        outcome = known.outcome
+    else:
+        record = asked(block, raw, units, variant)
         try:
-            if known is not None and search:
-                outcome = known.outcome
-            else:
-                asked = reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
-                outcome = task(block.task).solve(asked)
+            outcome = task(block.task).solve(record)
         except Infeasible as error:
-            raise _refused(error, block, units) from None
-    except ProblemError as error:
-        raise error.at("synthesis") from None
+            raise _refused(error, block, units).at("synthesis") from None
+        except OfTheFile as error:
+            raise error.error from None
+        except ProblemError as error:
+            raise error.at("synthesis") from None
     found = {
         names[name]: Quantity(_plain(value.value), KINDS[value.kind].dimension)
         for name, value in outcome.parameters.items() if name in names

@@ -14,6 +14,7 @@ from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
 from tmm_cli.synthesis.four_bar_by_k import Asked
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
+WAYS = ("choose", "l1", "l2", "l4", "near")
 
 
 class Shape(Block):
@@ -28,6 +29,8 @@ class Shape(Block):
     choose: Literal["best transmission", "supports level"] | None = Field(
         default=None, description="how A is chosen; best transmission"
     )
+    l1: Value | None = Field(default=None, description="or: the crank AB")
+    l2: Value | None = Field(default=None, description="or: the coupler BC")
     l4: Value | None = Field(default=None, description="or: the frame AD")
     near: tuple[Value, Value] | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
     turns: Literal["ccw", "cw"] | None = Field(
@@ -37,16 +40,16 @@ class Shape(Block):
 
 def asked(shape: Shape, sense: Sense) -> Asked:
     """The task in SI. Raises ProblemError."""
-    ways = [name for name in ("choose", "l4", "near") if getattr(shape, name) is not None]
+    ways = [name for name in WAYS if getattr(shape, name) is not None]
     if len(ways) > 1:
         raise ProblemError(
-            "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of choose, l4, near", key=True
+            "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of " + ", ".join(WAYS), key=True
         )
+    wants = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER, "l1": LENGTH, "l2": LENGTH, "l4": LENGTH}
     found: dict[str, Any] = {
         key: sense.number(getattr(shape, key), want, (key,))
-        for key, want in (("l3", LENGTH), ("psi1", ANGLE), ("psi2", ANGLE), ("k", NUMBER), ("l4", LENGTH))
-        if getattr(shape, key) is not None
-    }
+        for key, want in wants.items() if getattr(shape, key) is not None
+    }  # fmt: skip
     for key in ("support", "near"):
         if getattr(shape, key) is not None:
             found[key] = sense.vector(getattr(shape, key), LENGTH, (key,))

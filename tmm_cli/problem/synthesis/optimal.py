@@ -15,6 +15,7 @@ from tmm_cli.problem.expressions import evaluate_quantity
 from tmm_cli.problem.schema import Name, Strict, Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.synthesis.build import OfTheFile
 from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
 from tmm_cli.problem.varied import VariedUnits
 from tmm_cli.synthesis.goals import Goal
@@ -23,6 +24,8 @@ from tmm_cli.tape.varied import Varied
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters
+FEWEST = 8  # candidates in a generation
+MOST_PLACES = 2_000_000_000  # positions of candidates: some minutes for a four-bar
 Of = Literal["length", "mass", "box", "pressure", "moment", "reaction", "margin", "stroke", "k", "speed", "path", "law"]
 NEEDS = {"reaction": "pair", "path": "point", "law": "link"}  # the key that names of what
 FULL = {"moment": "moment of force", "reaction": "force"}
@@ -71,8 +74,8 @@ class Shape(Block):
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
     positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
-    population: int = Field(default=0, ge=0, le=10_000, description="candidates in a generation; 15 a parameter")
-    generations: int = Field(default=200, ge=1, le=100_000)
+    population: int = Field(default=0, ge=0, le=10_000, description="in a generation; 0: 20 a parameter")
+    generations: int = Field(default=0, ge=0, le=100_000, description="25 times the square of the number of parameters")
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
 
@@ -95,6 +98,7 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
             raise ProblemError(
                 "the lower bound comes first", path=way, found=f"{first} and {second}", allowed="[low, high]"
             )
+    _check_work(shape)
     varied = VariedUnits(sense.units)
     names = [shape.names.get(name, name) for name in low]
 
@@ -104,8 +108,7 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
         return linkage_of({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
     middle = make([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)])
-    for end in (low, high):  # what the file refuses at its bounds it is to say before the search
-        make(list(end.values()))
+    _check_bounds(shape, make, low, high)
     limits = []
     for n, given in enumerate(shape.constraints):
         path: tuple[str | int, ...] = ("constraints", n)
@@ -132,6 +135,39 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
     )  # fmt: skip
 
 
+def _check_work(shape: Shape) -> None:
+    """A search ends in our days. Raises ProblemError."""
+    if 0 < shape.population < FEWEST:
+        raise ProblemError(
+            "a population so small does not evolve", path=("population",), found=str(shape.population),
+            allowed=f"{FEWEST} or more, or 0 for as many as is usual",
+        )  # fmt: skip
+    each = max(shape.population, 20 * len(shape.vary)) * shape.positions
+    if shape.generations * each > MOST_PLACES:
+        raise ProblemError(
+            "such a search takes too long", path=("generations",), found=str(shape.generations),
+            allowed=f"{MOST_PLACES // each} or less of so many candidates at so many positions",
+        )  # fmt: skip
+
+
+def _check_bounds(
+    shape: Shape, make: Callable[[Sequence[Any]], Linkage], low: dict[str, float], high: dict[str, float]
+) -> None:
+    """What the file refuses at a bound is said before the search. Raises ProblemError."""
+    middle = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
+    for n, ends in enumerate((low, high)):
+        for k, (name, end) in enumerate(ends.items()):
+            try:
+                make([*middle[:k], end, *middle[k + 1 :]])
+            except OfTheFile as error:
+                path: tuple[str | int, ...] = ("vary", name, n)
+                raise ProblemError(
+                    f"with this bound the file is refused: {error.error.message}", path=path,
+                    found=quote(shape.vary[name][n]), allowed=error.error.allowed or "another bound",
+                ) from None  # fmt: skip
+        make(list(ends.values()))
+
+
 def _kind_of(source: Any, sense: Sense) -> str | None:
     try:
         found = evaluate_quantity(source, sense.parameters, sense.units).dimension
@@ -147,11 +183,12 @@ def _dimension(goal: Goal, linkage: Linkage) -> Dimension:
 
 
 def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int, ...]) -> Goal:
-    own = {"pair", "point", "link", "links", "through", "values", "at", "relative"}
-    takes = {"reaction": {"pair"}, "path": {"point", "through", "at"}, "law": {"link", "values", "at", "relative"},
+    own = {"pair", "point", "link", "links", "through", "values", "at", "relative", "norm"}
+    takes = {"reaction": {"pair"}, "path": {"point", "through", "at", "norm"},
+             "law": {"link", "values", "at", "relative", "norm"},
              "length": {"links"}}.get(given.of, set())  # fmt: skip
     for key in own - takes:
-        if getattr(given, key):
+        if key in given.model_fields_set:
             allowed = ", ".join(sorted(takes)) or "of"
             raise ProblemError(f"{given.of} has no {key}", path=(*path, key), allowed=allowed, key=True)
     name = ""

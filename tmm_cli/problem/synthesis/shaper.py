@@ -13,18 +13,19 @@ from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
 from tmm_cli.synthesis.shaper import Asked
 
-FRAMES = {"OC": ("frame", LENGTH), "frame_ratio": ("frame_ratio", NUMBER)}
+FRAMES = {"OC": ("frame", LENGTH), "frame_ratio": ("frame_ratio", NUMBER), "OA": ("crank", LENGTH)}
 RODS = {"DE": ("rod", LENGTH), "rod_ratio": ("rod_ratio", NUMBER), "pressure": ("pressure", ANGLE)}
 
 
 class Shape(Block):
-    """A crank shaper by its stroke and k, the frame OC (or its ratio), the rod DE (its ratio, or a pressure angle)."""
+    """A crank shaper by stroke, k, frame OC (its ratio, or the crank) and rod DE (its ratio, or a pressure angle)."""
 
     task: Literal["shaper"]
     stroke: Value = Field(description="stroke H of the ram")
     k: Value = Field(description="coefficient of change of mean speed, more than 1")
     OC: Value | None = Field(default=None, description="distance of the fixed hinges")
     frame_ratio: Value | None = Field(default=None, description="or OC/CD")
+    OA: Value | None = Field(default=None, description="or the crank")
     DE: Value | None = Field(default=None, description="rod")
     rod_ratio: Value | None = Field(default=None, description="or DE/CD")
     pressure: Value | None = Field(

@@ -15,7 +15,7 @@ from tmm_cli.synthesis.slotted_lever import Asked
 
 ENDS = (("B1", "B2"), ("CB",))
 SWINGS = (("k",), ("swing",))
-FRAMES = (("OC",), ("within",))
+FRAMES = (("OC",), ("OA",), ("within",))
 
 
 class Shape(Block):
@@ -33,7 +33,8 @@ class Shape(Block):
     k: Value | None = Field(default=None, description="coefficient of change of mean speed, more than 1")
     swing: Value | None = Field(default=None, description="swing of the lever, instead of k")
     OC: Value | None = Field(default=None, description="distance of the fixed hinges")
-    within: tuple[Value, Value] | None = Field(default=None, description="or bounds of that distance")
+    OA: Value | None = Field(default=None, description="or the crank")
+    within: tuple[Value, Value] | None = Field(default=None, description="or bounds of OC")
     choose: Literal["least force", "shortest"] | None = Field(
         default=None,
         description="OC within its bounds: the longest that leaves the stone on CB (least force), or the shortest",
@@ -55,6 +56,8 @@ def asked(shape: Shape, sense: Sense) -> Asked:
         found |= {name.lower(): sense.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
     if frame == ("OC",):
         found["frame"] = sense.number(shape.OC, LENGTH, ("OC",))
+    elif frame == ("OA",):
+        found["crank"] = sense.number(shape.OA, LENGTH, ("OA",))
     else:
         assert shape.within is not None
         low, high = (sense.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))

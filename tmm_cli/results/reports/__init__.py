@@ -15,6 +15,7 @@ from tmm_cli.results.table import Table
 # file here, the part of Results that it needs, the tables it gives (of other names where there are none): a report of a
 # stage that did not run, or of which no table is wanted, is not even imported
 REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    ("synthesis", "synthesis", ("synthesis-asked", "synthesis-found", "synthesis-measured")),
     ("structure", "structure", ("structure", "links", "pairs", "groups")),
     ("space", "structure", ("contours", "space", "replacements")),
     ("chain", "chain", ()),

@@ -1,0 +1,164 @@
+"""Constructions on their sheets: all lettered points are there, labels are in the field and beside one another."""
+
+import math
+from itertools import combinations, product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tmm_cli import load, solve
+from tmm_cli.draw.construction import PAD, SMALLER, border, construction, granted, inside
+from tmm_cli.draw.lettering import rename
+from tmm_cli.draw.synthesis import sheets
+from tmm_cli.plans.record import sheet_scale
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis import (
+    coupler_positions,
+    crank_slider,
+    four_bar_by_angles,
+    four_bar_by_k,
+    history,
+    shaper,
+    slotted_lever,
+)
+
+ROOT = Path(__file__).parents[1]
+
+
+def drawn(module, **asked):
+    return [d for d in module.solve(module.Asked(**asked)).drawings if hasattr(d, "spots")]
+
+
+def rocker(k, low, high, **more):
+    return drawn(
+        four_bar_by_k, l3=0.25, psi1=math.radians(low), psi2=math.radians(high), k=k, support=0.3 + 0.1j, **more
+    )
+
+
+def slider(k, ratio):
+    return drawn(crank_slider, stroke=0.12, k=k, ratio=ratio)
+
+
+CASES = {
+    **{f"rocker {k} {low} {high}": (rocker, (k, low, high))
+       for k, (low, high) in product((1.02, 1.05, 1.2, 1.5, 2.0), ((80, 100), (60, 110), (130, 40)))},
+    **{f"slider {k} {ratio}": (slider, (k, ratio))
+       for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.08, 3.5), (1.2, 3.0), (1.35, 2.2), (1.8, 1.5))},
+    **{f"shaper {k}": (lambda k: drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=0.4), (k,))
+       for k in (1.1, 1.5, 2.0)},
+    **{f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, frame=0.2), (k,))
+       for k in (1.1, 1.5, 2.0)},
+    "pivots": (lambda: drawn(
+        coupler_positions, places=(0j, 0.06 + 0.06j, 0.09 + 0.14j), angles=tuple(np.radians([0.0, 20, 60])),
+        sides={"AB": coupler_positions.Side(pivot=-0.06j), "DC": coupler_positions.Side(pivot=0.12 - 0.04j)}), ()),
+    "four positions": (lambda: drawn(
+        coupler_positions, places=(0j, 0.05 + 0.01j, 0.1 + 0.05j, 0.12 + 0.12j),
+        angles=tuple(np.radians([0.0, 20, 50, 90]))), ()),
+    "angles": (lambda: drawn(
+        four_bar_by_angles, phi=tuple(np.radians([30.0, 60, 90])), psi=tuple(np.radians([60.0, 72, 90])),
+        lengths={"l4": 0.1}), ()),
+}  # fmt: skip
+
+
+def boxes(figure):
+    """Real boxes of all texts in the field, mm, by text."""
+    (axes,) = figure.axes
+    renderer, back = figure.canvas.get_renderer(), axes.transData.inverted()
+    found = []
+    for text in axes.texts:
+        extent = text.get_window_extent(renderer)
+        (left, low), (right, high) = back.transform([(extent.x0, extent.y0), (extent.x1, extent.y1)])
+        found.append((text.get_text(), left, right, low, high))
+    return found
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_points_and_labels_are_on_the_sheet_and_no_two_labels_overlap(case):
+    make, values = CASES[case]
+    for one in make(*values):
+        sheet = construction("A task", one, UnitSystem())
+        low, high = sheet.ground.low, sheet.ground.high
+        for spot in one.spots:
+            at = sheet.on(spot.at)
+            assert low.real < at.real < high.real and low.imag < at.imag < high.imag, spot.name
+        texts = boxes(sheet.finish())
+        assert {spot.name for spot in one.spots} <= {text[0] for text in texts}
+        for name, left, right, bottom, top in texts[2:]:  # below the title strip
+            assert low.real <= left and right <= high.real and low.imag <= bottom and top <= high.imag, name
+        overlaps = [
+            (p[0], q[0]) for p, q in combinations(texts, 2)
+            if min(p[2], q[2]) - max(p[1], q[1]) > 0.3 and min(p[4], q[4]) - max(p[3], q[3]) > 0.6
+        ]  # fmt: skip
+        assert not overlaps
+
+
+@pytest.mark.parametrize("k", [1.02, 1.1, 1.3, 2.0])
+def test_the_mechanism_is_large_however_large_the_circle_is(k):
+    (one,) = rocker(k, 60, 110)
+    assert sheet_scale(granted(one), PAD)[1] <= SMALLER * sheet_scale(one.places(), PAD)[1] * (1 + 1e-9)
+
+
+def test_the_centre_of_a_circle_that_is_too_large_is_told_by_an_arrow_and_the_radius():
+    (far,), (near,) = slider(1.02, 4.0), slider(1.35, 2.2)
+    texts = [text[0] for text in boxes(construction("", far, UnitSystem()).finish())]
+    radius = 120 / 2 / math.sin(math.pi * 0.02 / 2.02)
+    assert f"to M, R = {radius:.4g} mm" in texts and "M" not in texts
+    texts = [text[0] for text in boxes(construction("", near, UnitSystem()).finish())]
+    assert "M" in texts and "R" in texts
+
+
+@pytest.mark.parametrize("k", [1.05, 1.2, 1.6])
+def test_on_the_admissible_arc_of_a_crank_slider_every_pivot_has_a_crank_that_turns(k):
+    (one,) = slider(k, 2.0 if k > 1.3 else 3.0)
+    b1, b2 = (next(s.at for s in one.spots if s.name == name) for name in ("B1", "B2"))
+    arc = next(a for a in one.arcs if a.style == "bold")
+    angles = np.linspace(arc.start, arc.end, 41)[1:-1]
+    for o in arc.centre + arc.radius * np.exp(1j * angles):
+        far, near, e = abs(o - b1), abs(o - b2), abs((o - b1).imag)
+        r, rod = (far - near) / 2, (far + near) / 2
+        assert rod - r > e and abs(np.angle((b2 - o) / (b1 - o))) == pytest.approx(math.pi * (k - 1) / (k + 1))
+    past = arc.centre + arc.radius * np.exp(1j * (arc.start - 0.01))  # beyond its end the crank does not turn
+    assert abs(past - b2) < abs((past - b2).imag) * (1 + 1e-3) and past.real > b2.real
+
+
+def test_given_pivots_are_turned_back_with_the_coupler_to_its_first_position():
+    (one,) = CASES["pivots"][0]()
+    at = {spot.name: spot.at for spot in one.spots}
+    for pivot, pin in (("A", "B1"), ("D", "C1")):
+        radius = abs(at[pivot] - at[pin])
+        assert [abs(at[f"{pivot}{k}′"] - at[pin]) for k in (2, 3)] == pytest.approx([radius] * 2, rel=1e-12)
+
+
+def test_joints_are_called_as_in_the_file_and_the_centre_otherwise():
+    results = solve(load(str(ROOT / "problems" / "press-synthesis.yaml")), "kinematics")
+    (one,) = slider(1.08, 3.5)
+    named, letters = rename(one, results.linkage, {"r": "OA", "l": "AB", "e": "e"})
+    assert letters == {"O": "O", "A": "A", "B": "B", "M": "M"}
+    assert {s.name for s in named.segments if s.name} == {"OA", "AB", "AB − OA"}
+    (other,) = slider(1.3, 2.2)  # not the mechanism of the file
+    assert rename(other, results.linkage, {})[1] == {"O": "O", "A": "A", "B": "B", "M": "M"}
+
+
+def test_both_extreme_positions_have_letters():
+    results = solve(load(str(ROOT / "problems" / "press-synthesis.yaml")), "kinematics")
+    found = results.problem.synthesis
+    figure = dict(sheets("", found.outcome, results, results.problem.units, found.names))["synthesis-extremes"]
+    assert {"Aᴵ", "Bᴵ", "Aᴵᴵ", "Bᴵᴵ", "O"} <= {text[0] for text in boxes(figure)}
+
+
+def test_a_curve_is_cut_where_it_leaves_the_field():
+    square = (0j, 10 + 10j)
+    assert border(5 + 5j, 25 + 5j, *square) == 10 + 5j
+    pieces = inside([-5 + 5j, 5 + 5j, 5 + 15j, 9 + 15j, 9 + 5j], *square)
+    assert pieces == [[0 + 5j, 5 + 5j, 5 + 10j], [9 + 10j, 9 + 5j]]
+
+
+def test_the_history_is_never_empty():
+    rows = np.array([[3.0, 0.4], [2.0, 0.1], [2.5, 1e-3], [2.6, 1e-5]])  # as with equalities: never quite kept
+    shown = history.diagram(rows, lambda f: f, 2.7, "length", "length")
+    assert [line.words.rpartition(".")[2] for line in shown.lines] == ["leading", "polished"]
+    assert list(shown.lower[0].y) == [0.4, 0.1, 1e-3, 1e-5]
+    rows[2:, 1] = 0
+    shown = history.diagram(rows, lambda f: f, 2.4, "length", "length")
+    assert list(shown.lines[1].y[2:]) == [2.5, 2.5] and np.all(np.isnan(shown.lines[1].y[:2]))

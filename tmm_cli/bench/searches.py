@@ -1,0 +1,204 @@
+"""`tmm bench synthesis`: candidates a second of the optimal synthesis, how near its search comes to the best known."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.bench.accuracy import CLOCK, machine
+from tmm_cli.bench.speed import SLACK_WHEN_REDUCED, by_turns
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.search import search_of
+from tmm_cli.synthesis.candidates import Search
+from tmm_cli.synthesis.optimal import best
+from tmm_cli.variants.taped import Taped
+
+SEARCHED = "crank-rocker"  # whose search is measured, and whose speed has a target
+NAMES = (SEARCHED, "six-bar", "shaper")
+GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itself
+PER_SECOND = 100_000.0  # candidates, at the size that the search uses
+NEAR = 1e-3  # of the best known
+SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
+LONG_RUNS, LONGER = 10, 4  # for the best known: so many times the population in so many times the generations
+
+
+@dataclass(frozen=True)
+class Rate:
+    """Candidates a second in generations of a size, in the least time of several turns."""
+
+    problem: str
+    parameters: int
+    constraints: int
+    positions: int
+    operations: int
+    generation: int
+    per_second: float
+    target: float | None = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a seed led to: its objective exactly, by how much constraints are missed (shares), processor's time (s).
+
+    off: above the best known, as a share of it. history: candidates so far, and how far the best of them is off,
+    where it got better.
+    """
+
+    seed: int
+    objective: float
+    missed: float
+    off: float
+    evaluations: int
+    searching: float
+    polishing: float
+    history: tuple[tuple[int, float], ...] = field(default=(), repr=False)
+
+    @property
+    def near(self) -> bool:
+        return self.missed == 0 and self.off <= NEAR
+
+
+@dataclass(frozen=True)
+class Searches:
+    """The whole measurement. known: what the long runs found (`known`)."""
+
+    rates: tuple[Rate, ...]
+    found: tuple[Found, ...]
+    known: dict[str, Any]
+    reduced: bool
+    absent: tuple[str, ...] = ()
+    machine: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def near(self) -> int:
+        return sum(one.near for one in self.found)
+
+    @property
+    def wanted(self) -> int:
+        """How many seeds must come near: 9 of 10; of a reduced run all but one."""
+        return OF_TEN if len(self.found) == SEEDS else len(self.found) - 1
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Targets that are missed; of a reduced run, by more than twice."""
+        slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
+        slow = [
+            f"{r.problem}, generations of {r.generation}: {r.per_second:.0f} candidates a second, target {r.target:.0f}"
+            for r in self.rates if r.target is not None and r.per_second < r.target / slack
+        ]  # fmt: skip
+        if self.near < self.wanted:
+            near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
+            slow.append(f"{near} of the best known, target {self.wanted}")
+        return tuple(slow)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON."""
+        return asdict(self) | {
+            "found": [asdict(one) | {"near": one.near} for one in self.found],
+            "near": self.near, "wanted": self.wanted, "failures": list(self.failures),
+        }  # fmt: skip
+
+
+@cache
+def text(name: str) -> str:
+    """A problem file that ships with the package."""
+    return (files("tmm_cli.bench") / "data" / "synthesis" / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+@cache
+def known() -> dict[str, Any]:
+    """The best known of SEARCHED and the long runs that found it (tests/write_synthesis_best.py writes them)."""
+    source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
+    found: dict[str, Any] = json.loads(source)
+    return found
+
+
+def prepared(name: str) -> Search:
+    """The task of a problem by its name, ready for evaluation."""
+    return Search(search_of(read_text(text(name), f"{name}.yaml")))
+
+
+def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
+    """Speed of evaluation on every problem, then the search from several seeds on one."""
+    rates: list[Rate] = []
+    for name in NAMES:
+        progress(name)
+        rates += rate(name, reduced)
+    search = prepared(SEARCHED)
+    reference = known()
+    found = []
+    for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
+        progress(f"{SEARCHED}, seed {seed}")
+        found.append(searched(search, seed, reference["objective"]))
+    return Searches(tuple(rates), tuple(found), reference, reduced, (), machine())
+
+
+def rate(name: str, reduced: bool) -> list[Rate]:
+    """Candidates a second, evenly spread over the bounds, by the size of generations."""
+    search = prepared(name)
+    parameters, sizes = len(search.low), (search.population, *GENERATIONS[: 2 if reduced else None])
+    chance = np.random.default_rng(1)
+    found = []
+    for size in sizes:
+        x = chance.random((size, parameters))
+        seconds = by_turns({"": lambda: search.evaluate(x)}, reduced)[""]  # noqa: B023
+        target = PER_SECOND if name == SEARCHED and size == search.population else None
+        found.append(
+            Rate(name, parameters, len(search.limits) - 1, search.asked.positions, _operations(search), size,
+                 size / seconds, target)
+        )  # fmt: skip
+    return found
+
+
+def _operations(search: Search) -> int:
+    """Of the tape, for all of a generation."""
+    return search.coarse.operations if isinstance(search.coarse, Taped) else 0
+
+
+def searched(search: Search, seed: int, known: float) -> Found:
+    """Search and polish from a seed, at the ordinary settings of the task."""
+    times = [CLOCK()]
+
+    def watch(at: int, of: int) -> None:
+        if at == of:
+            times.append(CLOCK())
+
+    search.asked = replace(search.asked, seed=seed, progress=watch)
+    one = best(search)
+    times.append(CLOCK())
+    size = search.population
+    f = np.where(one.evolved.history[:, 1] == 0, one.evolved.history[:, 0], np.nan)
+    so_far = np.fmin.accumulate(f)
+    steps = [k for k, v in enumerate(so_far) if not np.isnan(v) and (k in (0, len(f) - 1) or v != so_far[k - 1])]
+    history = [(size * (k + 1), float(so_far[k] / known - 1)) for k in steps]
+    return Found(
+        seed, one.values[0], one.missed, one.values[0] / known - 1, size * len(f), times[1] - times[0],
+        times[2] - times[1], tuple(history),
+    )  # fmt: skip
+
+
+def long_runs(progress: Callable[[str], None] = lambda _: None) -> dict[str, Any]:
+    """The best of long runs of SEARCHED, as `known` reads it."""
+    search = prepared(SEARCHED)
+    population, generations = LONGER * search.population, LONGER * search.generations
+    search.asked = replace(search.asked, population=population, generations=generations)
+    runs = []
+    for seed in range(101, 101 + LONG_RUNS):  # others than those that are measured against them
+        progress(f"{SEARCHED}, long run from seed {seed}")
+        search.asked = replace(search.asked, seed=seed)
+        one = best(search)
+        runs.append(
+            (one.missed, one.values[0], seed, [float(v) for v in one.numbers], population * len(one.evolved.history))
+        )
+    _, objective, seed, numbers, _ = min(runs)
+    return {
+        "problem": SEARCHED, "objective": objective, "numbers": dict(zip(search.asked.low, numbers, strict=True)),
+        "seed": seed, "population": population, "generations": generations,
+        "runs": [{"seed": s, "objective": f, "missed": m, "evaluations": n} for m, f, s, _, n in runs],
+    }  # fmt: skip

@@ -1,0 +1,106 @@
+"""Dimension lines and angles on a sheet, as on engineering drawings (GOST 2.307, ISO 129)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.vectors import Vector
+
+OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
+OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
+SHORTEST = 0.4  # mm: smaller sizes are not drawn
+INNER = 3.2  # heads that fit between the extension lines
+NAMES = "#7a3d99"
+
+
+def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
+    """A dimension line beside two places (mm), where the least is in its way; text along it, above or left of it."""
+    way = end - start
+    way = way if along == 0 else along * float((way * np.conj(along)).real) / abs(along) ** 2
+    length = abs(way)
+    if length < SHORTEST:
+        return
+    u = way / length
+    crowd = np.concatenate(sheet.ground.points) if sheet.ground.points else np.zeros(0, complex)
+    label = Label(text, 0j, TEXT, DARK)
+    width, height = extent(label)
+
+    def lines(side: complex, offset: float) -> tuple[complex, complex, complex]:
+        """Ends of the dimension line, middle of the text."""
+        foot = max((z * np.conj(side)).real for z in (start, end)) + offset
+        first, last = (z + (foot - (z * np.conj(side)).real) * side for z in (start, end))
+        fits = length > 2 * HEAD + 1 and length > width + 1
+        above = up_of(u)
+        middle = (first + last) / 2 if fits else last + u * (2 * HEAD + 1.5 + width / 2)
+        return first, last, middle + (height / 2 + 0.7) * above
+
+    def cost(side: complex, offset: float) -> float:
+        first, last, middle = lines(side, offset)
+        outer = 0.0 if length > INNER * HEAD else 3 * HEAD
+        run = ((crowd - first) * np.conj(u)).real
+        off = np.abs(((crowd - first) * np.conj(u)).imag)
+        found = float(np.count_nonzero((run > -outer - 1) & (run < length + outer + 1) & (off < 1.5)))
+        found += 2.0 * float(np.count_nonzero(_in_text(crowd, middle, u, width, height)))
+        for z, end_ in ((start, first), (end, last)):
+            deep = ((crowd - z) * np.conj(side)).real
+            beside = np.abs(((crowd - z) * np.conj(side)).imag)
+            found += 0.5 * float(np.count_nonzero((deep > 4) & (deep < abs(end_ - z)) & (beside < 0.8)))
+        for a, b, c, d in sheet.ground.boxes:
+            for z in (first, last, middle, middle + u * width / 2, middle - u * width / 2):
+                found += 40.0 * (a - 1 < z.real < b + 1 and c - 1 < z.imag < d + 1)
+        low, high = sheet.ground.low, sheet.ground.high
+        for z in (first, last, middle + u * width / 2, middle - u * width / 2):
+            found += 100.0 * (not (low.real < z.real < high.real and low.imag < z.imag < high.imag))
+        return found + 0.25 * offset
+
+    side, offset = min(((1j * u * s, o) for o in OFFSETS for s in (1, -1)), key=lambda one: cost(*one))
+    first, last, middle = lines(side, offset)
+    for z, foot in ((start, first), (end, last)):
+        if abs(foot - z) > 2.5:
+            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4)
+    if length > INNER * HEAD:
+        for tail, tip in ((last, first), (first, last)):
+            sheet.arrow(tail, tip, DARK, 0.6, 4.5)
+    else:  # heads from outside, on a line that goes on under the text
+        beyond = last + u * (2 * HEAD + 3 + width)
+        for tail, tip in ((first - 2 * HEAD * u, first), (last + 2 * HEAD * u, last)):
+            sheet.arrow(tail, tip, DARK, 0.6, 4.5)
+        sheet.line([first, beyond], DARK, 0.6, z=4.5)
+    if INNER * HEAD < length <= width + 1 or INNER * HEAD < length <= 2 * HEAD + 1:
+        sheet.line([last, last + u * (2 * HEAD + 3 + width)], DARK, 0.6, z=4.5)
+    sheet.along(middle, text, TEXT, u)
+
+
+def up_of(u: complex) -> complex:
+    """The side of a line on which its text stands: above it, or left of an upright one."""
+    turned = 1j * u
+    return turned if turned.imag > 1e-6 or (abs(turned.imag) <= 1e-6 and turned.real < 0) else -turned
+
+
+def _in_text(crowd: Vector, middle: complex, u: complex, width: float, height: float) -> Vector:
+    local = (crowd - middle) * np.conj(u)
+    found: Vector = (np.abs(local.real) < width / 2 + 0.6) & (np.abs(local.imag) < height / 2 + 0.4)
+    return found
+
+
+def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
+    """The arc of an angle between the ways to two places (mm), or a square where it is right; its name beside it."""
+    ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
+    if right:
+        corner = 5.4  # beyond the edge of a stone
+        sheet.line(
+            [vertex + corner * ways[0], vertex + corner * sum(ways), vertex + corner * ways[1]], DARK, 0.8, z=3.2
+        )
+        return
+    turn = float(np.angle(ways[1] / ways[0]))
+    room = 0.85 * min(abs(first - vertex), abs(last - vertex))
+    radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), 45.0))
+    angles = float(np.angle(ways[0])) + np.linspace(0, turn, 30)
+    places = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
+    sheet.line(places, DARK, 0.7, z=2.6)
+    for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
+        if abs(turn) * radius > 7:
+            sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK, 0.5, 4.5)
+    sheet.labels.append(Label(name, places[len(places) // 2], 9, NAMES, "italic", far=True))

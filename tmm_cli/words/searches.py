@@ -1,0 +1,38 @@
+"""Words of `tmm bench synthesis`."""
+
+WORDS: dict[str, str] = {
+    "searches.rates_title": "Candidates a second at the evaluation, one thread: least time of several turns",
+    "searches.found_title": "Search from several seeds, {problem}; best known {objective:.9g} of {runs} runs "
+    "of {evaluations} candidates",
+    "searches.problem": "problem",
+    "searches.parameters": "parameters",
+    "searches.constraints": "constraints",
+    "searches.positions": "positions",
+    "searches.operations": "operations",
+    "searches.generation": "generation",
+    "searches.per_second": "candidates/s",
+    "searches.at_least": "at least",
+    "searches.seed": "seed",
+    "searches.objective": "objective (SI)",
+    "searches.off": "above the best known, %",
+    "searches.evaluations": "candidates",
+    "searches.searching": "search, s",
+    "searches.polishing": "polish, s",
+    "synthesis.missed": "target missed: {what}",
+    "synthesis.met": "all targets met",
+    "synthesis.written": "written: {files}",
+    "searches.chart": "Optimal synthesis: how quickly candidates are evaluated, how near the search comes",
+    "searches.caption": "five lengths of a crank-rocker, three constraints, 72 positions; one thread; "
+    "tmm {tmm}, Python {python}, NumPy {numpy}, {system}",
+    "searches.panel_rate": "Candidates a second",
+    "searches.panel_found": "{near} of {count} seeds within 0.1 % of the best known",
+    "searches.axis_generation": "candidates in a generation",
+    "searches.axis_rate": "thousand candidates a second",
+    "searches.axis_evaluations": "thousand candidates evaluated",
+    "searches.axis_off": "above the best known, %",
+    "searches.line": "{problem}: {parameters} lengths, {constraints} constraints",
+    "searches.target_rate": "target, at the size that the search uses",
+    "searches.target_off": "target, 0.1 %",
+    "searches.searched": "search, seed by seed, from 72 positions",
+    "searches.polished": "polished on exact peaks, 1e-7 % and nearer",
+}
