@@ -24,13 +24,18 @@ from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.four_bar_family import construction, diagrams
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 W: Final = "synthesis_four_bar_by_k"
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
+ARC: Final = 1e-5  # rad: on a shorter arc the rocker is dead as good as everywhere
+SLACK: Final = 1 - 1e-9  # of that, for rounding
+STEP: Final = 1e-14  # the least step of a derivative, relative
+SCAN: Final = 100  # values of theta that are tried for level supports
+LEVEL: Final = 1e-6  # rad of theta, from where a pivot is level first: an end of an arc
 FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
 
 
@@ -125,7 +130,7 @@ def arcs(asked: Asked) -> list[int]:
     if asked.k == 1:
         return [-1]
     way = 1 if asked.psi2 > asked.psi1 else -1
-    return [side for side in SIDES if widest(asked, side) > 0 and asked.sense in (0, -side * way)]
+    return [side for side in SIDES if widest(asked, side) >= ARC * SLACK and asked.sense in (0, -side * way)]
 
 
 def places(asked: Asked, side: int, count: int = 400) -> Any:
@@ -198,8 +203,9 @@ def _best(asked: Asked, side: int, choice: str) -> Any:
 
 def inside(asked: Asked, w: Any, side: int) -> bool:
     """Whether a place is not one of the ends of an arc."""
-    ends = places(asked, side)[[0, -1]]
-    return bool(ends[0] + 2 * (ends[0] - 1) < w < ends[1] * (1 - END))
+    low, high = places(asked, side)[[0, -1]]
+    near = END * (high - 1)
+    return bool(low + 2 * near < w < high - 2 * near)
 
 
 def _plain(asked: Asked) -> Asked:
@@ -225,8 +231,10 @@ def choose(asked: Asked) -> Found:
     if not inside(plain, w, side):
         return _at_end(asked, w, side)
     for _ in range(4):  # the same in the precision of the data
-        step = 1e-7 * (w - 1)
+        step = max(1e-7 * (w - 1), STEP * w)
         value, beyond = (equation(at(asked, x, side), asked) for x in (w, w + step))
+        if beyond == value:
+            break
         w = w - step * value / (beyond - value)
     return at(asked, w, side)
 
@@ -244,21 +252,21 @@ def _at_end(asked: Asked, w: Any, side: int) -> Found:
 def _not_there(asked: Asked) -> None:
     """No pivot of the arcs is what was asked for: says what there is."""
     if asked.choose == "level":
-        offsets = np.concatenate([np.imag(at(asked, places(asked, s), s).a - asked.support) for s in arcs(asked)])
-        nearest = float(offsets[np.argmin(np.abs(offsets))])
-        raise Infeasible("choose", f"{W}.level_none", f"{W}.level_nearest", {"offset": (nearest, "length")})
+        raise _not_level(asked)
     h, name = float(asked.l3 * np.sin(asked.swing / 2)), asked.choose
     if name == "l1" and asked.k == 1:
         raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", {"l1": (h, "length")})
     if name in ("l1", "l2"):
         last = [float(getattr(at(asked, places(asked, side)[-1], side), name)) for side in arcs(asked)]
-        values = {"low": (min(h, *last), "length"), "high": (max(h, *last), "length")}
-        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", values)
+        bounds: dict[str, Shown] = {"low": (min(h, *last), "length", "above"), "high": (max(h, *last), "length", "below")}
+        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", bounds)
     l3 = float(asked.l3)
     if asked.k == 1:
-        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length")})
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length", "above")})
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
-    values = {"low": (min(ends), "length"), "high": (max(ends), "length"), "l3": (l3, "length")}
+    values = {
+        "low": (min(ends), "length", "above"), "high": (max(ends), "length", "below"), "l3": (l3, "length"),
+    }  # fmt: skip
     inner = min(ends) < l3 < max(ends)  # there A would be C1
     raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
 
@@ -270,19 +278,72 @@ def refuse(asked: Asked) -> None:
         if value is not None and not value > 0:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
     if not asked.k >= 1:
-        values = {"k": (1 / asked.k if asked.k > 0 else 1.0, "number")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", values)
-    if not 0 < asked.swing < np.pi:
-        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (asked.psi1, "angle")})
+        _refuse_small(asked)
+    psi1, widest_swing = float(asked.psi1), np.pi - 2 * ARC
+    if not 0 < asked.swing <= widest_swing:
+        ends = {"low": (psi1 - widest_swing, "angle", "least"), "high": (psi1 + widest_swing, "angle", "most")}
+        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (psi1, "angle"), **ends})
     theta, half = float(asked.theta), float(asked.swing) / 2
-    if not theta < np.pi / 2 + half:
-        values = {"k": (float(k_of(np.pi / 2 + half)), "number"), "swing": (2 * theta - np.pi, "angle")}
-        raise Infeasible("k", f"{W}.k_above", f"{W}.k_most", values)
+    if theta > np.pi / 2 + half - ARC:
+        way = 1 if asked.psi2 > asked.psi1 else -1
+        swing = psi1 + way * (2 * theta - np.pi + 2 * ARC)
+        values = {
+            "k": (float(k_of(np.pi / 2 + half - ARC)), "number", "most"),
+            "psi2": (swing, "angle", "least" if way > 0 else "most"),
+        }
+        words = "k_most_alone" if theta > np.pi - 2 * ARC else "k_most" if way > 0 else "k_most_down"
+        raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", values)
     if not arcs(asked):  # only the arc beyond C1C2 gives this sense
-        most = np.pi / 2 - half
-        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most", {"k": (float(k_of(most)), "number")})
+        most = np.pi / 2 - half - ARC
+        values = {"k": (float(k_of(most)), "number", "most")}
+        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most" if most > 0 else f"{W}.sense_other", values)
     if theta == 0 and asked.choose == "best":
         raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
+
+
+def _refuse_small(asked: Asked) -> None:
+    """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
+    if not asked.k > 0:
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero")
+    try:
+        refuse(replace(asked, k=1 / asked.k))
+    except Infeasible as error:
+        if "k" not in error.values:
+            raise
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range", {"k": error.values["k"]}) from None
+    raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / asked.k, "number", "most")})
+
+
+def _not_level(asked: Asked) -> Infeasible:
+    """No pivot is as high as D: how near they come, and the nearest k for which one is."""
+
+    def gap(k: float) -> float:
+        """The offset from D that is nearest to none; 0 where a pivot is level."""
+        tried = replace(asked, k=k)
+        offsets = [np.imag(at(tried, places(tried, side), side).a - asked.support) for side in arcs(tried)]
+        if any(np.min(row) <= 0 <= np.max(row) for row in offsets):
+            return 0.0
+        every = np.concatenate([*offsets, [np.inf]])
+        return float(every[np.argmin(np.abs(every))])
+
+    offset = gap(float(asked.k))
+    values: dict[str, Shown] = {"offset": (abs(offset), "length")}
+    words = "level_higher" if offset > 0 else "level_lower"
+    theta = float(asked.theta)
+    least, most = 1e-3, np.pi / 2 + float(asked.swing) / 2 - 2 * ARC
+    shares = np.linspace(0, 1, SCAN)[1:]
+    tried = sorted([*(theta + (most - theta) * shares), *(theta + (least - theta) * shares)], key=lambda x: abs(x - theta))
+    good = next((x for x in tried if gap(float(k_of(x))) == 0), None)
+    if good is None:
+        return Infeasible("choose", f"{W}.level_none", f"{W}.{words}", values)
+    inside, outside = good, theta
+    for _ in range(30):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if gap(float(k_of(middle))) == 0 else (inside, middle)
+    up = good > theta
+    inside += (1 if up else -1) * LEVEL
+    values["k"] = (float(k_of(inside)), "number", "least" if up else "most")
+    return Infeasible("choose", f"{W}.level_none", f"{W}.{words}_{'more' if up else 'less'}", values)
 
 
 def solve(asked: Asked) -> Outcome:

@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from tmm_cli.synthesis.construction import Construction, Diagram
 
+Shown = tuple[Any, str] | tuple[Any, str, str]  # of a refusal: value, kind, and which side of it is allowed
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
 
@@ -83,7 +86,9 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
     key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
-    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind).
+    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind) or
+    (number, kind, side): `most`, `least` allowed, or `below`, `above` for limits that are not allowed themselves; they
+    are rounded to that side, so that what is printed can be typed in.
     """
 
     def __init__(
@@ -91,8 +96,16 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
         key: str | tuple[str | int, ...],
         reason: str,
         nearest: str,
-        values: Mapping[str, tuple[Any, Kind]] | None = None,
+        values: Mapping[str, Shown] | None = None,
     ) -> None:
         self.path = (key,) if isinstance(key, str) else key
         self.reason, self.nearest, self.values = reason, nearest, dict(values or {})
         super().__init__(reason)
+
+
+def sound(outcome: Outcome) -> Outcome:
+    """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
+    for value in outcome.found:
+        if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
+            raise Infeasible((), "synthesis.no_number", "synthesis.no_number_other", {"name": (value.words, "said")})
+    return outcome
