@@ -82,7 +82,7 @@ def dyad(asked: Asked, name: str) -> Dyads:
         if half <= SAME * asked.size:
             raise Infeasible(key, f"{W}.still", f"{W}.elsewhere", {"point": (key, "word")})
         if not side.length > half:
-            values = {"length": (float(half), "length"), "name": (name, "word")}
+            values = {"length": (float(half), "length", "above"), "name": (name, "word")}
             raise Infeasible(name, f"{W}.short", f"{W}.longer", values)
         found = beside(places, side.length, SIDES[side.side])
     fixed = np.asarray(given, np.clongdouble)

@@ -202,7 +202,7 @@ def refuse(asked: Asked) -> None:
     if nu is not None and not nu >= 0:
         raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least")
     if length is not None and not length > 1:
-        values = {"ratio": (1 + (nu or 0.0), "number", "above")}
+        values: dict[str, Shown] = {"ratio": (1 + (nu or 0.0), "number", "above")}
         raise Infeasible("ratio", f"{W}.ratio_below", f"{W}.ratio_least", values)
     if length is not None and nu is not None and not nu < length - 1:
         values = {"nu": (length - 1, "number", "below"), "ratio": (nu + 1, "number", "above")}

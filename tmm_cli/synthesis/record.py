@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from tmm_cli.synthesis.construction import Construction, Diagram
 
-Shown = tuple[Any, str] | tuple[Any, str, str]  # of a refusal: value, kind, and which side of it is allowed
+Shown = tuple[Any, ...]  # of a refusal: value, kind, and perhaps which side of it is allowed
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
 
@@ -28,7 +28,8 @@ class Value:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file.
+    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file; a long
+    one is for files only.
 
     kind `word`: keys of words; `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind
     `unit`. None: there is none.
@@ -38,6 +39,7 @@ class Listing:
     title: str
     columns: tuple[tuple[str, Kind], ...]
     rows: tuple[tuple[Any, ...], ...]
+    long: bool = False
 
 
 @dataclass(frozen=True)

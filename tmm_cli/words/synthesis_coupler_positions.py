@@ -41,7 +41,7 @@ WORDS: dict[str, str] = {
     f"{_W}.one_point": "{names} are one point: that is no four-bar",
     f"{_W}.two_points": "two points",
     f"{_W}.short": "{name} does not reach both places",
-    f"{_W}.longer": "{name} more than {length}",
+    f"{_W}.longer": "{name} {length} or more",
     f"{_W}.no_turn": "no link through the four positions turns by this angle from the first to the second",
     f"{_W}.nearest_turn": "{turn}",
     f"{_W}.other_positions": "other positions",

@@ -48,7 +48,8 @@ WORDS: dict[str, str] = {
     "synthesis_crank_slider.e_most": "e {e} or less, or k {k} or less",
     "synthesis_crank_slider.k_never": "no crank-slider whose crank turns fully has k of 3 or more",
     "synthesis_crank_slider.pressure_range": "a largest pressure angle is more than zero and less than a right angle",
-    "synthesis_crank_slider.pressure_allowed": "more than zero and less than 90 deg; 30 deg is usual for a sliding link",
+    "synthesis_crank_slider.pressure_allowed": "more than zero and less than 90 deg; 30 deg is usual for a "
+    "sliding link",
     "synthesis_crank_slider.pressure_below": "no length of the rod keeps this pressure angle with this k",
     "synthesis_crank_slider.pressure_least": "pressure {pressure} or more, or k {k} or less",
 }

@@ -41,6 +41,8 @@ WORDS: dict[str, str] = {
     "seen under theta",
     "synthesis_four_bar_by_k.bold": "red: where {A} may be, so that the crank turns fully",
     "synthesis_four_bar_by_k.angles": "{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|",
+    "synthesis_four_bar_by_k.transmission": "least transmission angle",
+    "synthesis_four_bar_by_k.family": "All pivots A of the admissible arcs, from end to end",
     "synthesis_four_bar_by_k.family_pressure": "Largest pressure angle along the admissible arcs",
     "synthesis_four_bar_by_k.family_lengths": "Lengths of the links along the admissible arcs",
     "synthesis_four_bar_by_k.pressure_inside": "A on D's side of C1C2",
