@@ -201,17 +201,17 @@ def test_the_best_transmission_on_the_curves_is_not_beaten_by_random_links_of_th
 
 REFUSED = {
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60":
-        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB more than 36.0555 mm",
+        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB 36.0556 mm or more",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]":
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
-        "  found:   a list of 2\n  allowed: another B, or a slider instead of the link",
+        "  found:   [0, 0]\n  allowed: another B, or a slider instead of the link",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis: these keys do not determine AB with 3 positions\n  found:   AB, B\n  allowed: B; or A",
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
-        "  found:   a list of 2\n  allowed: another B",
+        "  found:   [0, 0]\n  allowed: another B",
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
         "  found:   a list of 2\n  allowed: DC as the driver (exchange A with D and B with C), or defects: keep",
@@ -219,7 +219,7 @@ REFUSED = {
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
         "  found:   a list of 4\n  allowed: other points or turns, or defects: keep",
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
-        "synthesis.C: B and C are one point: that is no four-bar\n  found:   a list of 2\n  allowed: two points",
+        "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n  allowed: two points",
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
         "synthesis.C: B and C are one point: that is no four-bar\n",
     "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]":

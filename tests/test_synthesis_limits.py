@@ -135,6 +135,46 @@ def test_a_printed_limit_typed_in_is_allowed_and_a_little_farther_is_not(case, s
         refused(block | {key: wrap(beyond)})
 
 
+@pytest.mark.parametrize("seed", range(14))
+def test_the_output_angle_that_is_told_makes_a_four_bar_without_defects(seed):
+    r = np.random.default_rng(seed)
+    for _ in range(40):
+        count = int(r.integers(2, 5))
+        phi, psi = np.cumsum(r.uniform(10, 50, count)), np.cumsum(r.uniform(5, 50, count))
+        pairs = [[float(a), float(b)] for a, b in zip(phi, psi, strict=True)]
+        block = {"task": "four-bar-by-angles", "l4": 100, "pairs": pairs}
+        if count == 2:
+            block |= {"l1": r.uniform(20, 900)}
+        try:
+            solved(block)
+        except ProblemError as error:
+            told = error.allowed
+            break
+    else:
+        return
+    if match := re.search(r"^(l\d) ([^ ]+ mm)", told):
+        solved(block | {match[1]: match[2]})
+        return
+    match = re.search(r"output angle (?:(\d): )?([^ ,;]+ deg)", told)
+    assert match, told
+    which = int(match[1] or count) - 1
+    pairs[which] = [pairs[which][0], match[2]]
+    solved(block)
+
+
+def test_equal_ranges_of_input_and_output_with_four_points_want_endless_links_and_that_is_said():
+    block = {
+        "task": "four-bar-by-angles", "function": "x^2", "x": [0, 1], "input": [30, 120], "points": 4, "l4": 100,
+        "output": [60, 150],
+    }  # fmt: skip
+    error = refused(block)
+    assert "infinitely long" in error.message and error.found == "[60, 150]"
+    psi = re.search(r"angle ([^ ,]+ deg)", error.allowed)[1]
+    assert psi != "150 deg"
+    links = [float(solved(block | {"output": [60, psi]}).parameters[f"l{k}"].value) for k in range(1, 5)]
+    assert max(links) <= 50 * min(links)
+
+
 def test_limits_are_rounded_to_their_side_and_never_onto_a_limit_that_is_not_allowed():
     units = UnitSystem({"length": "mm"})
     rows = {

@@ -247,16 +247,16 @@ REFUSED_LEVERS = {
         ": these keys do not determine a slotted lever\n  found:   OC, OA\n  allowed: OC; or OA; or within"
     ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (
-        ".B2: B1 and B2 are the same place\n  found:   a list of 2\n  allowed: a place other than B1"
+        ".B2: B1 and B2 are the same place\n  found:   [1, 2]\n  allowed: a place other than B1"
     ),
     "CB: 500, k: 1.5, within: [450, 600]": (
         ".within: within these bounds the stone always passes B"
-        "\n  found:   a list of 2\n  allowed: a lower bound of 381.966 mm or less; or OC by itself, "
+        "\n  found:   [450, 600]\n  allowed: a lower bound of 381.966 mm or less; or OC by itself, "
         "with the slot longer than CB"
     ),
     "CB: 500, k: 1.5, within: [300, 200]": (
         ".within: these are no bounds of a distance"
-        "\n  found:   a list of 2\n  allowed: two lengths above zero, the smaller one first"
+        "\n  found:   [300, 200]\n  allowed: two lengths above zero, the smaller one first"
     ),
     "CB: 500, B1: [1, 2], k: 1.5, OC: 200": (
         ": these keys do not determine a slotted lever\n  found:   B1, CB\n  allowed: B1 and B2; or CB"

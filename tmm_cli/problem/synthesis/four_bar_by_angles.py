@@ -13,8 +13,8 @@ from tmm_cli.problem.schema import Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block, Range
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.four_bar_by_angles import Asked
 from tmm_cli.synthesis.functions import ANGLES, FUNCTIONS, Function
+from tmm_cli.synthesis.pairs import Asked
 
 LENGTHS = ("l1", "l2", "l3", "l4")
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
