@@ -17,12 +17,18 @@ ERRORS: Final = 721  # places of the curve
 NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
 
 
+def _scan(function: Function) -> Any:
+    """Input angles (rad) that are looked at: even, and where the table has rows."""
+    even = np.linspace(min(function.phi), max(function.phi), ERRORS)
+    return np.unique(np.concatenate((even, function.corners())))
+
+
 def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, float]:
     """Input angles (rad) of the largest peaks of an error, and its largest size, to the last digits.
 
     Where a table has a corner an extreme may be there; between the places of the scan the error has one extreme.
     """
-    phi = np.unique(np.concatenate((np.linspace(*sorted(function.phi), ERRORS), function.corners())))
+    phi = _scan(function)
     size = np.abs(error(phi))
     inner = (size[1:-1] >= size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > NEAR * np.max(size))
     peaks = [least(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
@@ -53,7 +59,9 @@ def errors(one: Bars, asked: Asked, words: str) -> tuple[Diagram, float]:
         return outputs(one, phi, wanted, side) - wanted
 
     places, largest = extremes(error, function)
-    phi = np.unique(np.concatenate((np.linspace(*sorted(function.phi), ERRORS), function.corners(), places)))
+    phi = np.unique(
+        np.concatenate((np.linspace(min(function.phi), max(function.phi), ERRORS), function.corners(), places))
+    )
     lines = (
         Line(f"{words}.error_curve", phi, error(phi)),
         Line(f"{words}.points", np.asarray(asked.phi), np.zeros(len(asked.phi)), dots=True),

@@ -35,8 +35,8 @@ WORDS: dict[str, str] = {
     f"{_W}.taken": "taken",
     f"{_W}.chosen": "yes",
     f"{_W}.free": "l4/l1, free with two pairs",
-    f"{_W}.free_note": "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two of "
-    "l1, l3, l4 to take another",
+    f"{_W}.free_note": "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two "
+    "of l1, l3, l4 to take another",
     f"{_W}.family": "Four-bars through both pairs",
     f"{_W}.error": "largest structural error",
     f"{_W}.error_curve": "structural error of the output angle",
@@ -61,7 +61,8 @@ WORDS: dict[str, str] = {
     f"{_W}.nearest": "the last output angle {psi}; or defects: keep",
     f"{_W}.other": "other angles, or defects: keep; no output angle alone within 60 deg of the given one helps",
     f"{_W}.endless": "the links of the four-bars through these pairs are infinitely long beside the frame",
-    f"{_W}.nearest_long": "the last output angle {psi}, with no link {links} times as long as another; or defects: keep",
+    f"{_W}.nearest_long": "the last output angle {psi}, with no link {links} times as long as another; "
+    "or defects: keep",
     f"{_W}.nearest_long_alone": "the last output angle {psi}, with no link {links} times as long as another",
     f"{_W}.nearest_more": "{name} {length} or more; or defects: keep",
     f"{_W}.nearest_more_alone": "{name} {length} or more",
