@@ -206,3 +206,47 @@ def test_near_the_largest_k_the_four_bar_is_still_found_and_beyond_it_the_reason
     assert solved(block | {"k": 4.5384}).parameters["l1"].value > 0
     error = refused(block | {"k": 4.53846})
     assert error.path == ("synthesis", "k") and "k is too large" in error.message
+
+
+def guided(r, count):
+    """A random task of a coupler's positions, free of choices that only luck makes sound."""
+    turns = np.cumsum([0, *r.uniform(8, 30, count - 1)])
+    way = np.cumsum([0, *r.uniform(30, 70, count - 1) * np.exp(1j * np.radians(r.uniform(-20, 70, count - 1)))])
+    block = {
+        "task": "coupler-positions",
+        "positions": [[float(p.real), float(p.imag), float(a)] for p, a in zip(way, turns, strict=True)],
+    }
+    if count == 4:
+        return block | {"AB_turn": r.uniform(-60, 60)} | ({"DC_turn": r.uniform(-60, 60)} if r.uniform() < 0.5 else {})
+    b, c = r.uniform(-50, 50, (2, 2)).tolist()
+    lengths = {"AB": r.uniform(60, 200), "DC": r.uniform(60, 200)} if count == 2 else {}
+    return block | {"B": b, "C": c} | lengths
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_choice_that_is_told_for_a_coupler_has_no_defect(count, seed):
+    r = np.random.default_rng([seed, count])
+    told = []
+    for _ in range(10):
+        block = guided(r, count)
+        try:
+            solved(block)
+        except ProblemError as error:
+            told.append((block, error.allowed))
+    assert told or count == 2
+    for block, allowed in told:
+        if match := re.search(
+            r"AB_turn (\S+ deg) with AB_branch: (.) and DC_turn (\S+ deg) with DC_branch: (.)", allowed
+        ):
+            keys = ("AB_turn", "AB_branch", "DC_turn", "DC_branch")
+            solved(block | dict(zip(keys, match.groups(), strict=True)))
+        elif match := re.search(r"^(?:(AB|DC|AB_turn|DC_turn) )?([^ ,;]+ (?:mm|deg))", allowed):
+            key = match[1] or refused(block).path[-1]
+            solved(block | {key: match[2]})
+        elif match := re.search(r"^([BC]) \[([^ ]+ mm), ([^ ]+ mm)\]", allowed):
+            solved(block | {match[1]: [match[2], match[3]]})
+        elif match := re.search(r"AB_side: (\w+), DC_side: (\w+)", allowed):
+            solved(block | {"AB_side": match[1], "DC_side": match[2]})
+        else:
+            assert "DC as the driver" in allowed or "other positions" in allowed, allowed
