@@ -19,7 +19,7 @@ CASES = {
     "one wheel": (
         blocks.GEARED, "between: [1, 4]", "between: [1]", "[1]",
         "gears.z.between: 2 are wanted here\n"
-        "  found:   a list of 1\n"
+        "  found:   [1]\n"
         "  allowed: the two wheels; the frame may be one (fixed)",
     ),
     "one wheel twice": (
@@ -294,7 +294,7 @@ CASES = {
     "spring with one end": (
         blocks.CYLINDER, "at: [O, K], ", "at: [K], ", "[K",
         "springs.s.at: 2 are wanted here\n"
-        "  found:   a list of 1\n"
+        "  found:   [K]\n"
         "  allowed: its ends, one on each link; their first points",
     ),
     "spring without ends": (

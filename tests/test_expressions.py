@@ -131,7 +131,7 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         (True, LENGTH, "a number is wanted here\n  found:   true\n  allowed: a number, a unit, arithmetic"),
         (None, LENGTH, "a number is wanted here\n  found:   nothing (null)"
          "\n  allowed: a number, a unit, arithmetic"),
-        ([1, 5], LENGTH, "a number is wanted here\n  found:   a list of 2"
+        ([1, 5], LENGTH, "a number is wanted here\n  found:   [1, 5]"
          "\n  allowed: a number, a unit, arithmetic"),
         (math.nan, LENGTH, "not a number from -1e300 to 1e300\n  found:   nan"),
     ],

@@ -79,7 +79,7 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
     ("text", "message"),
     [
         ("", EMPTY), ("# only\n# comments\n", EMPTY), ("---\n", EMPTY), ("\n \n", EMPTY),
-        ("[1, 2]", "f:1:1: the top level is not a mapping\n  found:   a list of 2"
+        ("[1, 2]", "f:1:1: the top level is not a mapping\n  found:   [1, 2]"
          "\n  allowed: lines 'key: value'"),
         ("tmm:1", "f:1:1: the top level is not a mapping\n  found:   'tmm:1'\n  allowed: lines 'key: value'"),
         ("a: 1\n---\nb: 2", "f:2:1: a second document\n  found:   ---\n  allowed: one document in a file"),

@@ -480,7 +480,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         (
             "pairs: {A: {between: [0, 1, 2], kind: turning}}",
             "x.yaml:4:26: structure.spatial.pairs.A.between: two links [1, 2] are wanted\n"
-            "  found:   a list of 3\n"
+            "  found:   [0, 1, 2]\n"
             "  allowed: the two links; the frame is 0",
         ),
         (

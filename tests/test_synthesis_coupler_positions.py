@@ -289,25 +289,25 @@ REFUSED = {
     "positions: [[0, 0, 0], [60, 40, 15], [0, 0, 360], [130, 170, 60]]":
         "synthesis.positions[2]: this position is there already\n  found:   position 1\n",
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60":
-        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB more than 36.0555 mm",
+        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB 36.0556 mm or more",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]":
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
-        "  found:   a list of 2\n  allowed: another B, or a slider instead of the link",
+        "  found:   [0, 0]\n  allowed: another B, or a slider instead of the link",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis: these keys do not determine AB with 3 positions\n  found:   AB, B\n  allowed: B; or A",
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
-        "  found:   a list of 2\n  allowed: another B",
+        "  found:   [0, 0]\n  allowed: another B",
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 2\n  allowed: DC as the driver (exchange A with D and B with C), or defects: keep",
+        "  found:   a list of 2\n  allowed: AB_side: left, DC_side: left; or DC as the driver; or defects: keep",
     f"positions: {FOUR}, AB_turn: -60":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 4\n  allowed: other points or turns, or defects: keep",
+        "  found:   a list of 4\n  allowed: AB_turn 0.313983 deg; or defects: keep",
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
-        "synthesis.C: B and C are one point: that is no four-bar\n  found:   a list of 2\n  allowed: two points",
+        "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n  allowed: two points",
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
         "synthesis.C: B and C are one point: that is no four-bar\n",
     "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]":
@@ -347,3 +347,67 @@ def test_more_digits_come_from_more_digits():
         truth = by_turn(poses, turns[1] / 15 * turn, 0).pivot
         assert abs(pivot - truth) < 1e-17
     assert abs(local["C"].imag) == 0
+
+
+def told(outcome):
+    return {v.words.rpartition(".")[2]: v.value for v in outcome.found if v.kind != "word"}
+
+
+def test_the_listed_curve_is_that_of_links_through_all_four_positions():
+    (curve,) = problem(f"positions: {FOUR}").synthesis.outcome.listings
+    assert curve.long and len(curve.rows) > 300
+    places = np.array([0, 60 + 40j, 110 + 100j, 130 + 170j]) / 1000
+    angles = np.radians([0, 15, 35, 60])
+    for _, turn, ax, ay, bx, by, x1, y1, length in curve.rows[::7]:
+        pins = places + complex(bx, by) * np.exp(1j * angles)
+        arms = pins - complex(ax, ay)
+        assert np.abs(arms) == pytest.approx(length, rel=1e-9) and pins[0] == pytest.approx(complex(x1, y1))
+        assert np.angle(arms[1] / arms[0] * np.exp(-1j * turn)) == pytest.approx(0, abs=1e-9)
+
+
+def test_a_pivot_near_a_wanted_place_is_the_nearest_of_the_curve_and_its_turn_and_branch_give_it_again():
+    keys = f"positions: {FOUR}, defects: keep"
+    (curve,) = problem(keys).synthesis.outcome.listings
+    pivots = np.array([complex(row[2], row[3]) for row in curve.rows])
+    for wanted in ((-40, 90), (20, 60), (150, -30)):
+        outcome = problem(f"{keys}, A_near: [{wanted[0]}, {wanted[1]}], DC_turn: 5").synthesis.outcome
+        found = told(outcome)
+        a = complex(found["Ax"], found["Ay"])
+        away = abs(a - complex(*wanted) / 1000)
+        assert (
+            away == pytest.approx(found["A_away"]) and away <= np.min(np.abs(pivots - complex(*wanted) / 1000)) + 1e-12
+        )
+        branch = next(v.text for v in outcome.found if v.words.endswith("AB_branch"))
+        turn = f"{np.degrees(found['AB_turn']):.15g}"
+        again = told(problem(f"{keys}, AB_turn: {turn}, AB_branch: {branch}, DC_turn: 5").synthesis.outcome)
+        assert complex(again["Ax"], again["Ay"]) == pytest.approx(a, rel=1e-9)
+
+
+def test_a_pivot_that_is_asked_for_on_the_curve_is_met():
+    (curve,) = problem(f"positions: {FOUR}").synthesis.outcome.listings
+    for row in curve.rows[10::150]:
+        near = f"[{row[2] * 1000:.17g}, {row[3] * 1000:.17g}]"
+        found = told(problem(f"positions: {FOUR}, D_near: {near}, AB_turn: 10, defects: keep").synthesis.outcome)
+        assert found["D_away"] == pytest.approx(0, abs=1e-9)
+
+
+def test_free_pivots_lie_in_the_box_and_the_best_of_it_is_no_better_than_the_best_of_all():
+    free = told(problem(f"positions: {FOUR}").synthesis.outcome)
+    x, y = ([1000 * float(free[f"{name}{axis}"]) for name in "AD"] for axis in "xy")
+    for room in (1, -0.3 * (max(x) - min(x))):  # with the best in it, and without
+        low, high = (min(x) - room, min(y) - 300), (max(x) + abs(room), max(y) + 300)
+        box = f"[[{low[0]}, {low[1]}], [{high[0]}, {high[1]}]]"
+        found = told(problem(f"positions: {FOUR}, pivots_within: {box}, defects: keep").synthesis.outcome)
+        for name in "AD":
+            assert low[0] <= 1000 * found[f"{name}x"] <= high[0] and low[1] <= 1000 * found[f"{name}y"] <= high[1]
+        assert found["transmission"] == pytest.approx(free["transmission"], rel=1e-4) or room < 0
+        assert found["transmission"] <= free["transmission"] * (1 + 1e-4)
+
+
+def test_a_box_without_a_pivot_is_refused_with_a_pivot_beside_it():
+    with pytest.raises(ProblemError) as caught:
+        problem(f"positions: {FOUR}, pivots_within: [[1000, 1000], [1010, 1010]]")
+    x, y = (float(part.split()[0]) for part in caught.value.allowed.partition("[")[2].split(", "))
+    problem(f"positions: {FOUR}, pivots_within: [[{x - 1}, {y - 1}], [{x + 1}, {y + 1}]], DC_turn: 5, defects: keep")
+    with pytest.raises(ProblemError, match="a box is for pivots that are free"):
+        problem(f"positions: {FOUR}, pivots_within: [[0, 0], [9, 9]], AB_turn: 10, DC_turn: 5")

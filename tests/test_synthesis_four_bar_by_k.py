@@ -18,7 +18,8 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.check import measured
 from tmm_cli.synthesis.crank_slider import k_of
-from tmm_cli.synthesis.four_bar_by_k import Asked, Found, arcs, at, bound, choose, places, widest
+from tmm_cli.synthesis.four_bar_arcs import ARC, Asked, Found, arcs, at, bound, places, widest
+from tmm_cli.synthesis.four_bar_by_k import choose
 from tmm_cli.synthesis.grashof import FourBar, four_bar
 from tmm_cli.synthesis.record import Infeasible
 
@@ -257,39 +258,40 @@ def refusal(more, **angles):
 REFUSED = [
     (", near: [-300, -40]", {},
      ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
-     "a list of 2",
-     "x = 160.544 mm, y = 132.105 mm: the nearest pivot with a largest pressure angle of 80 deg or less"),
+     "[-300, -40]",
+     "[160.535 mm, 132.11 mm]: the nearest pivot with a largest pressure angle of 80 deg or less"),
     ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position",
-     "5", "k less than 4.76, or a swing of more than 60 deg"),
+     "5", "k 4.75994 or less, or psi2 110.002 deg or more"),
     ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
      "0.8", "1 or more; 1.25 for the same strokes"),
     ("", {"k": 1}, ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
-     "1", "l4, near or supports level; a pressure angle of more than 27.5 deg"),
+     "1", "k more than 1; or l2, l4, near or choose: supports level, the pressure angle "
+     "being more than 27.5 deg always"),
     ("", {"psi2": "50 deg"}, ".psi2: a rocker swings by more than zero and less than 180 deg",
-     "'psi2'", "psi2 other than psi1 = 50 deg, and less than 180 deg from it"),
+     "'psi2'", "psi2 from -129.998 deg to 229.998 deg, other than psi1 = 50 deg"),
     (", l4: 900", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "900", "more than 200 mm and less than 672.67 mm"),
+     "900", "200.001 mm to 672.67 mm"),
     (", l4: 100", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "100", "more than 200 mm and less than 672.67 mm"),
+     "100", "200.001 mm to 672.67 mm"),
     (", l4: -3", {}, ".l4: there is no such link",
      "-3", "more than zero"),
     (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "900", "more than 200 mm and less than 443.24 mm"),
+     "900", "200.001 mm to 443.239 mm"),
     (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
-     "'cw'", "the other sense, or k less than 2.06383"),
+     "'cw'", "the other sense, or k 2.06381 or less"),
     (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
      ".choose: no pivot of the admissible arcs is as high as D",
-     "'supports level'", "best transmission, l4 or near; at best A is 137.749 mm higher than D"),
+     "'supports level'", "k 1.05739 or less; now A is at best 137.749 mm higher than D"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
      "choose and l4", "one of choose, l1, l2, l4, near"),
     (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
-     "95", "more than 30.8647 mm and less than 92.3497 mm"),
+     "95", "30.8648 mm to 92.3497 mm"),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
      "70", "l2, l4, near or supports level; the crank is 92.3497 mm"),
     (", l2: 60", {}, ".l2: no pivot of the admissible arcs gives such a coupler",
-     "60", "more than 92.3497 mm and less than 612.375 mm"),
+     "60", "92.3498 mm to 612.375 mm"),
     (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs gives such a coupler",
-     "60", "more than 92.3497 mm"),
+     "60", "92.3498 mm or more"),
 ]  # fmt: skip
 
 
@@ -338,14 +340,14 @@ def test_a_place_that_no_pivot_is_near_to_is_refused_with_the_nearest_sound_pivo
     told = complex(*(caught.value.values[name][0] for name in "xy"))
     every = [at(one, places(one, side), side) for side in arcs(one)]
     sound = np.concatenate([f.a[f.pressure < np.radians(80)] for f in every])
-    assert abs(told - one.near) == np.min(np.abs(sound - one.near))
+    assert abs(told - one.near) == pytest.approx(np.min(np.abs(sound - one.near)), rel=1e-12)
     f = choose(replace(one, near=told))
     assert abs(f.a - told) < 1e-9 and f.pressure < np.radians(80.01)
 
 
 def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
     one = Asked(0.2, math.radians(50), math.radians(105), 1.2)
-    most = float(k_of(np.pi / 2 + one.swing / 2))
+    most = float(k_of(np.pi / 2 + one.swing / 2 - ARC))
     assert arcs(replace(one, k=most * (1 - 1e-6))) == [-1] and arcs(replace(one, k=most * (1 + 1e-9))) == []
     for side in arcs(one):
         end = float(at(one, bound(one, side), side).l4)
@@ -370,7 +372,7 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     for m in measured(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
     assert refusal(", l4: 190", k=1) == (
-        ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: more than 200 mm"
+        ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: 200.001 mm or more"
     )
 
 
@@ -385,3 +387,26 @@ def test_the_family_is_drawn_with_the_choice_on_it():
         assert seen == pytest.approx(np.full(len(seen), theta), rel=1e-9)
     *both, chosen = drawn["family-pressure"].lines
     assert float(chosen.y[0]) == pytest.approx(min(float(np.min(line.y)) for line in both), rel=1e-4)
+
+
+@pytest.mark.parametrize("k", [1.01, 1.1, 1.5, 2.5])
+def test_the_listed_family_goes_from_the_dead_rocker_to_the_dead_rocker_on_every_arc(k):
+    found = problem("", k=k).synthesis.outcome
+    (family,) = found.listings
+    assert family.long
+    rows = np.array([row[1:] for row in family.rows])
+    beta, x, y, l1, l2, l4, most, least = rows.T
+    one = Asked(0.2, math.radians(50), math.radians(105), k)
+    c1, c2 = (0.2 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
+    for name in dict.fromkeys(row[0] for row in family.rows):
+        here = np.array([row[0] == name for row in family.rows])
+        assert np.degrees(most[here][[0, -1]]) == pytest.approx([90, 90], abs=1e-4)
+        assert np.degrees(np.abs(np.diff(most[here]))).max() < 4
+    a = x + 1j * y
+    place = a - problem("", k=k).linkage.links[FRAME].points["D"]
+    assert np.abs(place) == pytest.approx(l4, rel=1e-9)
+    assert np.abs(place - c2) == pytest.approx(l1 + l2, rel=1e-9)
+    assert np.abs(place - c1)[1:] == pytest.approx((l2 - l1)[1:], rel=1e-9, abs=1e-9)
+    assert most + least == pytest.approx(np.pi / 2) and beta.min() == 0
+    chosen = float(found.found[[v.words.rpartition(".")[2] for v in found.found].index("pressure")].value)
+    assert most.min() == pytest.approx(chosen, rel=1e-3) and most.min() >= chosen - 1e-12

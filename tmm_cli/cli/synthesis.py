@@ -37,6 +37,8 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
         else:
             screen = console()
             for table in tables(found, measured, units):
+                if table.long:
+                    continue
                 show(table, units, screen, most=None)
             if measured is None:
                 say(words("synthesis.no_linkage"))

@@ -17,7 +17,8 @@ MAX_LINKS = 100
 MAX_POSITIONS = 100_000
 
 
-def _value(found: Any) -> Any:
+def checked_value(found: Any) -> Any:
+    """A number, or text that may be one."""
     if isinstance(found, bool) or not isinstance(found, int | float | str):
         raise PydanticCustomError("value", "a number, text with a unit, or arithmetic on parameters is wanted")
     return found
@@ -36,15 +37,15 @@ def _name(found: Any) -> str:
 def _vector(found: Any) -> Any:
     if not isinstance(found, list) or len(found) != 2:
         raise PydanticCustomError("vector", "two coordinates [x, y] are wanted")
-    return [_value(item) for item in found]
+    return [checked_value(item) for item in found]
 
 
-_VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-Value = Annotated[Any, BeforeValidator(_value), WithJsonSchema(_VALUE)]
+VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+Value = Annotated[Any, BeforeValidator(checked_value), WithJsonSchema(VALUE)]
 _NAMES = [{"type": "string"}, {"type": "integer"}]
 Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"anyOf": _NAMES})]
 Vector = Annotated[
-    Any, BeforeValidator(_vector), WithJsonSchema({"type": "array", "items": _VALUE, "minItems": 2, "maxItems": 2})
+    Any, BeforeValidator(_vector), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
 ]
 
 
@@ -178,7 +179,7 @@ def _force(found: Any) -> Any:
 
 
 def _moment(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else _value(found)
+    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
 
 _TABLE = {"$comment": "Tabulated"}
@@ -192,7 +193,7 @@ class Load(Strict):
     force: Annotated[Any, BeforeValidator(_force), WithJsonSchema({"anyOf": [{"type": "array"}, _TABLE]})] = Field(
         default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
     )
-    moment: Annotated[Any, BeforeValidator(_moment), WithJsonSchema({"anyOf": [_VALUE, _TABLE]})] = Field(
+    moment: Annotated[Any, BeforeValidator(_moment), WithJsonSchema({"anyOf": [VALUE, _TABLE]})] = Field(
         default=None, description="positive counterclockwise; a value, or {against, table}"
     )
     axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")

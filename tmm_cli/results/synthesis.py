@@ -67,7 +67,7 @@ def _listing(listing: Listing, units: UnitSystem, digits: int) -> Table:
             columns.append(Column(say(words), shown))
         else:
             columns.append(Column(say(words), [row[k] for row in listing.rows], KINDS[kind].dimension))
-    return Table(f"synthesis-{listing.name}", say(listing.title), tuple(columns))
+    return Table(f"synthesis-{listing.name}", say(listing.title), tuple(columns), listing.long)
 
 
 def _shown(value: Any, kind: str, text: str, units: UnitSystem, digits: int) -> tuple[str, str]:

@@ -9,6 +9,7 @@ mechanism are equally bad.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -26,12 +27,13 @@ LAST: Final = ((10, 10, 8), (2, 20, 12))  # how many are searched on, for how ma
 
 @dataclass(frozen=True)
 class Limits:
-    """Shortest and longest of the links, of the frame and of the coupler (m)."""
+    """Shortest and longest of the links, of the frame and of the coupler (m); how far pivots are outside a box (m)."""
 
     shortest: float
     link: float
     frame: float
     coupler: float
+    outside: Callable[[Any], Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,8 @@ def _rows(poses: Poses, size: float, limits: Limits, given: Dyads | None, order:
             b = poses.on_frame(dyads.pin)
             length = np.abs(b[..., 0] - dyads.pivot)
             sound = (length >= limits.shortest) & (length <= limits.link)
+            if limits.outside is not None:
+                sound &= limits.outside(dyads.pivot) <= 0
             if order is None:
                 return sound
             steps = np.mod(np.diff(np.angle(b - np.asarray(dyads.pivot)[..., None]), axis=-1), 2 * np.pi)

@@ -1,205 +1,73 @@
 """Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
 
 2 and 3 positions: the pin (B, C: in the coupler's axes) or the pivot (A, D) of each of both dyads is given; with 2 also
-its length. 4 positions: dyads on Burmester's curves, by the turn of AB and DC from position 1 to 2, or those of best
-transmission. Positions must be on one assembly, reached in order by turning AB one way.
+its length. 4 positions: dyads on Burmester's curves, by the turn of AB and DC from position 1 to 2, by the nearness of
+a pivot, or those of best transmission. Positions must be on one assembly, reached in order by turning AB one way.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis import burmester_search, guidance, loop
-from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, Poses, beside, by_turn, centre, marks, unit
-from tmm_cli.synthesis.burmester_search import Limits
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis import guidance, loop
+from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
+from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
+from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 
+__all__ = ["PARAMETERS", "Asked", "Side", "both", "solve"]
 PARAMETERS: Final = {
     **dict.fromkeys(("Ax", "Ay", "Dx", "Dy", "l1", "l2", "l3", "l4", "Px", "Py", "Cx", "Cy"), "length"),
     "phi1": "angle",
 }
 W: Final = "synthesis_coupler_positions"
-SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
-SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
-FAR, NEAR = 100.0, 10.0  # reach of a given turn, over that size: beyond it is refused; of what is told instead
-SURE: Final = 1e-6  # rad: with less than that of transmission it is not sure that a four-bar passes
-SIDES: Final = {"left": 1.0, "right": -1.0}
-
-
-@dataclass(frozen=True)
-class Side:
-    """What is given of a dyad: its pin (coupler's axes) or its pivot (m); length (m) and side with two positions; turn
-    from position 1 to 2 (rad) and branch (0 or 1) with four."""
-
-    pin: Any = None
-    pivot: Any = None
-    length: Any = None
-    side: str = "left"
-    turn: Any = None
-    branch: int = 0
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Places (m) and angles (rad) of the coupler; what is given of AB and of DC; keep: defects are put up with."""
-
-    places: tuple[Any, ...]
-    angles: tuple[Any, ...]
-    sides: Mapping[str, Side] = field(default_factory=dict)
-    keep: bool = False
-
-    @property
-    def poses(self) -> Poses:
-        return Poses(np.asarray(self.places, np.clongdouble), np.asarray(self.angles, np.longdouble))
-
-    @property
-    def size(self) -> float:
-        """The largest distance between positions, or of what is given of the coupler, m."""
-        places = np.asarray(self.places, complex)
-        given = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
-        return float(max(np.max(np.abs(places[:, None] - places)), *given, 0.0))
-
-
-def dyad(asked: Asked, name: str) -> Dyads:
-    """The dyad of two or three positions. Raises Infeasible."""
-    side, poses = asked.sides[name], asked.poses
-    pin_given = side.pin is not None
-    key = name[1] if pin_given else name[0]
-    given = side.pin if pin_given else side.pivot
-    places = poses.on_frame(given) if pin_given else poses.in_plane(given)
-    if len(asked.places) == 3:
-        found = centre(places)
-        reach = max(abs(places[k] - places[k - 1]) for k in range(3))
-        if reach <= SAME * asked.size:
-            raise Infeasible(key, f"{W}.still", f"{W}.elsewhere", {"point": (key, "word")})
-        if not np.isfinite(found) or abs(found - places[0]) > asked.size / SAME:
-            raise Infeasible(key, f"{W}.line", f"{W}.off_line", {"point": (key, "word")})
-    else:
-        half = abs(places[1] - places[0]) / 2
-        if half <= SAME * asked.size:
-            raise Infeasible(key, f"{W}.still", f"{W}.elsewhere", {"point": (key, "word")})
-        if not side.length > half:
-            values = {"length": (float(half), "length"), "name": (name, "word")}
-            raise Infeasible(name, f"{W}.short", f"{W}.longer", values)
-        found = beside(places, side.length, SIDES[side.side])
-    fixed = np.asarray(given, np.clongdouble)
-    return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
-
-
-def of_turn(asked: Asked, name: str) -> Dyads:
-    """The dyad of four positions that turns as wanted. Raises Infeasible with the nearest turn that one has."""
-    side, steps = asked.sides[name], np.radians(np.arange(0, 3600) * 0.05)
-    found = by_turn(asked.poses, np.asarray(side.turn, np.longdouble), side.branch)
-    reach = float(_reach(asked, found))
-    if reach < FAR:
-        return found
-    values: dict[str, Any] = {"name": (name, "word")}
-    reason = "no_turn" if not np.isfinite(reach) else "far_turn"
-    if reason == "far_turn":
-        values["length"] = (float(abs(asked.poses.on_frame(found.pin)[..., 0] - found.pivot)), "length")
-    turns = np.stack([side.turn + steps, side.turn - steps], -1).ravel()
-    near = _reach(asked, by_turn(asked.poses, turns.astype(np.longdouble), side.branch)) < NEAR
-    if not np.any(near):
-        raise Infeasible(f"{name}_turn", f"{W}.{reason}", f"{W}.other_positions", values)
-    values["turn"] = (float(turns[np.argmax(near)]), "angle")
-    raise Infeasible(f"{name}_turn", f"{W}.{reason}", f"{W}.nearest_turn", values)
-
-
-def _reach(asked: Asked, found: Dyads) -> Any:
-    """How far pivots (from place 1), pins and links reach, over the size of the task; inf where there is no dyad."""
-    with np.errstate(all="ignore"):
-        ends = (found.pivot - asked.poses.places[0], found.pin)
-        largest = np.maximum(*(np.abs(x) for x in ends)) / asked.size
-    return np.where(np.isnan(largest), np.inf, largest)
+LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
 def both(asked: Asked) -> tuple[Dyads, Dyads]:
     """Dyads AB and DC. Raises Infeasible."""
-    names = ("AB", "DC")
     if len(asked.places) < 4:
         return dyad(asked, "AB"), dyad(asked, "DC")
     if still(asked.poses):
         return parallel(asked)
-    given = {name: of_turn(asked, name) for name in names if name in asked.sides}
-    if len(given) == 2:
-        return given["AB"], given["DC"]
-    return best(asked, given)
-
-
-def still(poses: Poses) -> bool:
-    """Whether the coupler does not turn between any positions."""
-    return bool(np.all(np.abs(unit(poses.angles - poses.angles[0]) - 1) < SAME))
-
-
-def parallel(asked: Asked) -> tuple[Dyads, Dyads]:
-    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
-
-    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
-    """
-    places, angles = asked.poses.places, asked.poses.angles
-    middle = min((centre(places[[k for k in range(4) if k != out]]) for out in range(4)), key=lambda z: float(
-        np.nan_to_num(abs(z), nan=np.inf)))  # fmt: skip
-    arms = places - middle
-    radius = abs(arms[0])
-    if not (np.isfinite(radius) and radius < FAR * asked.size):
-        raise Infeasible("positions", f"{W}.still_line", f"{W}.still_slider")
-    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
-        other = centre(places[:3])
-        on = other + abs(places[0] - other) * (places[3] - other) / abs(places[3] - other)
-        values = {"x": (float(on.real), "length exact"), "y": (float(on.imag), "length exact")}
-        raise Infeasible(("positions", 3), f"{W}.still_off", f"{W}.still_on", values)
-    turn = float(np.angle(complex(arms[1] / arms[0])))
+    given = {}
     for name, side in asked.sides.items():
-        if abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
-            raise Infeasible(f"{name}_turn", f"{W}.still_turn", f"{W}.nearest_turn", {"turn": (turn, "angle exact")})
-    steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
-    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
-    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, asked.size)
-    one, other = (sign * frame / 2 for sign in (-1, 1))
-    return Dyads(middle + one, one * unit(-angles[0])), Dyads(middle + other, other * unit(-angles[0]))
+        given[name] = of_near(asked, name) if side.near is not None else of_turn(asked, name)
+    for name, found in given.items():
+        if not exists(asked, found):
+            refuse_turn(asked, name, given)
+    return (given["AB"], given["DC"]) if len(given) == 2 else best(asked, given)
 
 
-def best(asked: Asked, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
-    first, size = asked.poses.places[0], asked.size
-    reach = [max((float(abs(x)) for x in row), default=0.0) for row in (
-        [one.pivot - first for one in given.values()], [one.pin for one in given.values()])]  # fmt: skip
-    limits = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + reach[0], LONGEST * size + reach[1])
-    for loose in (False, True):  # without a sound one: one whose branches only are not the same
-        found = burmester_search.best(asked.poses, size, limits, dict(given), loose)
-        if found is not None and found[2] > SURE:
-            return found[:2]
-    if found is not None and _fair(found[0], found[1], limits):
-        return found[:2]
-    raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")
+def turn_of(asked: Asked, found: Dyads) -> tuple[float, int]:
+    """The turn (rad) of a dyad through four positions from 1 to 2, and its branch (1 or 2)."""
+    pins = asked.poses.on_frame(found.pin)
+    turn = float(np.angle(complex((pins[1] - found.pivot) / (pins[0] - found.pivot))))
+    away = [abs(by_turn(asked.poses, np.asarray(turn, np.longdouble), branch).pivot - found.pivot) for branch in (0, 1)]
+    return turn, 1 + int(np.nan_to_num(away[1], nan=np.inf) < np.nan_to_num(away[0], nan=np.inf))
 
 
-def _fair(one: Dyads, other: Dyads, limits: Limits) -> bool:
-    """Whether frame and coupler are neither too short nor too long."""
-    frame, coupler = abs(one.pivot - other.pivot), abs(one.pin - other.pin)
-    return bool(limits.shortest <= min(frame, coupler) and frame <= limits.frame and coupler <= limits.coupler)
-
-
-def _refuse(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
-    """The defect by its name, and what helps: the other link as driver, another side."""
-    if int(marks(asked.poses, other, one).defect) == 0:
-        raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.swap")
-    if len(asked.places) == 2:
-        for first in SIDES:
-            for second in SIDES:
-                sides = {"AB": first, "DC": second}
-                turned = {k: Side(s.pin, s.pivot, s.length, sides[k]) for k, s in asked.sides.items()}
-                tried = Asked(asked.places, asked.angles, turned)
-                if int(marks(asked.poses, dyad(tried, "AB"), dyad(tried, "DC")).defect) == 0:
-                    values = {"one": (first, "word"), "other": (second, "word")}
-                    raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.sides", values)
-    free = len(asked.places) == 4 and not asked.sides
-    raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.{'other_positions' if free else 'other_points'}")
+def _curve(asked: Asked) -> Listing:
+    """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
+    columns = (
+        (f"{W}.column_branch", "name"), (f"{W}.column_turn", "angle"), (f"{W}.column_pivot_x", "length"),
+        (f"{W}.column_pivot_y", "length"), (f"{W}.column_pin_x", "length"), (f"{W}.column_pin_y", "length"),
+        (f"{W}.column_first_x", "length"), (f"{W}.column_first_y", "length"), (f"{W}.column_length", "length"),
+    )  # fmt: skip
+    turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
+    rows = []
+    for branch in (0, 1):
+        found = by_turn(asked.poses, turns, branch)
+        first = asked.poses.on_frame(found.pin)[..., 0]
+        for k in np.flatnonzero(exists(asked, found)):
+            a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
+            rows.append(
+                (str(branch + 1), float(turns[k]), a.real, a.imag, b.real, b.imag, b1.real, b1.imag, abs(b1 - a))
+            )
+    return Listing("curve", f"{W}.curve", columns, tuple(rows), long=True)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -211,7 +79,7 @@ def solve(asked: Asked) -> Outcome:
     mark = marks(asked.poses, one, other)
     defect = DEFECTS[int(mark.defect)]
     if defect and not asked.keep:
-        _refuse(asked, one, other, defect)
+        refuse_defect(asked, one, other, defect)
     plain = float if not isinstance(asked.angles[0], np.longdouble) else np.longdouble
     numbers = lengths(asked, one, other)
     values = [Value(name, plain(numbers[name]), kind, f"{W}.{name}") for name, kind in PARAMETERS.items()]
@@ -220,12 +88,26 @@ def solve(asked: Asked) -> Outcome:
         Value("", float(mark.way), "angle", f"{W}.way"),
         Value("", None, "word", f"{W}.defect", f"{W}.{defect or 'sound'}"),
     ]
+    free = len(asked.places) == 4 and still(asked.poses)
+    four = len(asked.places) == 4 and not free
+    for name, found in (("AB", one), ("DC", other)) if four else ():
+        side = asked.sides.get(name, Side())
+        if side.turn is None:
+            turn, branch = turn_of(asked, found)
+            values += [
+                Value("", turn, "angle", f"{W}.{name}_turn"),
+                Value("", None, "word", f"{W}.{name}_branch", str(branch)),
+            ]
+        if side.near is not None:
+            away = float(abs(complex(found.pivot) - complex(side.near)))
+            values.append(Value("", away, "length", f"{W}.{name[0]}_away"))
     by_pivot = {name for name, side in asked.sides.items() if side.pivot is not None}
     drawn = guidance.construction(asked.poses, one, other, W, ("AB" in by_pivot, "DC" in by_pivot))
-    free = len(asked.places) == 4 and still(asked.poses)
-    source = f"{W}.source_{'still' if free else len(asked.places)}"
-    notes = (f"{W}.any_parallelogram",) if free else ()
-    return Outcome(_given(asked), tuple(values), source, _demands(asked, one, other, mark), drawn, notes)
+    return Outcome(
+        _given(asked), tuple(values), f"{W}.source_{'still' if free else len(asked.places)}",
+        _demands(asked, one, other, mark), drawn, (f"{W}.any_parallelogram",) if free else (),
+        (_curve(asked),) if four else (),
+    )  # fmt: skip
 
 
 def lengths(asked: Asked, one: Dyads, other: Dyads) -> dict[str, Any]:
@@ -289,4 +171,15 @@ def _given(asked: Asked) -> tuple[Value, ...]:
             values.append(Value("", side.length, "length", f"{W}.{name}"))
         if side.turn is not None:
             values.append(Value("", side.turn, "angle", f"{W}.{name}_turn"))
+        if side.near is not None:
+            values += [
+                Value("", part, "length", f"{W}.{name[0]}_near_{axis}")
+                for axis, part in (("x", side.near.real), ("y", side.near.imag))
+            ]
+    if asked.within is not None:
+        for corner, place in zip(("one", "other"), asked.within, strict=True):
+            values += [
+                Value("", place.real, "length", f"{W}.{corner}_x"),
+                Value("", place.imag, "length", f"{W}.{corner}_y"),
+            ]
     return tuple(values)

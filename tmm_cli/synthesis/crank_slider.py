@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
@@ -182,10 +182,11 @@ def _refuse_offset(e: float, height: float, theta: float) -> None:
         raise Infeasible("e", f"{W}.e_zero", f"{W}.e_more")
     if theta == 0:
         raise Infeasible("k", f"{W}.e_without", f"{W}.e_needs")
+    most = float(k_of(np.arctan2(height, e)))
     if theta >= np.pi / 2:
-        raise Infeasible("k", f"{W}.k_never", f"{W}.k_never_most", {"k": (3.0, "number")})
+        raise Infeasible("k", f"{W}.k_never", f"{W}.k_most_alone", {"k": (most, "number", "below")})
     if not np.tan(theta) * e < height:
-        values = {"e": (height / np.tan(theta), "length"), "k": (float(k_of(np.arctan2(height, e))), "number")}
+        values = {"e": (height / np.tan(theta), "length", "below"), "k": (most, "number", "below")}
         raise Infeasible("e", f"{W}.e_above", f"{W}.e_most", values)
 
 
@@ -197,33 +198,52 @@ def refuse(asked: Asked) -> None:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
     length, nu, k, limit = asked.ratio, asked.nu, asked.k, asked.pressure
     if k is not None and not k >= 1:
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / k if k > 0 else 1.0, "number")})
+        _refuse_small(asked)
     if nu is not None and not nu >= 0:
         raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least")
     if length is not None and not length > 1:
-        raise Infeasible("ratio", f"{W}.ratio_below", f"{W}.ratio_least", {"nu": (nu or 0.0, "number")})
+        values: dict[str, Shown] = {"ratio": (1 + (nu or 0.0), "number", "above")}
+        raise Infeasible("ratio", f"{W}.ratio_below", f"{W}.ratio_least", values)
     if length is not None and nu is not None and not nu < length - 1:
-        raise Infeasible(
-            "nu", f"{W}.nu_above", f"{W}.nu_most", {"nu": (length - 1, "number"), "ratio": (nu + 1, "number")}
-        )
+        values = {"nu": (length - 1, "number", "below"), "ratio": (nu + 1, "number", "above")}
+        raise Infeasible("nu", f"{W}.nu_above", f"{W}.nu_most", values)
     theta = None if k is None else theta_of(k)
     if asked.e is not None and theta is not None:
         _refuse_offset(asked.e, float(_stroke(asked)), float(theta))
     if length is not None and theta is not None and not theta < largest_theta(length):
         most = float(k_of(largest_theta(length)))
         longest = float(1 / np.tan(theta / 2) ** 2)
-        values = {"k": (most, "number"), "ratio": (longest, "number"), "given": (length, "number")}
+        values = {
+            "k": (most, "number", "below"), "ratio": (longest, "number", "below"), "given": (length, "number"),
+        }  # fmt: skip
         possible = longest > 1
         raise Infeasible("k", f"{W}.k_above", f"{W}.k_most" if possible else f"{W}.k_most_alone", values)
     if limit is not None and not 0 < limit < np.pi / 2:
         raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")
     if limit is not None and theta is not None:
         if not theta < np.pi / 2:
-            raise Infeasible("k", f"{W}.k_never", f"{W}.k_never_most", {"k": (3.0, "number")})
+            most = float(largest_k(limit))
+            raise Infeasible("k", f"{W}.k_never", f"{W}.k_most_alone", {"k": (most, "number", "most")})
         least = float(least_pressure(theta))
         if limit < least:
-            values = {"pressure": (least, "angle"), "k": (float(largest_k(limit)), "number")}
+            values = {"pressure": (least, "angle", "least"), "k": (float(largest_k(limit)), "number", "most")}
             raise Infeasible("pressure", f"{W}.pressure_below", f"{W}.pressure_least", values)
+
+
+def _refuse_small(asked: Asked) -> None:
+    """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
+    given: dict[str, Shown] = {"k": (1 / asked.k if asked.k > 0 else 1.0, "number", "most")}
+    words = "least_offset" if asked.e is not None else "least"
+    if asked.k > 0:
+        try:
+            refuse(replace(asked, k=1 / asked.k))
+        except Infeasible as error:
+            if "k" not in error.values:
+                raise
+            given, words = {"k": error.values["k"]}, words.replace("least", "range")
+    else:
+        words = "zero"
+    raise Infeasible("k", f"{W}.k_below", f"{W}.k_{words}", given)
 
 
 def largest_k(pressure: Any) -> Any:
@@ -248,9 +268,7 @@ def solve(asked: Asked) -> Outcome:
     more = tuple(
         Value("", getattr(found, name), kinds.get(name, "number"), f"{W}.{name}") for name in ("h", *rest, "theta")
     )
-    printed = () if asked.k is None else tuple(
-        Value("", getattr(found, name), "number", f"{W}.{name}") for name in ("printed", "error")
-    )  # fmt: skip
+    printed = tuple(Value("", getattr(found, name), "number", f"{W}.{name}") for name in ("printed", "error"))
     demands = [Demand(f"{W}.crank_turns", 1.0, "number", crank_turns, asked=False)]
     if asked.speed is not None:
         demands.append(Demand(f"{W}.speed", float(asked.speed), "speed", mean_speed))

@@ -1,146 +1,30 @@
-"""Four-bar by k and both extreme positions C1, C2 of its rocker: the family of pivots A, and a choice in it.
-
-C1C2 = 2 h is seen from A under theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's side of
-C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a place along the arc that theta = 0 does not spoil:
-    sin(beta + theta/2) = w sin(theta/2),
-    l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
-The triangles A C1 D and A C2 D make the crank turn fully; both positions belong to one motion when C1 and C2 lie on one
-side of AD, so that the rocker does not pass its dead position, and AC2 > AC1 is the order of the positions:
-    0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
-Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a circle lie on the line to its centre;
-l2 grows from h on, l1 falls from h on (with k = 1 it is h everywhere).
-"""
+"""Four-bar by k and both extreme positions of its rocker: the choice of the pivot A on its arcs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.roots import roots
-from tmm_cli.synthesis.crank_slider import k_of, theta_of
-from tmm_cli.synthesis.four_bar_family import construction, diagrams
+from tmm_cli.synthesis.crank_slider import k_of
+from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bound, places, whole, widest
+from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing
 from tmm_cli.synthesis.four_bar_level import level_places, nearest_sound
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
-from tmm_cli.vectors import pi
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 
+__all__ = ["PARAMETERS", "Asked", "Found", "arcs", "at", "bound", "choose", "places", "solve"]
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 W: Final = "synthesis_four_bar_by_k"
-SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
-END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
-FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
+STEP: Final = 1e-14  # the least step of a derivative, relative
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
-
-    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, near (a
-    place), l1, l2 or l4 (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
-    """
-
-    l3: Any
-    psi1: Any
-    psi2: Any
-    k: Any
-    support: Any = 0j
-    choose: str = "best"
-    l1: Any = None
-    l2: Any = None
-    l4: Any = None
-    near: Any = None
-    sense: int = 0
-
-    @property
-    def swing(self) -> Any:
-        return np.abs(np.asarray(self.psi2) - self.psi1)
-
-    @property
-    def theta(self) -> Any:
-        return theta_of(self.k)
-
-
-@dataclass(frozen=True)
-class Found:
-    """Lengths (m), the pivot a (complex, m), the slope of a over w, the largest pressure angle and beta (rad).
-
-    side: -1 on D's side of C1C2, 1 beyond; sense: of the crank whose slow stroke leads from psi1 to psi2.
-    """
-
-    w: Any
-    side: Any
-    l1: Any
-    l2: Any
-    l4: Any
-    a: Any
-    slope: Any
-    pressure: Any
-    beta: Any
-    sense: Any
-
-
-def widest(asked: Asked, side: Any) -> Any:
-    """The bound of beta on an arc; negative where the arc has no pivot."""
-    half, theta = asked.swing / 2, asked.theta
-    return np.where(
-        np.asarray(side) > 0, pi(1.0 * half) / 2 - half - theta,
-        pi(1.0 * half) / 2 - np.abs(half - theta / 2) - theta / 2,
-    )  # fmt: skip
-
-
-def bound(asked: Asked, side: Any) -> Any:
-    """The bound of w on an arc that has pivots."""
-    sine = np.sin(asked.theta / 2)
-    most = np.sin(widest(asked, side) + asked.theta / 2) / np.where(sine > 0, sine, 1.0)
-    return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
-
-
-def at(asked: Asked, w: Any, side: Any) -> Found:
-    """The four-bar whose pivot A stands at a place of an arc."""
-    half, theta, l3 = asked.swing / 2, asked.theta, asked.l3
-    h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
-    sine = w * s
-    cosine = np.sqrt((1 - sine) * (1 + sine))
-    l1, l2 = h * cosine / c, h * w
-    turn = c * cosine + s * sine + 1j * side * s * (w * c - cosine)  # e^(i beta), of the side
-    local = l3 * np.cos(half) + 1j * h - 1j * (l1 + l2) * turn  # D at 0, the middle of the swing along x, C1 below
-    slope = -1j * (cosine + 1j * side * sine) ** 2 * h / (c * cosine)
-    l4 = np.abs(local)
-    sines = [np.abs((l2 * l2 + l3 * l3) - (l4 + sign * l1) ** 2) / (2 * l2 * l3) for sign in (-1, 1)]
-    way = np.where(np.asarray(asked.psi2) > asked.psi1, 1, -1)
-    middle = (np.asarray(asked.psi1) + asked.psi2) / 2
-    frame = np.cos(middle) + 1j * np.sin(middle)
-    a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
-    return Found(
-        w, side, l1, l2, l4, asked.support + a, slope, np.arcsin(np.minimum(np.maximum(*sines), 1)),
-        np.arctan2(s * (w * c - cosine), c * cosine + s * sine), -side * way,
-    )  # fmt: skip
-
-
-def arcs(asked: Asked) -> list[int]:
-    """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
-    if asked.k == 1:
-        return [-1]
-    way = 1 if asked.psi2 > asked.psi1 else -1
-    return [side for side in SIDES if widest(asked, side) > 0 and asked.sense in (0, -side * way)]
-
-
-def places(asked: Asked, side: int, count: int = 400) -> Any:
-    """Places w along an arc, close together where the mechanism changes fast, from end to end."""
-    theta, most = float(asked.theta), float(bound(asked, side))
-    by_ratio = 1 + np.geomspace(END, 1, count) * (most - 1)
-    if theta < 1e-9:
-        return by_ratio
-    beta = float(widest(asked, side)) * np.linspace(END, 1 - END, count)
-    by_angle = np.sin(beta + theta / 2) / np.sin(theta / 2)
-    ends = 1 + END * (most - 1), most - END * (most - 1)
-    return np.unique(np.clip(np.concatenate((by_ratio, by_angle)), *ends))
+SCAN: Final = 100  # values of theta that are tried for level supports
+LEVEL: Final = 1e-6  # rad of theta, from where a pivot is level first: an end of an arc
 
 
 def _pressure(found: Found, _: Asked) -> Any:
@@ -204,8 +88,8 @@ def _best(asked: Asked, side: int, choice: str) -> Any:
 
 def inside(asked: Asked, w: Any, side: int) -> bool:
     """Whether a place is not one of the ends of an arc."""
-    ends = places(asked, side)[[0, -1]]
-    return bool(ends[0] + 2 * (ends[0] - 1) < w < ends[1] * (1 - END))
+    low, high = places(asked, side)[[0, -1]]
+    return bool(low + 2 * (low - 1) < w < high - 2 * END * (high - 1))
 
 
 def _plain(asked: Asked) -> Asked:
@@ -244,7 +128,7 @@ def _from_support(asked: Asked, support: Any) -> Found:
         return at(asked, w, side)
     value = equation(at(asked, w, side), asked)
     for _ in range(4):  # the same in the precision of the data
-        step = 1e-7 * (w - 1)
+        step = max(1e-7 * (w - 1), STEP * w)
         beyond = equation(at(asked, w + step, side), asked)
         better = w - step * value / (beyond - value) if beyond != value else w
         residual = equation(at(asked, better, side), asked)
@@ -265,21 +149,24 @@ def _dead_end(asked: Asked, support: Any) -> None:
 def _not_there(asked: Asked) -> None:
     """No pivot of the arcs is what was asked for: says what there is."""
     if asked.choose == "level":
-        offsets = np.concatenate([np.imag(at(asked, places(asked, s), s).a - asked.support) for s in arcs(asked)])
-        nearest = float(offsets[np.argmin(np.abs(offsets))])
-        raise Infeasible("choose", f"{W}.level_none", f"{W}.level_nearest", {"offset": (nearest, "length")})
+        raise _not_level(asked)
     h, name = float(asked.l3 * np.sin(asked.swing / 2)), asked.choose
     if name == "l1" and asked.k == 1:
         raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", {"l1": (h, "length")})
     if name in ("l1", "l2"):
         last = [float(getattr(at(asked, places(asked, side)[-1], side), name)) for side in arcs(asked)]
-        values = {"low": (min(h, *last), "length"), "high": (max(h, *last), "length")}
-        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", values)
+        bounds: dict[str, Shown] = {
+            "low": (min(h, *last), "length", "above"),
+            "high": (max(h, *last), "length", "below"),
+        }
+        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", bounds)
     l3 = float(asked.l3)
     if asked.k == 1:
-        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length")})
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length", "above")})
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
-    values = {"low": (min(ends), "length"), "high": (max(ends), "length"), "l3": (l3, "length")}
+    values = {
+        "low": (min(ends), "length", "above"), "high": (max(ends), "length", "below"), "l3": (l3, "length"),
+    }  # fmt: skip
     inner = min(ends) < l3 < max(ends)  # there A would be C1
     raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
 
@@ -291,19 +178,74 @@ def refuse(asked: Asked) -> None:
         if value is not None and not value > 0:
             raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
     if not asked.k >= 1:
-        values = {"k": (1 / asked.k if asked.k > 0 else 1.0, "number")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", values)
-    if not 0 < asked.swing < np.pi:
-        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (asked.psi1, "angle")})
+        _refuse_small(asked)
+    psi1, widest_swing = float(asked.psi1), np.pi - 2 * ARC
+    if not 0 < asked.swing <= widest_swing:
+        ends = {"low": (psi1 - widest_swing, "angle", "least"), "high": (psi1 + widest_swing, "angle", "most")}
+        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (psi1, "angle"), **ends})
     theta, half = float(asked.theta), float(asked.swing) / 2
-    if not theta < np.pi / 2 + half:
-        values = {"k": (float(k_of(np.pi / 2 + half)), "number"), "swing": (2 * theta - np.pi, "angle")}
-        raise Infeasible("k", f"{W}.k_above", f"{W}.k_most", values)
+    if theta > np.pi / 2 + half - ARC:
+        way = 1 if asked.psi2 > asked.psi1 else -1
+        swing = psi1 + way * (2 * theta - np.pi + 2 * ARC)
+        values = {
+            "k": (float(k_of(np.pi / 2 + half - ARC)), "number", "most"),
+            "psi2": (swing, "angle", "least" if way > 0 else "most"),
+        }
+        words = "k_most_alone" if theta > np.pi - 2 * ARC else "k_most" if way > 0 else "k_most_down"
+        raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", values)
     if not arcs(asked):  # only the arc beyond C1C2 gives this sense
-        most = np.pi / 2 - half
-        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most", {"k": (float(k_of(most)), "number")})
+        most = np.pi / 2 - half - ARC
+        values = {"k": (float(k_of(most)), "number", "most")}
+        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most" if most > 0 else f"{W}.sense_other", values)
     if theta == 0 and asked.choose == "best":
         raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
+
+
+def _refuse_small(asked: Asked) -> None:
+    """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
+    if not asked.k > 0:
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero")
+    try:
+        refuse(replace(asked, k=1 / asked.k))
+    except Infeasible as error:
+        if "k" not in error.values:
+            raise
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range", {"k": error.values["k"]}) from None
+    raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / asked.k, "number", "most")})
+
+
+def _not_level(asked: Asked) -> Infeasible:
+    """No pivot is as high as D: how near they come, and the nearest k for which one is."""
+
+    def gap(k: float) -> float:
+        """The offset from D that is nearest to none; 0 where a pivot is level."""
+        tried = replace(asked, k=k)
+        offsets = [np.imag(at(tried, places(tried, side), side).a - asked.support) for side in arcs(tried)]
+        if any(np.min(row) <= 0 <= np.max(row) for row in offsets):
+            return 0.0
+        every = np.concatenate([*offsets, [np.inf]])
+        return float(every[np.argmin(np.abs(every))])
+
+    offset = gap(float(asked.k))
+    values: dict[str, Shown] = {"offset": (abs(offset), "length")}
+    words = "level_higher" if offset > 0 else "level_lower"
+    theta = float(asked.theta)
+    least, most = 1e-3, np.pi / 2 + float(asked.swing) / 2 - 2 * ARC
+    shares = np.linspace(0, 1, SCAN)[1:]
+    tried = sorted(
+        [*(theta + (most - theta) * shares), *(theta + (least - theta) * shares)], key=lambda x: abs(x - theta)
+    )
+    good = next((x for x in tried if gap(float(k_of(x))) == 0), None)
+    if good is None:
+        return Infeasible("choose", f"{W}.level_none", f"{W}.{words}", values)
+    inside, outside = good, theta
+    for _ in range(30):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if gap(float(k_of(middle))) == 0 else (inside, middle)
+    up = good > theta
+    inside += (1 if up else -1) * LEVEL
+    values["k"] = (float(k_of(inside)), "number", "least" if up else "most")
+    return Infeasible("choose", f"{W}.level_none", f"{W}.{words}_{'more' if up else 'less'}", values)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -339,10 +281,10 @@ def solve(asked: Asked) -> Outcome:
     ]  # fmt: skip
     plain = _plain(asked)
     chosen = at(plain, float(f.w), f.side)
-    family = [at(plain, places(plain, side), side) for side in arcs(plain)]
+    family = [at(plain, whole(plain, side), side) for side in arcs(plain)]
     drawings = (construction(plain, chosen, family), *diagrams(plain, chosen, family))
     notes = () if asked.k > 1 else (f"{W}.line",)
-    return Outcome(tuple(given), tuple(found), f"{W}.source", tuple(demands), drawings, notes)
+    return Outcome(tuple(given), tuple(found), f"{W}.source", tuple(demands), drawings, notes, (listing(family),))
 
 
 def _on_arcs(asked: Asked, f: Found) -> list[Value]:

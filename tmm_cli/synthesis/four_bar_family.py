@@ -8,10 +8,12 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
+from tmm_cli.synthesis.record import Listing
 
 W: Final = "synthesis_four_bar_by_k"
 LINKS: Final = ("l1", "l2", "l3", "l4")
-LONGEST: Final = 4.0  # rods longer than this many of the chosen one (and of the rocker) are not on the diagrams
+LONGEST: Final = 20.0  # the whole family is on the diagrams when no rod is longer than this many of the chosen one
+CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
 
 
 def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
@@ -58,7 +60,9 @@ def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:
 
 def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Diagram]:
     """Largest pressure angle, and the lengths of crank and frame, over that of the coupler along the arcs."""
-    most = LONGEST * max(float(found.l2), float(asked.l3))
+    size, most = max(float(found.l2), float(asked.l3)), max(float(np.max(f.l2)) for f in family)
+    if most > LONGEST * size:
+        most = CUT * size
     pressures, lengths = [], []
     for number, f in enumerate(family):
         name = "line" if asked.k == 1 else "beyond" if int(f.side) > 0 else "inside"
@@ -79,3 +83,26 @@ def diagrams(asked: Any, found: Any, family: Sequence[Any]) -> tuple[Diagram, Di
         Diagram("family-pressure", f"{W}.family_pressure", across, (f"{W}.pressure", "angle"), tuple(pressures)),
         Diagram("family-lengths", f"{W}.family_lengths", across, (f"{W}.lengths", "length"), tuple(lengths)),
     )
+
+
+def listing(family: Sequence[Any]) -> Listing:
+    """The family in numbers, from end to end of every arc, where the rocker is dead."""
+    lengths = ("l1", "l2", "l4")
+    columns = (
+        (f"{W}.side", "word"), (f"{W}.beta", "angle"), (f"{W}.xA", "length"), (f"{W}.yA", "length"),
+        *((f"{W}.{name}", "length") for name in lengths), (f"{W}.pressure", "angle"), (f"{W}.transmission", "angle"),
+    )  # fmt: skip
+    rows = []
+    for f in family:
+        side = f"{W}.side_{'beyond' if int(f.side) > 0 else 'inside'}"
+        across = (
+            np.maximum(f.beta, 0.0),
+            f.a.real,
+            f.a.imag,
+            *(getattr(f, name) for name in lengths),
+            f.pressure,
+            np.pi / 2 - f.pressure,
+        )
+        values = np.stack([np.broadcast_to(np.asarray(x, dtype=float), np.shape(f.w)) for x in across], axis=-1)
+        rows += [(side, *row) for row in values.tolist()]
+    return Listing("family", f"{W}.family", columns, tuple(rows), long=True)

@@ -40,6 +40,13 @@ class Function:
         x = self.x[0] + (phi - self.phi[0]) / (self.phi[1] - self.phi[0]) * (self.x[1] - self.x[0])
         return self.psi[0] + (self.value(x) - start) / (end - start) * (self.psi[1] - self.psi[0])
 
+    def corners(self) -> Any:
+        """Input angles of the rows of the table within the range; there it may have corners."""
+        x = np.asarray([row[0] for row in self.table], dtype=float)
+        share = (x - float(self.x[0])) / (float(self.x[1]) - float(self.x[0]))
+        share = share[(share > 0) & (share < 1)]
+        return float(self.phi[0]) + share * (float(self.phi[1]) - float(self.phi[0]))
+
     def precision(self, count: int) -> tuple[Any, Any]:
         """Angles at the precision points: Chebyshev's spacing, x = middle - half range cos((2j - 1) pi/(2 n))."""
         turns = np.arange(1, 2 * count, 2) / np.longdouble(2 * count)

@@ -161,7 +161,9 @@ def _four_bar(asked: FourBar, given: tuple[Value, ...]) -> Outcome:
     longest = max(links, key=lambda name: float(links[name]))
     if found.kind < 0:
         rest = float(sum(links.values()) - links[longest])
-        raise Infeasible(longest, f"{W}.open", f"{W}.closing", {"most": (rest, "length"), "link": (longest, "word")})
+        raise Infeasible(
+            longest, f"{W}.open", f"{W}.closing", {"most": (rest, "length", "below"), "link": (longest, "word")}
+        )
     change = int(found.kind) >= 8
     given += tuple(Value(name, None, "word", f"{W}.{name}", f"l{getattr(asked, name)}") for name in ("frame", "driver"))
     values = [

@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from tmm_cli.synthesis.construction import Construction, Diagram
 
+Shown = tuple[Any, ...]  # of a refusal: value, kind, and perhaps which side of it is allowed
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
 
@@ -25,7 +28,8 @@ class Value:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file.
+    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file; a long
+    one is for files only.
 
     kind `word`: keys of words; `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind
     `unit`. None: there is none.
@@ -35,6 +39,7 @@ class Listing:
     title: str
     columns: tuple[tuple[str, Kind], ...]
     rows: tuple[tuple[Any, ...], ...]
+    long: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,7 +88,9 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
     key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
-    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind).
+    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind) or
+    (number, kind, side): `most`, `least` allowed, or `below`, `above` for limits that are not allowed themselves; they
+    are rounded to that side, so that what is printed can be typed in; `exact`: nothing beside it will do.
     """
 
     def __init__(
@@ -91,8 +98,16 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
         key: str | tuple[str | int, ...],
         reason: str,
         nearest: str,
-        values: Mapping[str, tuple[Any, Kind]] | None = None,
+        values: Mapping[str, Shown] | None = None,
     ) -> None:
         self.path = (key,) if isinstance(key, str) else key
         self.reason, self.nearest, self.values = reason, nearest, dict(values or {})
         super().__init__(reason)
+
+
+def sound(outcome: Outcome) -> Outcome:
+    """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
+    for value in outcome.found:
+        if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
+            raise Infeasible((), "synthesis.no_number", "synthesis.no_number_other", {"name": (value.words, "said")})
+    return outcome

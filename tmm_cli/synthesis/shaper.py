@@ -17,7 +17,7 @@ from tmm_cli.synthesis import slotted_lever
 from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
 from tmm_cli.synthesis.crank_slider import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 W: Final = "synthesis_shaper"
@@ -79,26 +79,27 @@ def refuse(asked: Asked) -> None:
         if value is not None and not value > 0:
             raise Infeasible(key, f"{W}.positive", f"{W}.more_than_zero")
     if not asked.k > 1:
-        values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if asked.k < 1 else f"{W}.k_more", values)
+        values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number", "most")}
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if 0 < asked.k < 1 else f"{W}.k_more", values)
     if asked.pressure is not None and not 0 < asked.pressure < np.pi / 2:
         raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")
     f = find(asked)
     lever, half = float(f.lever), float(f.theta) / 2
     most = 1 / (1 + np.sin(half))
     if not f.frame < lever * most:
-        limits: dict[str, tuple[float, str]] = {
-            "frame": (lever * most, "length"), "frame_ratio": (most, "number"),
-            "crank": (lever * most * np.sin(half), "length"),
+        limits: dict[str, Shown] = {
+            "frame": (lever * most, "length", "below"), "frame_ratio": (most, "number", "below"),
+            "crank": (lever * most * np.sin(half), "length", "below"),
         }  # fmt: skip
         by = next(name for name in limits if getattr(asked, name) is not None)
         raise Infeasible(names[by], f"{W}.frame_above", f"{W}.frame_most", {"most": limits[by]})
     if not f.pressure < np.pi / 2 - half:  # beyond, the ram turns back before the lever does
         if asked.pressure is not None:
-            raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", {"most": (np.pi / 2 - half, "angle")})
+            values = {"most": (np.pi / 2 - half, "angle", "below")}
+            raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", values)
         share = np.sin(half / 2) ** 2 / np.cos(half)
         by_ratio = asked.rod is None
-        limit: tuple[float, str] = (share, "number") if by_ratio else (lever * share, "length")
+        limit: Shown = (share, "number", "above") if by_ratio else (lever * share, "length", "above")
         raise Infeasible("rod_ratio" if by_ratio else "DE", f"{W}.turns_back", f"{W}.rod_least", {"least": limit})
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.synthesis.construction import Angle, Arc, Construction, Segment, Spot, box
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
@@ -95,10 +95,11 @@ def find(asked: Asked) -> Found:
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
     if asked.k is not None and not asked.k > 1:
-        values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if asked.k < 1 else f"{W}.k_more", values)
+        turned = 1 / asked.k if STRAIGHT < asked.k < 1 else 1.0
+        values: dict[str, Shown] = {"k": (turned, "number", "most")}
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if turned > 1 else f"{W}.k_more", values)
     if asked.k is not None and not np.pi - asked.theta > STRAIGHT:
-        values = {"k": (float(k_of(np.pi - STRAIGHT)), "number")}
+        values = {"k": (float(k_of(np.pi - STRAIGHT)), "number", "below")}
         raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
     if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
         raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed")
@@ -113,7 +114,7 @@ def refuse(asked: Asked) -> None:
             raise Infeasible("within", f"{W}.bounds", f"{W}.bounds_order")
         longest = float(find(asked).longest)
         if low > longest:
-            raise Infeasible("within", f"{W}.too_long", f"{W}.longest_most", {"longest": (longest, "length")})
+            raise Infeasible("within", f"{W}.too_long", f"{W}.longest_most", {"longest": (longest, "length", "most")})
 
 
 def sense(asked: Asked) -> int:

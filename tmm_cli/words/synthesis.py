@@ -14,6 +14,8 @@ WORDS: dict[str, str] = {
     "synthesis.by_formula": "foretold",
     "synthesis.source": "Source: {source}",
     "synthesis.none": "none",
+    "synthesis.no_number": "no mechanism was found: it has no {name}",
+    "synthesis.no_number_other": "other numbers",
     "synthesis.not_met": "{quantity}: wanted {wanted}, measured {found}",
     "synthesis.no_block": "this file has no synthesis",
     "synthesis.no_linkage": "the file has no linkage: nothing was measured",

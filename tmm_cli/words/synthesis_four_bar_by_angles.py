@@ -1,9 +1,9 @@
 """Words of the synthesis of a four-bar by pairs of angles."""
 
 _W = "synthesis_four_bar_by_angles"
-_OF_EACH = {
-    "l1": "l1", "l2": "l2", "l3": "l3", "phi0": "phi0", "psi0": "psi0", "transmission": "least transmission angle",
-    "defect": "defect",
+_COLUMNS = {
+    "l1": "l1", "l2": "l2", "l3": "l3", "l4": "l4", "phi0": "phi0", "psi0": "psi0",
+    "transmission": "least transmission angle",
 }  # fmt: skip
 
 WORDS: dict[str, str] = {
@@ -23,6 +23,21 @@ WORDS: dict[str, str] = {
     f"{_W}.locks": "order: the input locks on the way",
     f"{_W}.function": "y",
     f"{_W}.table": "table, straight between its rows",
+    f"{_W}.x_from": "x, from",
+    f"{_W}.x_to": "x, to",
+    f"{_W}.phi_from": "input angle, from",
+    f"{_W}.phi_to": "input angle, to",
+    f"{_W}.psi_from": "output angle, from",
+    f"{_W}.psi_to": "output angle, to",
+    f"{_W}.solution": "solution, of those below",
+    f"{_W}.solutions": "Solutions; another is taken by choose: its number",
+    f"{_W}.number_of": "choose",
+    f"{_W}.taken": "taken",
+    f"{_W}.chosen": "yes",
+    f"{_W}.free": "l4/l1, free with two pairs",
+    f"{_W}.free_note": "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two "
+    "of l1, l3, l4 to take another",
+    f"{_W}.family": "Four-bars through both pairs",
     f"{_W}.error": "largest structural error",
     f"{_W}.error_curve": "structural error of the output angle",
     f"{_W}.error_title": "Structural error over the range",
@@ -44,9 +59,20 @@ WORDS: dict[str, str] = {
     f"{_W}.all_locks": "order defect: the input of every four-bar through these pairs locks on the way",
     f"{_W}.all_both": "every four-bar through these pairs has a branch defect, or its input locks on the way",
     f"{_W}.nearest": "the last output angle {psi}; or defects: keep",
-    f"{_W}.other": "other angles, or defects: keep; nothing within 60 deg of the last output angle helps",
+    f"{_W}.other": "other angles, or defects: keep; no output angle alone within 60 deg of the given one helps",
+    f"{_W}.endless": "the links of the four-bars through these pairs are infinitely long beside the frame",
+    f"{_W}.nearest_long": "the last output angle {psi}, with no link {links} times as long as another; "
+    "or defects: keep",
+    f"{_W}.nearest_long_alone": "the last output angle {psi}, with no link {links} times as long as another",
+    f"{_W}.nearest_more": "{name} {length} or more; or defects: keep",
+    f"{_W}.nearest_more_alone": "{name} {length} or more",
+    f"{_W}.nearest_less": "{name} {length} or less; or defects: keep",
+    f"{_W}.nearest_less_alone": "{name} {length} or less",
+    f"{_W}.short_sound": "none",
+    f"{_W}.short_branch": "branch",
+    f"{_W}.short_locks": "order",
     f"{_W}.nearest_alone": "the last output angle {psi}",
-    f"{_W}.other_alone": "other angles; nothing within 60 deg of the last output angle helps",
+    f"{_W}.other_alone": "other angles; no output angle alone within 60 deg of the given one helps",
     f"{_W}.parallelogram": "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its "
     "transmission angle is that of DC with AD; l1/l4 is free, 1/2 is taken",
     f"{_W}.reversed": "a zero angle is half a turn from the given one: in the given sense there is no such link",
@@ -56,6 +82,10 @@ WORDS: dict[str, str] = {
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
 }
-WORDS |= {f"{_W}.s{k}_{key}": f"solution {k}: {text}" for k in range(1, 4) for key, text in _OF_EACH.items()}
+WORDS |= {f"{_W}.column_{key}": text for key, text in _COLUMNS.items()}
+for _bound in ("", "_long"):
+    for _left in ("", "_alone"):
+        _last = WORDS[f"{_W}.nearest{_bound}{_left}"]
+        WORDS[f"{_W}.nearest{_bound}_of{_left}"] = _last.replace("the last output angle", "output angle {which}:")
 WORDS |= {f"{_W}.input{k}": f"input angle {k}" for k in range(1, 6)}
 WORDS |= {f"{_W}.pair{k}": f"output angle {k}" for k in range(1, 6)}

@@ -41,6 +41,8 @@ WORDS: dict[str, str] = {
     "seen under theta",
     "synthesis_four_bar_by_k.bold": "red: where {A} may be, so that the crank turns fully",
     "synthesis_four_bar_by_k.angles": "{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|",
+    "synthesis_four_bar_by_k.transmission": "least transmission angle",
+    "synthesis_four_bar_by_k.family": "All pivots A of the admissible arcs, from end to end",
     "synthesis_four_bar_by_k.family_pressure": "Largest pressure angle along the admissible arcs",
     "synthesis_four_bar_by_k.family_lengths": "Lengths of the links along the admissible arcs",
     "synthesis_four_bar_by_k.pressure_inside": "A on D's side of C1C2",
@@ -55,28 +57,40 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.more_than_zero": "more than zero",
     "synthesis_four_bar_by_k.k_below": "k is the time of the working stroke over that of the idle one, the shorter",
     "synthesis_four_bar_by_k.k_least": "1 or more; {k} for the same strokes",
+    "synthesis_four_bar_by_k.k_range": "1 to {k}",
+    "synthesis_four_bar_by_k.k_zero": "1 or more",
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
-    "synthesis_four_bar_by_k.swing_range": "psi2 other than psi1 = {psi1}, and less than 180 deg from it",
+    "synthesis_four_bar_by_k.swing_range": "psi2 from {low} to {high}, other than psi1 = {psi1}",
     "synthesis_four_bar_by_k.k_above": "k is too large for this swing: on the whole circle the rocker would pass its "
     "dead position",
-    "synthesis_four_bar_by_k.k_most": "k less than {k}, or a swing of more than {swing}",
+    "synthesis_four_bar_by_k.k_most": "k {k} or less, or psi2 {psi2} or more",
+    "synthesis_four_bar_by_k.k_most_down": "k {k} or less, or psi2 {psi2} or less",
+    "synthesis_four_bar_by_k.k_most_alone": "k {k} or less",
     "synthesis_four_bar_by_k.sense": "with this sense of the crank the slow stroke leads from psi2 to psi1",
-    "synthesis_four_bar_by_k.sense_most": "the other sense, or k less than {k}",
+    "synthesis_four_bar_by_k.sense_most": "the other sense, or k {k} or less",
+    "synthesis_four_bar_by_k.sense_other": "the other sense",
     "synthesis_four_bar_by_k.best_none": "with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the "
     "farther A is",
-    "synthesis_four_bar_by_k.best_others": "l4, near or supports level; a pressure angle of more than {pressure}",
+    "synthesis_four_bar_by_k.best_others": "k more than 1; or l2, l4, near or choose: supports level, the pressure "
+    "angle being more than {pressure} always",
     "synthesis_four_bar_by_k.level_none": "no pivot of the admissible arcs is as high as D",
-    "synthesis_four_bar_by_k.level_nearest": "best transmission, l4 or near; at best A is {offset} higher than D",
     "synthesis_four_bar_by_k.near_end": "the nearest place of the admissible arcs is an end of them, where the rocker "
     "is dead",
-    "synthesis_four_bar_by_k.near_inside": "x = {x}, y = {y}: the nearest pivot with a largest pressure "
+    "synthesis_four_bar_by_k.near_inside": "[{x}, {y}]: the nearest pivot with a largest pressure "
     "angle of {pressure} or less",
     "synthesis_four_bar_by_k.l1_none": "no pivot of the admissible arcs gives such a crank",
     "synthesis_four_bar_by_k.l2_none": "no pivot of the admissible arcs gives such a coupler",
     "synthesis_four_bar_by_k.l1_same": "with k = 1 every crank is half of C1C2",
     "synthesis_four_bar_by_k.l1_others": "l2, l4, near or supports level; the crank is {l1}",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
-    "synthesis_four_bar_by_k.l4_range": "more than {low} and less than {high}",
-    "synthesis_four_bar_by_k.l4_range_line": "more than {low}",
-    "synthesis_four_bar_by_k.l4_range_but": "more than {low} and less than {high}, other than {l3}",
+    "synthesis_four_bar_by_k.l4_range": "{low} to {high}",
+    "synthesis_four_bar_by_k.l4_range_line": "{low} or more",
+    "synthesis_four_bar_by_k.l4_range_but": "{low} to {high}, other than {l3}",
 }
+for _where in ("higher", "lower"):
+    _key = f"synthesis_four_bar_by_k.level_{_where}"
+    WORDS |= {
+        _key: f"best transmission, l4 or near; at best A is {{offset}} {_where} than D",
+        f"{_key}_more": f"k {{k}} or more; now A is at best {{offset}} {_where} than D",
+        f"{_key}_less": f"k {{k}} or less; now A is at best {{offset}} {_where} than D",
+    }

@@ -48,7 +48,7 @@ WORDS: dict[str, str] = {
     "synthesis_grashof.positive": "there is no such link",
     "synthesis_grashof.more_than_zero": "more than zero",
     "synthesis_grashof.open": "the links do not close: {link} is as long as the others together, or longer",
-    "synthesis_grashof.closing": "{link} less than {most}",
+    "synthesis_grashof.closing": "{link} {most} or less",
     "synthesis_grashof.source": "F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification "
     "of planar four-bar linkages, Mechanism and Machine Theory 20 (1985)",
     "synthesis_grashof.source_slider": "the limit of Grashof's condition for a rocker of infinite length: l >= r + e",

@@ -43,7 +43,7 @@ WORDS: dict[str, str] = {
     "synthesis_slotted_lever.k_least": "more than 1; {k} for the same strokes",
     "synthesis_slotted_lever.k_more": "more than 1",
     "synthesis_slotted_lever.swing_range": "the lever of a crank that turns fully swings by less than 180 deg",
-    "synthesis_slotted_lever.k_most": "less than {k}",
+    "synthesis_slotted_lever.k_most": "{k} or less",
     "synthesis_slotted_lever.swing_allowed": "more than zero and less than 180 deg",
     "synthesis_slotted_lever.positive": "there is no such link",
     "synthesis_slotted_lever.more_than_zero": "more than zero",

@@ -9,11 +9,22 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, BeforeValidator, Field, create_model
+from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model
 from pydantic_core import PydanticCustomError
 
-from tmm_cli.problem.schema import Name, Strict, Value
+from tmm_cli.problem.schema import VALUE, Name, Strict, Value, checked_value
 from tmm_cli.synthesis import TASKS
+
+
+def _range(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 2:
+        raise PydanticCustomError("range", "two numbers [from, to] are wanted")
+    return [checked_value(item) for item in found]
+
+
+Range = Annotated[
+    Any, BeforeValidator(_range), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
+]
 
 
 class Block(Strict):

@@ -18,7 +18,7 @@ from tmm_cli.problem.synthesis import Block, reader
 from tmm_cli.problem.synthesis.bounded import Bounded
 from tmm_cli.problem.units import KINDS, Quantity, UnitSystem, plain_text
 from tmm_cli.synthesis import task
-from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.synthesis.record import Infeasible, sound
 from tmm_cli.words import say
 
 Parameters = dict[str, Quantity]
@@ -88,7 +88,8 @@ def with_synthesis(
     else:
         record = asked(block, raw, units, variant)
         try:
-            outcome = task(block.task).solve(record)
+            with np.errstate(all="ignore"):  # what has no value is refused by `sound`
+                outcome = sound(task(block.task).solve(record))
         except Infeasible as error:
             raise _refused(error, block, units).at("synthesis") from None
         except OfTheFile as error:
@@ -170,16 +171,12 @@ def _not_on(block: Block, late: set[str], units: UnitSystem) -> None:
 
 
 def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError:
-    def shown(value: Any, kind: str) -> str:
-        if kind == "word":
-            return str(value)
-        digits = 15 if kind.endswith(" exact") else 6  # a value that is met by itself only, not on one side of a limit
-        dimension = KINDS[kind.removesuffix(" exact")].dimension
-        return f"{units.from_si(float(value), dimension):.{digits}g} {units.symbol(dimension)}".rstrip()
+    from tmm_cli.problem.synthesis.limits import shown
 
-    values = {name: shown(*value) for name, value in error.values.items()}
+    values = shown(error.values, units)
     return ProblemError(
-        say(error.reason, **values), path=error.path, found=quote(_at(block, error.path)),
+        say(error.reason, **values), path=error.path,
+        found=quote(_at(block, error.path)) if error.path else None,
         allowed=say(error.nearest, **values),
     )  # fmt: skip
 

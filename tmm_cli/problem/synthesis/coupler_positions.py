@@ -13,7 +13,7 @@ from tmm_cli.problem.schema import Value, Vector
 from tmm_cli.problem.sense import Sense, planar
 from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.units import ANGLE, LENGTH
-from tmm_cli.synthesis.coupler_positions import Asked, Side
+from tmm_cli.synthesis.coupler_dyads import Asked, Side
 
 
 def _pose(found: Any) -> Any:
@@ -45,6 +45,13 @@ class Shape(Block):
     DC_side: Where = "left"
     AB_turn: Value | None = Field(default=None, description="turn of AB from 1 to 2, with four; best transmission")
     DC_turn: Value | None = Field(default=None, description="turn of DC from 1 to 2, with four; best transmission")
+    A_near: Vector | None = Field(
+        default=None, description="or, with four, a place: the pivot of the curve nearest to it"
+    )
+    D_near: Vector | None = Field(default=None, description="the same of D")
+    pivots_within: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=2, description="with four, opposite corners of a box for free pivots"
+    )
     AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links of that turn")
     DC_branch: Literal[1, 2] = 1
     defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
@@ -69,18 +76,36 @@ def asked(shape: Shape, sense: Sense) -> Asked:
             )  # fmt: skip
     sides = {name: side for name in DYADS if (side := _side(shape, sense, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
-    return Asked(tuple(places), tuple(angles), sides, shape.defects == "keep")
+    return Asked(tuple(places), tuple(angles), sides, shape.defects == "keep", _box(shape, sense, count, sides))
+
+
+def _box(shape: Shape, sense: Sense, count: int, sides: dict[str, Side]) -> tuple[complex, complex] | None:
+    """Corners of the box for free pivots."""
+    if shape.pivots_within is None:
+        return None
+    if count != 4 or len(sides) == 2:
+        why = f"{count} positions" if count != 4 else "both links are given"
+        raise ProblemError(
+            "a box is for pivots that are free", path=("pivots_within",), found=why,
+            allowed="four positions, and AB or DC free", key=True,
+        )  # fmt: skip
+    one, other = (sense.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
+    return one, other
 
 
 def _side(shape: Shape, sense: Sense, name: str, count: int) -> Side | None:
     """What is given of a dyad, which must be just what the count of positions needs."""
-    pivot, pin, turn = name[0], name[1], f"{name}_turn"
-    given = {key for key in (pivot, pin, name, turn) if getattr(shape, key) is not None}
+    pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
+    given = {key for key in (pivot, pin, name, turn, near) if getattr(shape, key) is not None}
     good = {
-        2: ({pivot, name}, {pin, name}), 3: ({pivot}, {pin}), 4: ({turn}, set[str]()),
+        2: ({pivot, name}, {pin, name}), 3: ({pivot}, {pin}), 4: ({turn}, {near}, set[str]()),
     }[count]  # fmt: skip
     if given not in good:
-        wanted = {2: f"{pin} and {name}; or {pivot} and {name}", 3: f"{pin}; or {pivot}", 4: f"{turn}, or nothing"}
+        wanted = {
+            2: f"{pin} and {name}; or {pivot} and {name}",
+            3: f"{pin}; or {pivot}",
+            4: f"{turn}; or {near}; or nothing",
+        }
         raise ProblemError(
             f"these keys do not determine {name} with {count} positions", found=", ".join(sorted(given)) or "none",
             allowed=wanted[count], key=True,
@@ -89,7 +114,7 @@ def _side(shape: Shape, sense: Sense, name: str, count: int) -> Side | None:
         return None
     found: dict[str, Any] = {
         field: sense.vector(getattr(shape, key), LENGTH, (key,))
-        for field, key in (("pivot", pivot), ("pin", pin)) if key in given
+        for field, key in (("pivot", pivot), ("pin", pin), ("near", near)) if key in given
     }  # fmt: skip
     if name in given:
         found["length"] = sense.positive(getattr(shape, name), LENGTH, (name,))

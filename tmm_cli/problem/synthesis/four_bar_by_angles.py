@@ -11,10 +11,10 @@ from pydantic import Field
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema import Value, Vector
 from tmm_cli.problem.sense import Sense
-from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.synthesis import Block, Range
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.four_bar_by_angles import Asked
 from tmm_cli.synthesis.functions import ANGLES, FUNCTIONS, Function
+from tmm_cli.synthesis.pairs import Asked
 
 LENGTHS = ("l1", "l2", "l3", "l4")
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
@@ -35,9 +35,9 @@ class Shape(Block):
     psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 pairs find it")
     function: str | None = Field(default=None, max_length=40, description="y: " + ", ".join(FUNCTIONS))
     table: list[Vector] | None = Field(default=None, min_length=2, max_length=10_000, description="or rows [x, y]")
-    x: Vector | None = Field(default=None, description="[from, to], with a function")
-    input: Vector | None = Field(default=None, description="[from, to]: input angles for x")
-    output: Vector | None = Field(default=None, description="[from, to]: output angles for y")
+    x: Range | None = Field(default=None, description="[from, to], with a function")
+    input: Range | None = Field(default=None, description="[from, to]: input angles for x")
+    output: Range | None = Field(default=None, description="[from, to]: output angles for y")
     points: int | None = Field(default=None, ge=2, le=5, description="precision points, with Chebyshev's spacing; 3")
     choose: Literal["transmission", "crank", 1, 2, 3] = Field(
         default="transmission", description="of several solutions: best transmission, a crank if there is one, a number"

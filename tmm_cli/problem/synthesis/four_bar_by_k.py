@@ -7,11 +7,11 @@ from typing import Any, Literal
 from pydantic import Field
 
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema import Value
+from tmm_cli.problem.schema import Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.four_bar_by_k import Asked
+from tmm_cli.synthesis.four_bar_arcs import Asked
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
 WAYS = ("choose", "l1", "l2", "l4", "near")
@@ -25,14 +25,14 @@ class Shape(Block):
     psi1: Value = Field(description="angle of DC where the crank lies over the coupler")
     psi2: Value = Field(description="angle of DC where the crank is in line with the coupler")
     k: Value = Field(description="coefficient of change of mean speed, 1 or more")
-    support: tuple[Value, Value] = Field(default=(0, 0), description="D; [0, 0]")
+    support: Vector = Field(default=(0, 0), description="D; [0, 0]")
     choose: Literal["best transmission", "supports level"] | None = Field(
         default=None, description="how A is chosen; best transmission"
     )
     l1: Value | None = Field(default=None, description="or: the crank AB")
     l2: Value | None = Field(default=None, description="or: the coupler BC")
     l4: Value | None = Field(default=None, description="or: the frame AD")
-    near: tuple[Value, Value] | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
+    near: Vector | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
     turns: Literal["ccw", "cw"] | None = Field(
         default=None, description="sense of the crank whose slow stroke leads from psi1 to psi2; any"
     )

@@ -7,9 +7,9 @@ from typing import Any, Literal
 from pydantic import Field
 
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema import Value
+from tmm_cli.problem.schema import Value, Vector
 from tmm_cli.problem.sense import Sense
-from tmm_cli.problem.synthesis import Block
+from tmm_cli.problem.synthesis import Block, Range
 from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
 from tmm_cli.synthesis.slotted_lever import Asked
 
@@ -22,19 +22,19 @@ class Shape(Block):
     """A slotted lever by the extreme places of its end B (or its length) and k (or its swing)."""
 
     task: Literal["slotted-lever"]
-    B1: tuple[Value, Value] | None = Field(default=None, description="extreme place of the lever's end B")
-    B2: tuple[Value, Value] | None = Field(default=None, description="the other one")
+    B1: Vector | None = Field(default=None, description="extreme place of the lever's end B")
+    B2: Vector | None = Field(default=None, description="the other one")
     C: Literal["left", "right"] | None = Field(
         default=None, description="on which side of the way from B1 to B2 the lever's hinge lies; right"
     )
     CB: Value | None = Field(default=None, description="length of the lever, instead of its places")
-    support: tuple[Value, Value] | None = Field(default=None, description="with CB, the hinge C; [0, 0]")
+    support: Vector | None = Field(default=None, description="with CB, the hinge C; [0, 0]")
     axis: Value | None = Field(default=None, description="with CB, direction from C to O; 90 deg")
     k: Value | None = Field(default=None, description="coefficient of change of mean speed, more than 1")
     swing: Value | None = Field(default=None, description="swing of the lever, instead of k")
     OC: Value | None = Field(default=None, description="distance of the fixed hinges")
     OA: Value | None = Field(default=None, description="or the crank")
-    within: tuple[Value, Value] | None = Field(default=None, description="or bounds of OC")
+    within: Range | None = Field(default=None, description="or bounds of OC")
     choose: Literal["least force", "shortest"] | None = Field(
         default=None,
         description="OC within its bounds: the longest that leaves the stone on CB (least force), or the shortest",

@@ -1,0 +1,252 @@
+"""What a refused synthesis prints as allowed is allowed as it is printed, and is the limit."""
+
+from __future__ import annotations
+
+import re
+import warnings
+
+import numpy as np
+import pytest
+
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.synthesis.alone import alone
+from tmm_cli.problem.synthesis.limits import shown
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis.record import Infeasible, Outcome, Value, sound
+
+SEEDS = range(4)
+FARTHER = 1e-4  # relative: beyond the limit
+
+
+def flow(value):
+    return "[" + ", ".join(map(flow, value)) + "]" if isinstance(value, list) else str(value)
+
+
+def solved(block):
+    """What the synthesis of a file gives, without a warning; numbers of its parameters are finite."""
+    keys = ", ".join(f"{key}: {flow(value)}" for key, value in block.items())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, _, found, _ = alone(read_text(f"tmm: 1\nsynthesis: {{{keys}}}\n", "x.yaml"))
+    assert all(np.isfinite(float(v.value)) for v in found.outcome.found if v.kind != "word")
+    return found.outcome
+
+
+def refused(block):
+    with pytest.raises(ProblemError) as caught:
+        solved(block)
+    assert caught.value.allowed is not None
+    return caught.value
+
+
+def slider(**more):
+    return lambda r: {"task": "crank-slider", "stroke": r.uniform(10, 500), **{k: f(r) for k, f in more.items()}}
+
+
+def rocker(**more):
+    return lambda r: {
+        "task": "four-bar-by-k", "l3": r.uniform(10, 900), "psi1": r.uniform(20, 40), "psi2": r.uniform(60, 150),
+        **{k: f(r) for k, f in more.items()},
+    }  # fmt: skip
+
+
+def down(make):
+    """The rocker swings clockwise."""
+    return lambda r: (b := make(r)) | {"psi1": b["psi2"], "psi2": b["psi1"]}
+
+
+def lever(**more):
+    return lambda r: {"task": "slotted-lever", "k": r.uniform(1.05, 4), "CB": r.uniform(50, 900),
+                      **{k: f(r) for k, f in more.items()}}  # fmt: skip
+
+
+def ram(**more):
+    return lambda r: {"task": "shaper", "stroke": r.uniform(50, 900), **{k: f(r) for k, f in more.items()}}
+
+
+def between(low, high):
+    return lambda r: r.uniform(low, high)
+
+
+LESS, MORE = r"{} ([^ ,]+(?: mm| deg)?) or less", r"{} ([^ ,]+(?: mm| deg)?) or more"
+ALONE, ALONE_MORE = r"^([^ ,]+(?: mm| deg)?) or less", r"^([^ ,]+(?: mm| deg)?) or more"
+LOW, HIGH = r"(?:^|psi2 from )([^ ,]+(?: mm| deg)?) to ", r" to ([^ ,]+(?: mm| deg)?)"
+K, RATIO = LESS.format("k"), LESS.format("ratio")
+CASES = {  # a task that cannot be, and where the limit of each key stands in the message
+    "k too large for L": (slider(k=between(2, 2.9), ratio=between(4, 60)), {"k": K, "ratio": RATIO}),
+    "k of 3 or more": (slider(k=between(3, 9), ratio=between(1.1, 9)), {"k": K}),
+    "pressure angle too small": (
+        slider(k=between(1.2, 2.5), pressure=between(3, 20)), {"k": K, "pressure": MORE.format("pressure")}),
+    "k of 3 or more, pressure": (slider(k=between(3, 9), pressure=between(20, 80)), {"k": K}),
+    "offset too large": (slider(k=between(1.8, 2.8), e=between(400, 900)), {"k": K, "e": LESS.format("e")}),
+    "k of 3 or more, offset": (slider(k=between(3, 9), e=between(4, 900)), {"k": K}),
+    "nu too large": (slider(ratio=between(1.1, 4), nu=between(3.2, 9)),
+                     {"nu": LESS.format("nu"), "ratio": MORE.format("ratio")}),
+    "rod too short": (slider(ratio=between(0.1, 1), nu=between(0, 3)), {"ratio": ALONE_MORE}),
+    "rod too short, k": (slider(ratio=between(0.1, 1), k=between(1, 2.5)), {"ratio": ALONE_MORE}),
+    "k too large for the swing": (rocker(k=between(7, 40)), {"k": K, "psi2": MORE.format("psi2")}),
+    "k too large for the swing, clockwise": (down(rocker(k=between(7, 40))), {"k": K}),
+    "swing too large": (rocker(k=between(1.1, 2), psi2=between(230, 300)), {"psi2": HIGH}),
+    "sense": (rocker(k=between(3, 3.3), turns=lambda r: "cw"), {"k": K}),
+    "frame too long": (rocker(k=between(1.1, 2), l4=between(2e4, 9e4)), {"l4": HIGH}),
+    "frame too short": (rocker(k=between(1.1, 1.3), l4=between(0.1, 1)), {"l4": LOW}),
+    "crank too long": (rocker(k=between(1.1, 2), l1=between(2e3, 9e3)), {"l1": HIGH}),
+    "coupler too long": (rocker(k=between(1.1, 2), l2=between(2e5, 9e5)), {"l2": HIGH}),
+    "coupler too short": (rocker(k=between(1.1, 2), l2=between(0.1, 1)), {"l2": LOW}),
+    "frame too short, k = 1": (rocker(k=lambda r: 1, l4=between(0.1, 9)), {"l4": ALONE_MORE}),
+    "no level supports": (
+        rocker(k=between(2.3, 2.7), psi2=between(60, 70), choose=lambda r: "supports level"), {"k": K}),
+    "stone passes": (lever(within=lambda r: [r.uniform(1000, 1100), 2000]), {"within": r"bound of (\S+ mm) or less"}),
+    "slot too short": (ram(k=between(1.1, 4), OC=between(5000, 9000), DE=between(5e3, 9e3)), {"OC": ALONE}),
+    "slot too short, crank": (ram(k=between(1.1, 4), OA=between(5000, 9000), DE=between(5e3, 9e3)), {"OA": ALONE}),
+    "slot too short, ratio": (
+        ram(k=between(1.1, 4), frame_ratio=between(1, 3), DE=between(5e3, 9e3)), {"frame_ratio": ALONE}),
+    "ram turns back": (ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), DE=between(0.1, 1)), {"DE": ALONE_MORE}),
+    "ram turns back, ratio": (
+        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)), {"rod_ratio": ALONE_MORE}),
+    "ram turns back, pressure": (
+        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)), {"pressure": ALONE}),
+    "links do not close": (
+        lambda r: {"task": "grashof", "l1": r.uniform(31, 90), **{f"l{k}": r.uniform(1, 10) for k in (2, 3, 4)}},
+        {"l1": LESS.format("l1")}),
+    "link does not reach": (
+        lambda r: {"task": "coupler-positions", "positions": [[0, 0, 0], [r.uniform(50, 90), 80, r.uniform(20, 60)]],
+                   "B": [0, 0], "C": [100, 0], "AB": r.uniform(1, 40), "DC": 400, "defects": "keep"},
+        {"AB": MORE.format("AB")}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_printed_limit_typed_in_is_allowed_and_a_little_farther_is_not(case, seed):
+    make, limits = CASES[case]
+    block = make(np.random.default_rng([seed, *map(ord, case)]))
+    told = refused(block).allowed
+    for key, pattern in limits.items():
+        match = re.search(pattern, told)
+        assert match, told
+        printed = match[1]
+        number, _, unit = printed.partition(" ")
+        least = pattern in (ALONE_MORE, LOW) or "more" in pattern
+        beyond = f"{float(number) * (1 - FARTHER if least else 1 + FARTHER)!r} {unit}".rstrip()
+        wrap = (lambda text, k=key: [text, 2000]) if key == "within" else (lambda text: text)
+        solved(block | {key: wrap(printed)})
+        refused(block | {key: wrap(beyond)})
+
+
+@pytest.mark.parametrize("seed", range(14))
+def test_the_output_angle_that_is_told_makes_a_four_bar_without_defects(seed):
+    r = np.random.default_rng(seed)
+    for _ in range(40):
+        count = int(r.integers(2, 5))
+        phi, psi = np.cumsum(r.uniform(10, 50, count)), np.cumsum(r.uniform(5, 50, count))
+        pairs = [[float(a), float(b)] for a, b in zip(phi, psi, strict=True)]
+        block = {"task": "four-bar-by-angles", "l4": 100, "pairs": pairs}
+        if count == 2:
+            block |= {"l1": r.uniform(20, 900)}
+        try:
+            solved(block)
+        except ProblemError as error:
+            told = error.allowed
+            break
+    else:
+        return
+    if match := re.search(r"^(l\d) ([^ ]+ mm)", told):
+        solved(block | {match[1]: match[2]})
+        return
+    match = re.search(r"output angle (?:(\d): )?([^ ,;]+ deg)", told)
+    assert match, told
+    which = int(match[1] or count) - 1
+    pairs[which] = [pairs[which][0], match[2]]
+    solved(block)
+
+
+def test_equal_ranges_of_input_and_output_with_four_points_want_endless_links_and_that_is_said():
+    block = {
+        "task": "four-bar-by-angles", "function": "x^2", "x": [0, 1], "input": [30, 120], "points": 4, "l4": 100,
+        "output": [60, 150],
+    }  # fmt: skip
+    error = refused(block)
+    assert "infinitely long" in error.message and error.found == "[60, 150]"
+    psi = re.search(r"angle ([^ ,]+ deg)", error.allowed)[1]
+    assert psi != "150 deg"
+    links = [float(solved(block | {"output": [60, psi]}).parameters[f"l{k}"].value) for k in range(1, 5)]
+    assert max(links) <= 50 * min(links)
+
+
+def test_limits_are_rounded_to_their_side_and_never_onto_a_limit_that_is_not_allowed():
+    units = UnitSystem({"length": "mm"})
+    rows = {
+        "most": (0.1234567654, "length", "most"), "least": (0.1234561196, "length", "least"),
+        "below": (3.0, "number", "below"),
+        "above": (2.0, "number", "above"), "plain": (0.1234567654, "length"), "exact": (0.25, "length", "most"),
+        "name": ("AB", "word"),
+    }  # fmt: skip
+    assert shown(rows, units) == {
+        "most": "123.456765 mm", "least": "123.45612 mm", "below": "2.99999997", "above": "2.00000002",
+        "plain": "123.456765 mm", "exact": "250 mm", "name": "AB",
+    }  # fmt: skip
+    apart = {name: rows[name] for name in ("most", "below", "above", "plain", "exact")}
+    assert shown(apart, units) == {
+        "most": "123.456 mm", "below": "2.99999", "above": "2.00001", "plain": "123.457 mm", "exact": "250 mm",
+    }  # fmt: skip
+
+
+def test_what_is_no_number_is_never_an_answer():
+    good = Value("l1", 0.1, "length", "word.value")
+    assert sound(Outcome((), (good,), "word.value")).found == (good,)
+    for bad in (np.nan, np.inf, np.longdouble("nan")):
+        with pytest.raises(Infeasible):
+            sound(Outcome((), (good, Value("l2", bad, "length", "word.value")), "word.value"))
+
+
+def test_near_the_largest_k_the_four_bar_is_still_found_and_beyond_it_the_reason_is_told():
+    block = {"task": "four-bar-by-k", "l3": 250, "psi1": 60, "psi2": 110, "support": [400, 0]}
+    assert solved(block | {"k": 4.5384}).parameters["l1"].value > 0
+    error = refused(block | {"k": 4.53846})
+    assert error.path == ("synthesis", "k") and "k is too large" in error.message
+
+
+def guided(r, count):
+    """A random task of a coupler's positions, free of choices that only luck makes sound."""
+    turns = np.cumsum([0, *r.uniform(8, 30, count - 1)])
+    way = np.cumsum([0, *r.uniform(30, 70, count - 1) * np.exp(1j * np.radians(r.uniform(-20, 70, count - 1)))])
+    block = {
+        "task": "coupler-positions",
+        "positions": [[float(p.real), float(p.imag), float(a)] for p, a in zip(way, turns, strict=True)],
+    }
+    if count == 4:
+        return block | {"AB_turn": r.uniform(-60, 60)} | ({"DC_turn": r.uniform(-60, 60)} if r.uniform() < 0.5 else {})
+    b, c = r.uniform(-50, 50, (2, 2)).tolist()
+    lengths = {"AB": r.uniform(60, 200), "DC": r.uniform(60, 200)} if count == 2 else {}
+    return block | {"B": b, "C": c} | lengths
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_choice_that_is_told_for_a_coupler_has_no_defect(count, seed):
+    r = np.random.default_rng([seed, count])
+    told = []
+    for _ in range(10):
+        block = guided(r, count)
+        try:
+            solved(block)
+        except ProblemError as error:
+            told.append((block, error.allowed))
+    assert told or count == 2
+    for block, allowed in told:
+        if match := re.search(
+            r"AB_turn (\S+ deg) with AB_branch: (.) and DC_turn (\S+ deg) with DC_branch: (.)", allowed
+        ):
+            keys = ("AB_turn", "AB_branch", "DC_turn", "DC_branch")
+            solved(block | dict(zip(keys, match.groups(), strict=True)))
+        elif match := re.search(r"^(?:(AB|DC|AB_turn|DC_turn) )?([^ ,;]+ (?:mm|deg))", allowed):
+            key = match[1] or refused(block).path[-1]
+            solved(block | {key: match[2]})
+        elif match := re.search(r"^([BC]) \[([^ ]+ mm), ([^ ]+ mm)\]", allowed):
+            solved(block | {match[1]: [match[2], match[3]]})
+        elif match := re.search(r"AB_side: (\w+), DC_side: (\w+)", allowed):
+            solved(block | {"AB_side": match[1], "DC_side": match[2]})
+        else:
+            assert "DC as the driver" in allowed or "other positions" in allowed, allowed
