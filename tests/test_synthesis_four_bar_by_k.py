@@ -258,7 +258,7 @@ def refusal(more, **angles):
 REFUSED = [
     (", near: [-300, -40]", {},
      ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
-     "a list of 2", "a place beside an arc, such as [254.885 mm, 52.6479 mm]"),
+     "[-300, -40]", "a place beside an arc, such as [254.885 mm, 52.6479 mm]"),
     ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position",
      "5", "k 4.75994 or less, or psi2 110.002 deg or more"),
     ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
