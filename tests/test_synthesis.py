@@ -242,3 +242,41 @@ def test_tables_of_several_files_come_under_their_names():
     files = [ROOT / "problems" / f"{name}.yaml" for name in ("press-synthesis", "pump-synthesis")]
     done = tmm("synthesis", *files)
     assert [line for line in done.stdout.splitlines() if line.startswith("==")] == [f"== {file} ==" for file in files]
+
+
+def test_a_misspelt_block_is_told_at_its_place(tmp_path):
+    text = (ROOT / "problems" / "press-synthesis.yaml").read_text()
+    file = tmp_path / "press.yaml"
+    file.write_text(text.replace("\nsynthesis:", "\nsinthesis:"))
+    done = tmm("synthesis", file)
+    line = 1 + text[: text.index("\nsynthesis:") + 1].count("\n")
+    assert done.returncode == 2 and f"press.yaml:{line}:1: sinthesis: unknown key" in done.stderr
+    assert "did you mean 'synthesis'?" in done.stderr
+
+
+def test_what_the_synthesis_finds_is_among_the_names_that_arithmetic_may_use():
+    with pytest.raises(ProblemError) as caught:
+        build(read_text("tmm: 1\nparameters: {n: 3, AS: 0.35*AB}\nsynthesis: {task: crank-slider, stroke: 120, k: 1.1, "
+                        f"ratio: 3.5}}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))  # fmt: skip
+    assert caught.value.path == ("parameters", "AS") and caught.value.near is None
+    assert caught.value.allowed == "n, and what the synthesis crank-slider finds: r, l, e"
+
+
+def test_a_key_of_the_block_that_is_used_as_a_parameter_is_called_one():
+    with pytest.raises(ProblemError) as caught:
+        build(read_text("tmm: 1\nparameters: {OA: ratio*10}\nsynthesis: {task: crank-slider, stroke: 120, k: 1.08, "
+                        f"ratio: 3.5}}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))  # fmt: skip
+    assert caught.value.message == "ratio is a key of the synthesis, not a parameter" and caught.value.near is None
+    assert "synthesis: {ratio: ratio}" in caught.value.allowed
+
+
+@pytest.mark.parametrize("block", [
+    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: 400}",
+    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: [400]}",
+    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, near: [1, 2, 3]}",
+    "{task: slotted-lever, k: 1.8, B1: 3, B2: [1, 2], OC: 30}", "{task: slotted-lever, k: 1.8, CB: 30, within: 20}",
+    "{task: four-bar-by-angles, function: x^2, x: 3, input: [30, 120], output: [60, 150], l4: 100}",
+])  # fmt: skip
+def test_a_place_or_a_range_that_is_none_is_said_in_our_words(block):
+    with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\] are wanted"):
+        build(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))

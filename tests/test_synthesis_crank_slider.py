@@ -230,3 +230,15 @@ def test_extended_precision_solves_the_task_in_extended_precision():
     nu = 15 * np.sin(theta) / np.sqrt(2 * (17 - 15 * np.cos(theta)))
     r = np.longdouble("0.12") / (np.sqrt(25 - nu * nu) - np.sqrt(9 - nu * nu))
     assert abs(exact.links["1"].points["A"].real / r - 1) < 1e-18
+
+
+@pytest.mark.parametrize("keys", [
+    {"ratio": 3, "nu": 0.5}, {"ratio": 3, "k": 1.1}, {"pressure": "30 deg", "nu": 0.3},
+    {"pressure": "40 deg", "k": 1.1}, {"ratio": 3, "nu": 0},
+])  # fmt: skip
+def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
+    outcome = problem({"stroke": 120, **keys}).synthesis.outcome
+    told = {v.words.rpartition(".")[2]: float(v.value) for v in (*outcome.asked, *outcome.found) if v.kind != "word"}
+    approximate = math.sqrt((told["h"] - 2) * (told["ratio"] ** 2 - 1))
+    assert told["printed"] == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k"] >= 1
+    assert told["error"] == pytest.approx(told["printed"] / told["nu"] - 1 if told["nu"] else 0, abs=1e-12)

@@ -11,6 +11,7 @@ Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
 Vector = NDArray[Any]  # complex arrays, likewise
 
 
+ROUNDING = 16  # units of the last place that a construction of a few steps may lose
 PI = "3.14159265358979323846264338327950288"
 
 
@@ -42,6 +43,15 @@ def along(a: Any, amount: Any) -> Any:
 def unit(angle: Any) -> Any:
     """e^(i angle)."""
     return np.cos(angle) + 1j * np.sin(angle)
+
+
+def settled(values: Any, size: Any) -> Any:
+    """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
+    values = np.asarray(values)
+    least = ROUNDING * np.finfo(values.dtype).eps * size
+    if not np.iscomplexobj(values):
+        return np.where(np.abs(values) > least, values, values.dtype.type(0))[()]
+    return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
 
 
 def left(a: Any) -> Any:

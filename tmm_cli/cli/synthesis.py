@@ -53,16 +53,14 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
 
 def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    from tmm_cli.problem.errors import ProblemError
     from tmm_cli.problem.reader import read_file
     from tmm_cli.words import say as words
 
     tree = read_file(file)
     if "synthesis" not in tree.data:
-        from tmm_cli.synthesis import TASKS
+        from tmm_cli.problem.synthesis.alone import no_block
 
-        allowed = f"synthesis: {{task: ...}}, one of {', '.join(TASKS)}"
-        raise ProblemError(words("synthesis.no_block"), allowed=allowed, file=file)
+        raise no_block(tree, words("synthesis.no_block"))
     if "links" not in tree.data:
         from tmm_cli.problem.synthesis.alone import alone
 

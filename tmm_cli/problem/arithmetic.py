@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, UnknownParameterError, nearest, quote
 from tmm_cli.problem.scalars import comma_error
 from tmm_cli.problem.units import (
     ANGLE,
@@ -183,11 +183,14 @@ class Parser:
             return self.call(name)
         if symbol(name):
             raise ProblemError("a unit without a number before it", found=quote(name), allowed=f"e.g. 1 {name}")
-        names = [*self.parameters, *FUNCTIONS, "pi"]
-        raise ProblemError(
+        called = self.text[self.at :].lstrip().startswith("(")
+        names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
+        error = UnknownParameterError(
             "there is no such parameter", found=quote(name), allowed=", ".join(self.parameters) or "none is given",
             near=nearest(name, names),
         )  # fmt: skip
+        error.unknown = name
+        raise error
 
     def call(self, name: str) -> Quantity:
         if not self.sign("("):

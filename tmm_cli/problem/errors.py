@@ -104,6 +104,23 @@ class ProblemError(Exception):
         return "\n  ".join(lines)
 
 
+class UnknownParameterError(ProblemError):
+    """Arithmetic on a name that is no parameter, `unknown`; where it is a key of the synthesis, that is said."""
+
+    unknown = ""
+
+    def located(self, file: str, tree: Tree | None = None) -> Self:
+        """As every error; the tree tells whether the name is a key of the block `synthesis`."""
+        new = super().located(file, tree)
+        block = tree.data.get("synthesis") if tree is not None else None
+        if isinstance(block, dict) and self.unknown in block and self.path[:1] != ("synthesis",):
+            key = clean(self.unknown, 40)
+            new.message = f"{key} is a key of the synthesis, not a parameter"
+            new.allowed = f"{key} as a parameter too: parameters: {{{key}: ...}}, synthesis: {{{key}: {key}}}"
+            new.near = None
+        return new
+
+
 def _mark(tree: Tree, path: Path, key: bool) -> Mark | None:
     if path in tree.marks:
         return tree.key_marks.get(path, tree.marks[path]) if key else tree.marks[path]

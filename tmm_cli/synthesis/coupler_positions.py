@@ -17,6 +17,7 @@ from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
 from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Asked", "Side", "both", "solve"]
 PARAMETERS: Final = {
@@ -114,8 +115,10 @@ def lengths(asked: Asked, one: Dyads, other: Dyads) -> dict[str, Any]:
     """All parameters in extended precision."""
     b, c = (asked.poses.on_frame(x.pin)[..., 0] for x in (one, other))
     a, d = one.pivot, other.pivot
+    size = asked.size + np.max(np.abs(np.asarray(asked.places))) + np.abs(a) + np.abs(d)
+    a, b, c, d = (settled(x, size) for x in (a, b, c, d))
     span = other.pin - one.pin
-    p = -one.pin * np.conj(span) / np.abs(span)
+    p = settled(-one.pin * np.conj(span) / np.abs(span), size)
     found = {"Ax": a.real, "Ay": a.imag, "Dx": d.real, "Dy": d.imag, "Px": p.real, "Py": p.imag}
     found |= {"l1": np.abs(b - a), "l2": np.abs(span), "l3": np.abs(c - d), "l4": np.abs(d - a)}
     return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.crank_slider import theta_of
-from tmm_cli.vectors import pi
+from tmm_cli.vectors import pi, settled
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
@@ -109,8 +109,9 @@ def at(asked: Asked, w: Any, side: Any) -> Found:
     middle = (np.asarray(asked.psi1) + asked.psi2) / 2
     frame = np.cos(middle) + 1j * np.sin(middle)
     a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
+    a = settled(asked.support + a, l4 + np.abs(asked.support))
     return Found(
-        w, side, l1, l2, l4, asked.support + a, slope, np.arcsin(np.minimum(np.maximum(*sines), 1)),
+        w, side, l1, l2, l4, a, slope, np.arcsin(np.minimum(np.maximum(*sines), 1)),
         np.arctan2(s * (w * c - cosine), c * cosine + s * sine), -side * way,
     )  # fmt: skip
 

@@ -22,6 +22,7 @@ from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, r
 from tmm_cli.synthesis.parallelogram import parallelogram
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.synthesis.structural_error import errors, extremes
+from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Asked", "chosen", "quality", "solve", "through"]
 PARAMETERS: Final = {
@@ -64,6 +65,7 @@ def solve(asked: Asked) -> Outcome:
     phi, psi = one.phi0 + asked.phi[0], one.psi0 + asked.psi[0]
     lengths = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": phi, "psi1": psi}
+    angles = {key: settled(angle, np.pi) for key, angle in angles.items()}
     plain = float if isinstance(asked.lengths[name], float) else np.longdouble  # more digits only where they are asked
     values = [Value(key, plain(value), PARAMETERS[key], f"{W}.{key}") for key, value in (lengths | angles).items()]
     values += [

@@ -14,13 +14,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.construction import Angle, Arc, Construction, Segment, Spot, box
+from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Shown, Value
+from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
+FAMILY: Final = 61  # lengths of OC within bounds that are listed
 STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
 
 
@@ -89,7 +91,9 @@ def find(asked: Asked) -> Found:
         frame = np.minimum(asked.within[1], longest)
     else:
         frame = np.asarray(asked.within[0])
-    return Found(frame * sine, frame, lever, c + frame * along, c, psi1, psi2, theta, longest)
+    size = lever + frame + np.abs(c)
+    along, c = settled(along, 1.0), settled(c, size)
+    return Found(frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest)
 
 
 def refuse(asked: Asked) -> None:
@@ -160,7 +164,29 @@ def solve(asked: Asked) -> Outcome:
           for n, v in (("psi1", f.psi1), ("psi2", f.psi2))),
     )  # fmt: skip
     notes = (f"{W}.passes",) if f.frame > f.longest * (1 + 1e-12) else ()
-    return Outcome(tuple(given), tuple(found), f"{W}.source", demands, (construction(f),), notes)
+    free = family(asked, f) if asked.within is not None and asked.within[0] < asked.within[1] else None
+    drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
+    return Outcome(tuple(given), tuple(found), f"{W}.source", demands, drawings, notes, listings)
+
+
+def family(asked: Asked, f: Found) -> tuple[Diagram, Listing]:
+    """OA and the stone's distances from C over the free distance OC within its bounds, drawn and in numbers."""
+    assert asked.within is not None
+    low, high = (float(x) for x in asked.within)
+    frame = np.linspace(low, high, FAMILY)
+    crank = frame * float(np.sin(f.theta / 2))
+    rows = {"OA": crank, "nearest": frame - crank, "farthest": frame + crank}
+    lines = [Line(f"{W}.{name}", frame, values) for name, values in rows.items()]
+    lines.append(Line(f"{W}.length", frame, np.full(FAMILY, float(f.lever))))
+    own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
+    lines.append(Line(f"{W}.chosen", np.full(3, float(f.frame)), own, dots=True))
+    across, up = (f"{W}.OC", "length"), (f"{W}.lengths", "length")
+    columns = tuple((f"{W}.{name}", "length") for name in ("OC", *rows))
+    values = np.stack((frame, *rows.values()), axis=-1).tolist()
+    return (
+        Diagram("family-lengths", f"{W}.family_lengths", across, up, tuple(lines)),
+        Listing("family", f"{W}.family", columns, tuple(map(tuple, values)), long=True),
+    )
 
 
 def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot], list[Angle]]:

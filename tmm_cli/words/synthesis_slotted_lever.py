@@ -36,6 +36,10 @@ WORDS: dict[str, str] = {
     "synthesis_slotted_lever.source": "OA is square to the lever in its extreme positions: B1CB2 = theta = "
     "pi (k - 1)/(k + 1), CB1 = CB2, O on the bisector, OA = OC sin(theta/2)",
     "synthesis_slotted_lever.passes": "the stone passes B: the slot goes on beyond it",
+    "synthesis_slotted_lever.chosen": "chosen",
+    "synthesis_slotted_lever.lengths": "length",
+    "synthesis_slotted_lever.family": "Slotted levers for OC within its bounds",
+    "synthesis_slotted_lever.family_lengths": "Crank OA and distance of the stone from C, over OC within its bounds",
     "synthesis_slotted_lever.construction": "Extreme positions of the slotted lever",
     "synthesis_slotted_lever.square": "{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2",
     "synthesis_slotted_lever.k_below": "a lever that swings goes back faster: k is the time of the slow stroke over "

@@ -6,12 +6,25 @@ from pathlib import PurePath
 
 from pydantic import ValidationError
 
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.reader import Tree
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.synthesis import SynthesisFile
 from tmm_cli.problem.synthesis.build import with_synthesis
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis import TASKS
+
+
+def no_block(tree: Tree, message: str) -> ProblemError:
+    """The refusal of a file without a synthesis, at the key that was perhaps meant to be one."""
+    meant = next((key for key in tree.data if nearest(key, ["synthesis"]) is not None), None)
+    allowed = f"synthesis: {{task: ...}}, one of {', '.join(TASKS)}"
+    if meant is None:
+        return ProblemError(message, allowed=allowed, file=tree.file)
+    error = ProblemError(
+        "unknown key", path=(meant,), found=quote(meant), allowed=allowed, near="synthesis", key=True
+    )  # fmt: skip
+    return error.located(tree.file, tree)
 
 
 def alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from tmm_cli.linkage import Linkage
 from tmm_cli.problem.arithmetic import Parser
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, UnknownParameterError, nearest, quote
 from tmm_cli.problem.expressions import check_parameter, resolve_parameters
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.sense import Sense
@@ -65,7 +65,7 @@ def _parts(
     """Names of what is found, parameters that rest on it, the others, and all of them once it is found."""
     names = _names(block, raw)
     late = _resting(raw, set(names.values()), units)
-    early = _parameters({name: raw[name] for name in raw if name not in late}, units)
+    early = _early(block, {name: raw[name] for name in raw if name not in late}, units, names)
 
     def with_found(found: Parameters, own: UnitSystem) -> Parameters:
         known = early | found
@@ -110,6 +110,18 @@ def _parameters(
         return resolve_parameters(raw, units, given)
     except ProblemError as error:
         raise error.at("parameters") from None
+
+
+def _early(block: Block, raw: Mapping[str, object], units: UnitSystem, names: Mapping[str, str]) -> Parameters:
+    """Parameters that do not rest on what is found; what is found is among the names that are allowed."""
+    try:
+        return _parameters(raw, units)
+    except UnknownParameterError as error:
+        told = ", ".join(names.values())
+        given = f"{error.allowed}, and " if raw and error.allowed != "none is given" else ""
+        error.allowed = f"{given}what the synthesis {block.task} finds: {told}" if told else error.allowed
+        error.near = nearest(error.unknown, [*raw, *names.values()])
+        raise
 
 
 def _standard(block: Block) -> Mapping[str, str]:
