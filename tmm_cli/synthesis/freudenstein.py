@@ -21,6 +21,7 @@ EXACT: Final = np.longdouble
 POLISHES: Final = 4
 SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
 REFINEMENTS: Final = 6
+ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
 
 
 @dataclass(frozen=True)
@@ -42,31 +43,43 @@ class Bars:
 
 
 def inverse(rows: Any) -> Any:
-    """Inverses (..., n, n) in ordinary precision, for corrections; nan where rows are singular, whatever their size.
+    """Inverses (..., m, n) of rows (..., n, m) in ordinary precision, for corrections; of least squares where there are
+    more rows than columns, of least length where there are fewer; nan where rows are singular, whatever their size.
 
     Near positions make rows that are nearly the same: their determinant is as small as it may be, and they are still
     good while their least singular value, over the largest one, is more than rounding.
     """
     near = np.asarray(rows, dtype=float)
     finite = np.isfinite(near).all((-1, -2), keepdims=True)
-    left, sizes, right = np.linalg.svd(np.where(finite, near, 0.0))
+    left, sizes, right = np.linalg.svd(np.where(finite, near, 0.0), full_matrices=False)
     sound = finite[..., 0] & (sizes[..., -1:] > SINGULAR * sizes[..., :1])
     back = np.where(sound, 1 / np.where(sound, sizes, 1.0), np.nan)
-    return np.einsum("...ji,...j,...kj->...ik", right, back, left)
+    return np.einsum("...ki,...k,...jk->...ij", right, back, left)
 
 
 def solve_linear(rows: Any, right: Any) -> Any:
-    """Linear systems (..., n, n), (..., n), refined in extended precision; nan where they are singular."""
+    """Linear systems (..., n, m), (..., n), refined in extended precision; nan where they are singular."""
     back = inverse(rows)
-    found = np.zeros(np.shape(right), dtype=EXACT)
+    found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
     for _ in range(REFINEMENTS):
         rest = np.asarray(right - (rows * found[..., None, :]).sum(-1), dtype=float)
         found = found + (back * rest[..., None, :]).sum(-1)
     return found
 
 
-def three(phi: Any, psi: Any) -> Any:
-    """p, q, s (tasks, 3) of three pairs with their zero angles in them."""
+def solve_homogeneous(rows: Any) -> Any:
+    """Two vectors (..., m, 2) that span what rows (..., m - 2, m) send to zero, in extended precision."""
+    near, back = np.asarray(rows, dtype=float), inverse(rows)
+    near = np.where(np.isfinite(near), near, 0.0)
+    found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
+    for _ in range(REFINEMENTS):
+        rest = np.asarray((rows[..., None] * found[..., None, :, :]).sum(-2), dtype=float)
+        found = found - np.matmul(back, rest)
+    return found
+
+
+def of_zeros(phi: Any, psi: Any) -> Any:
+    """p, q, s (tasks, 3) of three or more pairs with their zero angles in them."""
     return solve_linear(_rows(phi, psi), np.cos(phi - psi))
 
 
@@ -103,20 +116,23 @@ def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
 
 
 def five(phi: Any, psi: Any) -> tuple[Any, Any]:
-    """Both zero angles (tasks, 3), nan where not real, of five pairs."""
-    ones = np.ones_like(phi)
-    rows = np.stack([np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), ones], axis=-1)
-    of_cos, of_sin = solve_linear(rows, np.cos(phi - psi)), solve_linear(rows, -np.sin(phi - psi))
-    a = [x[:, 0] + 1j * x[:, 1] for x in (of_cos, of_sin)]  # p e^(-i psi0) over cos, sin of delta
-    b = [x[:, 2] + 1j * x[:, 3] for x in (of_cos, of_sin)]  # -q e^(-i phi0)
-    x, z = b[0] * a[0].conj(), b[1] * a[1].conj()
-    y = b[0] * a[1].conj() + b[1] * a[0].conj()
-    cubic = np.stack([z.real, y.real + z.imag, x.real + y.imag, x.imag], axis=-1)  # of tan(delta)
-    phi0, psi0 = np.full((len(x), 3), EXACT(np.nan)), np.full((len(x), 3), EXACT(np.nan))
-    for k, row in enumerate(cubic):
-        for j, delta in enumerate(angles_of_form(row)):
-            psi0[k, j] = -np.angle(a[0][k] * np.cos(delta) + a[1][k] * np.sin(delta))
-            phi0[k, j] = psi0[k, j] + delta
+    """Both zero angles (tasks, 3), nan where not real, of five pairs.
+
+    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), all times a number: two vectors
+    span their solutions, and the directions of the three complex numbers, which must agree, make a cubic form.
+    """
+    columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
+    span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
+    a, b, turn = (span[:, k] + 1j * span[:, k + 1] for k in (0, 2, 5))  # (tasks, 2) over both vectors
+    phi0, psi0 = np.full((len(a), 3), EXACT(np.nan)), np.full((len(a), 3), EXACT(np.nan))
+    for k in range(len(a)):
+        cubic = np.convolve(np.convolve(b[k], a[k].conj()), turn[k]).imag
+        for j, angle in enumerate(angles_of_form(cubic[::-1])):
+            both = np.array([np.cos(angle), np.sin(angle)])
+            side, delta = (a[k] * both).sum(), (turn[k] * both).sum()
+            if abs(delta) > ENDLESS * abs(side):  # else l1 is nothing beside the frame
+                psi0[k, j] = -np.angle(side)
+                phi0[k, j] = psi0[k, j] + np.angle(delta)
     return phi0, psi0
 
 
@@ -213,8 +229,7 @@ def solutions(phi: Any, psi: Any, phi0: float | None = 0.0, psi0: float | None =
     found = []
     for k in range(one.shape[1]):
         a, b = one[:, k] + EXACT(given_phi), other[:, k] + EXACT(given_psi)
-        apart = [0, phi.shape[1] // 2, -1]  # far from each other they tell the lengths best
-        linear = three((phi + a[:, None])[:, apart], (psi + b[:, None])[:, apart])
+        linear = of_zeros(phi + a[:, None], psi + b[:, None])
         values = np.concatenate([linear, a[:, None], b[:, None]], axis=-1)
         values = polished(values, phi, psi, free) if free else values
         found.append(bars(values, phi, psi))

@@ -16,7 +16,7 @@ from tmm_cli.synthesis.parallelogram import parallelogram
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
 LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
-SHORT, LONG = 1e-9, 1e9  # lengths over l4 that still make a four-bar
+SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 
 @dataclass(frozen=True)
