@@ -280,3 +280,14 @@ def test_a_key_of_the_block_that_is_used_as_a_parameter_is_called_one():
 def test_a_place_or_a_range_that_is_none_is_said_in_our_words(block):
     with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\] are wanted"):
         build(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
+
+
+def test_a_family_is_written_in_numbers_and_not_shown_on_the_terminal(tmp_path):
+    done = tmm("synthesis", ROOT / "problems" / "crank-rocker-synthesis.yaml", "-o", tmp_path)
+    assert done.returncode == 0 and "All pivots A" not in done.stdout
+    folder = tmp_path / "crank-rocker-synthesis"
+    rows = (folder / "synthesis-family.csv").read_text().splitlines()
+    records = json.loads((folder / "synthesis.json").read_text())["tables"]["family"]
+    assert len(rows) == len(records) + 1 > 100
+    assert {"beta", "xA", "yA", "l1", "l2", "l4", "pressure", "transmission"} <= records[0].keys()
+    assert rows[0].startswith("arc,")

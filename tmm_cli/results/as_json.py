@@ -53,7 +53,7 @@ def sections(results: Results | ChainResults, digits: Trusted | None = None) -> 
     if results.synthesis is not None and results.motion is not None:
         from tmm_cli.results.synthesis import to_json as synthesis_json
 
-        yield "synthesis", synthesis_json(results.synthesis, results.measured)
+        yield "synthesis", synthesis_json(results.synthesis, results.measured, long=False)
     yield from numbers(results)
     if digits is not None:
         yield "digits", digits.json()

@@ -104,8 +104,8 @@ def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
             yield say("synthesis.not_met", quantity=say(m.demand.words), wanted=f"{wanted} {unit}".rstrip(), found=on)
 
 
-def to_json(found: Synthesised, measured: Sequence[Measured] | None) -> dict[str, Any]:
-    """Everything in SI and radians."""
+def to_json(found: Synthesised, measured: Sequence[Measured] | None, *, long: bool = True) -> dict[str, Any]:
+    """Everything in SI and radians; long: tables for files too."""
 
     def value(v: Value) -> dict[str, Any]:
         shown = (say(v.text) if "." in v.text else v.text) if v.kind == "word" else _number(v.value)
@@ -116,7 +116,8 @@ def to_json(found: Synthesised, measured: Sequence[Measured] | None) -> dict[str
         "asked": [value(v) for v in found.outcome.asked],
         "found": [value(v) for v in found.outcome.found],
         "parameters": {found.names[n]: _number(v.value) for n, v in found.outcome.parameters.items()},
-        "tables": {listing.name: _records(listing) for listing in found.outcome.listings},
+        "tables": {listing.name: _records(listing) for listing in found.outcome.listings
+                   if long or not listing.long},
         "source": say(found.outcome.source),
         "measured": None if measured is None else [
             {"quantity": say(m.demand.words), "kind": m.demand.kind, "asked": m.demand.asked,
