@@ -84,7 +84,7 @@ def alike(one, other, *, spin=lambda v: v, sense=1, size=1.0, time=1, names=None
 
 
 @given(LINKAGES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=16, deadline=None)
 def test_pairs_stay_closed_and_links_in_equilibrium(it):
     _, motion, loads, reactions = found(it)
     for hinge in it.hinges:
@@ -142,7 +142,7 @@ def in_equilibrium(it, motion, loads, reactions, name):
 
 
 @given(LINKAGES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=16, deadline=None)
 def test_lever_and_powers_agree_with_the_force_plan(it):
     _, motion, loads, reactions = found(it)
     drivers = power(motion, reactions)
@@ -153,7 +153,7 @@ def test_lever_and_powers_agree_with_the_force_plan(it):
 
 
 @given(LINKAGES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_a_position_alone_is_that_position_among_others(it):
     _, motion, *_ = found(it)
     many = move(it, motion.kernels, it.sketch.at + np.linspace(-1, 1, 41), law_of(it))
@@ -177,7 +177,7 @@ def on_one_piece(mesh, motion):
 
 
 @given(LINKAGES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_velocities_and_accelerations_are_derivatives_of_places(it):
     """By differences of the eighth order, over half the way to the nearest change that the margin tells of."""
     _, motion, *_ = found(it)
@@ -196,14 +196,14 @@ def test_velocities_and_accelerations_are_derivatives_of_places(it):
 
 
 @given(LINKAGES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_mirror_image(it):
     alike(found(it), solved(mirrored(it), np.array(OFFSETS) * (-1 if it.driver.kind == "turn" else 1)),
           spin=np.conj, sense=-1)  # fmt: skip
 
 
 @given(LINKAGES, st.floats(-3, 3))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_turning_the_whole_drawing(it, by):
     alike(found(it), solved(turned(it, by)), spin=lambda v: v * np.exp(1j * by))
 
@@ -217,13 +217,13 @@ def test_size_changes_lengths_and_forces_by_the_scale_and_moments_by_its_square(
 
 
 @given(LINKAGES, SEEDS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_names_and_order_of_links_and_pairs(it, seed):
     other, names, _ = renamed(it, seed)
     alike(found(it), solved(other), names=names)
 
 
 @given(LINKAGES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 def test_time_run_backward(it):
     alike(found(it), solved(reversed_in_time(it)), time=-1)

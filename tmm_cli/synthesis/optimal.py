@@ -28,13 +28,17 @@ KEPT = 1e-7  # by so much of its scale a constraint may be missed
 
 @dataclass(frozen=True)
 class Best:
-    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints."""
+    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
+
+    fits: whether it can be assembled as the file sketches it.
+    """
 
     x: Real
     numbers: Real
     values: list[float]
     missed: float
     evolved: Evolved
+    fits: bool
 
 
 def best(search: Search) -> Best:
@@ -72,8 +76,9 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
     if not found:
         raise Infeasible("vary", f"{W}.never", f"{W}.wider")
     found.sort(key=lambda one: one[:2])
-    missed, _, x, values = next((one for one in found if search.fits(one[2])), found[0])
-    return Best(x, search.numbers(x), values, missed, evolved)
+    fitting = next((one for one in found if search.fits(one[2])), None)
+    missed, _, x, values = fitting or found[0]
+    return Best(x, search.numbers(x), values, missed, evolved, fitting is not None)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -84,7 +89,7 @@ def solve(asked: Asked) -> Outcome:
     found = best(search)
     if found.missed:
         found = _mended(search, found)
-    if not search.fits(found.x):
+    if not found.fits:
         numbers = ", ".join(f"{name} = {x:.6g}" for name, x in zip(asked.low, found.numbers, strict=True))
         raise Infeasible("vary", f"{W}.not_as_sketched", f"{W}.other_sketch", {"numbers": (numbers, "word")})
     return told(search, found)
