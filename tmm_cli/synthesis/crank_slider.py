@@ -22,6 +22,7 @@ from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 W: Final = "synthesis_crank_slider"
+INSIDE: Final = 1 - 1e-5  # of the largest offset, at which the crank all but does not turn
 DRAWN: Final = 0.01  # rad: the least theta that shows on a drawing
 
 
@@ -186,7 +187,7 @@ def _refuse_offset(e: float, height: float, theta: float) -> None:
     if theta >= np.pi / 2:
         raise Infeasible("k", f"{W}.k_never", f"{W}.k_most_alone", {"k": (most, "number", "below")})
     if not np.tan(theta) * e < height:
-        values = {"e": (height / np.tan(theta), "length", "below"), "k": (most, "number", "below")}
+        values = {"e": (height / np.tan(theta) * INSIDE, "length", "most"), "k": (most, "number", "below")}
         raise Infeasible("e", f"{W}.e_above", f"{W}.e_most", values)
 
 

@@ -23,7 +23,7 @@ from tmm_cli.vectors import pi, settled
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
-ARC: Final = 1e-5  # rad: on a shorter arc the rocker is dead as good as everywhere
+ARC: Final = 2e-3  # rad: on a shorter arc the rocker is so nearly dead that k is not determined to 1e-9
 SLACK: Final = 1 - 1e-9  # of that, for rounding
 LINE: Final = 50.0  # l2 over half C1C2 to which the straight line of k = 1 is told
 FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line

@@ -23,6 +23,7 @@ W: Final = "synthesis_four_bar_by_k"
 STEP: Final = 1e-14  # the least step of a derivative, relative
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
+INSIDE: Final = 4e-5  # of a range of lengths: how far from its ends a length is told
 SCAN: Final = 100  # values of theta that are tried for level supports
 LEVEL: Final = 1e-6  # rad of theta, from where a pivot is level first: an end of an arc
 
@@ -155,20 +156,23 @@ def _not_there(asked: Asked) -> None:
         raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", {"l1": (h, "length")})
     if name in ("l1", "l2"):
         last = [float(getattr(at(asked, places(asked, side)[-1], side), name)) for side in arcs(asked)]
-        bounds: dict[str, Shown] = {
-            "low": (min(h, *last), "length", "above"),
-            "high": (max(h, *last), "length", "below"),
-        }
-        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{'l4_range_line' if asked.k == 1 else 'l4_range'}", bounds)
+        words = "l4_range_line" if asked.k == 1 else "l4_range"
+        raise Infeasible(name, f"{W}.{name}_none", f"{W}.{words}", _within(asked, h, *last))
     l3 = float(asked.l3)
     if asked.k == 1:
-        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", {"low": (l3, "length", "above")})
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", _within(asked, l3))
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
-    values = {
-        "low": (min(ends), "length", "above"), "high": (max(ends), "length", "below"), "l3": (l3, "length"),
-    }  # fmt: skip
+    values = _within(asked, *ends) | {"l3": (l3, "length")}
     inner = min(ends) < l3 < max(ends)  # there A would be C1
     raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
+
+
+def _within(asked: Asked, *ends: float) -> dict[str, Shown]:
+    """A range of lengths (m) a little inside its ends, where the rocker is dead."""
+    low, high = min(ends), max(ends)
+    width = low if asked.k == 1 else high - low
+    first, last = INSIDE * min(low, width), INSIDE * width
+    return {"low": (low + first, "length", "least"), "high": (high - last, "length", "most")}
 
 
 def refuse(asked: Asked) -> None:

@@ -62,7 +62,7 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
     "synthesis_four_bar_by_k.swing_range": "psi2 from {low} to {high}, other than psi1 = {psi1}",
     "synthesis_four_bar_by_k.k_above": "k is too large for this swing: on the whole circle the rocker would pass its "
-    "dead position",
+    "dead position, or stand all but in it",
     "synthesis_four_bar_by_k.k_most": "k {k} or less, or psi2 {psi2} or more",
     "synthesis_four_bar_by_k.k_most_down": "k {k} or less, or psi2 {psi2} or less",
     "synthesis_four_bar_by_k.k_most_alone": "k {k} or less",

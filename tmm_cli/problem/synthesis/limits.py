@@ -11,7 +11,7 @@ from tmm_cli.synthesis.record import Shown
 from tmm_cli.words import say
 
 DIGITS: Final = (6, 9, 12, 15)  # more only where a least and a most allowed value would cross
-STRICT: Final = Decimal("1e-8")  # relative: how far inside a limit that is not allowed itself
+STRICT: Final = Decimal("1e-6")  # relative: how far inside a limit that is not allowed itself
 TEXTS: Final = ("word", "said")  # text as it is, a key of words
 LOW: Final = ("least", "above")
 
