@@ -388,26 +388,3 @@ def test_the_family_is_drawn_with_the_choice_on_it():
         assert seen == pytest.approx(np.full(len(seen), theta), rel=1e-9)
     *both, chosen = drawn["family-pressure"].lines
     assert float(chosen.y[0]) == pytest.approx(min(float(np.min(line.y)) for line in both), rel=1e-4)
-
-
-@pytest.mark.parametrize("k", [1.01, 1.1, 1.5, 2.5])
-def test_the_listed_family_goes_from_the_dead_rocker_to_the_dead_rocker_on_every_arc(k):
-    found = problem("", k=k).synthesis.outcome
-    (family,) = found.listings
-    assert family.long
-    rows = np.array([row[1:] for row in family.rows])
-    beta, x, y, l1, l2, l4, most, least = rows.T
-    one = Asked(0.2, math.radians(50), math.radians(105), k)
-    c1, c2 = (0.2 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
-    for name in dict.fromkeys(row[0] for row in family.rows):
-        here = np.array([row[0] == name for row in family.rows])
-        assert np.degrees(most[here][[0, -1]]) == pytest.approx([90, 90], abs=1e-4)
-        assert np.degrees(np.abs(np.diff(most[here]))).max() < 4
-    a = x + 1j * y
-    place = a - problem("", k=k).linkage.links[FRAME].points["D"]
-    assert np.abs(place) == pytest.approx(l4, rel=1e-9)
-    assert np.abs(place - c2) == pytest.approx(l1 + l2, rel=1e-9)
-    assert np.abs(place - c1)[1:] == pytest.approx((l2 - l1)[1:], rel=1e-9, abs=1e-9)
-    assert most + least == pytest.approx(np.pi / 2) and beta.min() == 0
-    chosen = float(found.found[[v.words.rpartition(".")[2] for v in found.found].index("pressure")].value)
-    assert most.min() == pytest.approx(chosen, rel=1e-3) and most.min() >= chosen - 1e-12

@@ -332,18 +332,3 @@ def test_a_hinge_straight_above_the_other_has_just_its_coordinate():
         found = lever(f"CB: 500, k: 1.8, OC: 250, axis: {axis}").synthesis.outcome.parameters
         assert (found["xO"].value == 0) == (place[0] == 0) and (found["yO"].value == 0) == (place[1] == 0)
         assert 1000 * complex(found["xO"].value, found["yO"].value) == pytest.approx(complex(*place), rel=1e-15)
-
-
-def test_the_family_within_bounds_is_drawn_and_listed_and_holds_the_chosen_lever():
-    outcome = lever("CB: 500, k: 1.8, within: [200, 330]").synthesis.outcome
-    drawn = next(d for d in outcome.drawings if getattr(d, "name", "") == "family-lengths")
-    (listing,) = outcome.listings
-    frame, crank, nearest, farthest = np.array(listing.rows).T
-    assert frame[[0, -1]] == pytest.approx([0.2, 0.33]) and listing.long
-    share = math.sin(math.pi * 0.8 / 2.8 / 2)
-    assert crank == pytest.approx(frame * share) and nearest == pytest.approx(frame - crank)
-    assert farthest == pytest.approx(frame + crank)
-    (dots,) = [line for line in drawn.lines if line.dots]
-    found = {name: float(value.value) for name, value in outcome.parameters.items()}
-    assert list(dots.x) == pytest.approx([found["OC"]] * 3) and dots.y[0] == pytest.approx(found["OA"])
-    assert not lever("CB: 500, k: 1.8, OC: 250").synthesis.outcome.listings
