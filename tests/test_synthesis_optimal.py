@@ -122,6 +122,18 @@ def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_two_seeds():
     assert best == pytest.approx([0.39599372e-3] * 2, rel=1e-7)
 
 
+def test_the_nearest_value_that_is_told_can_be_met():
+    task = "  objective: box\n  constraints: [{of: pressure, most: 10 deg}, {of: stroke, equal: VALUE}]\n"
+    with pytest.raises(ProblemError) as caught:
+        slider(task.replace("VALUE", "170"))
+    nearest = str(caught.value).partition("the nearest is ")[2]
+    assert float(nearest.split()[0]) == pytest.approx(2 * (400 * np.sin(np.radians(10)) - 1), rel=1e-3)  # about 2r, e = 1
+    problem = slider(task.replace("VALUE", nearest))
+    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    with pytest.raises(ProblemError):
+        slider(task.replace("VALUE", f"{float(nearest.split()[0]) * 1.0001} mm"))
+
+
 REFUSED = {
     "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]":
         "no mechanism within the bounds was found that meets this",

@@ -118,4 +118,7 @@ def _mended(search: Search, found: Best) -> Best:
         again = _best_of(search, [nearest.x], found.evolved)
         if not again.missed:
             return again
-    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (nearest.values[0], kind)})
+    assert bound is not None
+    value = nearest.values[0]
+    side = "below" if value < bound else "above"  # with the search's own errors it is no limit to the last digit
+    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (value, kind, side)})
