@@ -127,7 +127,7 @@ def test_the_nearest_value_that_is_told_can_be_met():
     with pytest.raises(ProblemError) as caught:
         slider(task.replace("VALUE", "170"))
     nearest = str(caught.value).partition("the nearest is ")[2]
-    assert float(nearest.split()[0]) == pytest.approx(2 * (400 * np.sin(np.radians(10)) - 1), rel=1e-3)  # about 2r, e = 1
+    assert float(nearest.split()[0]) == pytest.approx(2 * (400 * np.sin(np.radians(10)) - 1), rel=1e-3)  # e = 1
     problem = slider(task.replace("VALUE", nearest))
     assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
     with pytest.raises(ProblemError):
