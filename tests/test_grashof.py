@@ -69,6 +69,13 @@ def test_a_change_point_is_found_through_the_rounding_of_decimals():
     assert named(0.3, 0.1, 0.4, 0.2001) == "GCRR" and named(0.3, 0.1, 0.4, 0.1999) == "RRR3"
 
 
+def test_links_that_just_reach_do_not_close_in_whatever_unit_they_are_given():
+    assert named(0.2, 0.3, 0.6, 0.1) is None  # 0.2 + 0.3 + 0.1 is more than 0.6 in doubles
+    for unit in (1.0, 0.1, 0.001, 1 / 3):
+        assert named(2 * unit, 3 * unit, 6 * unit, 1 * unit) is None
+        assert named(2 * unit, 3 * unit, 5.9999 * unit, 1 * unit) == "RRR3"
+
+
 @settings(max_examples=5)
 @given(many)
 def test_the_input_turns_fully_where_the_linkage_closes_at_every_angle(lengths):

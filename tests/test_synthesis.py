@@ -71,6 +71,7 @@ REFUSED = {
         "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
     "{task: crank-slidr, stroke: 20}":
         "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
+    "{task: [a]}": "synthesis.task: ", "{task: {a: b}}": "synthesis.task: ", "{task: 3}": "synthesis.task: ",
     "{stroke: 20}": "synthesis.task: the key `task` is missing\n",
     "3": "synthesis: keys with values are wanted\n  found:   3\n"
          "  allowed: a task whose answer becomes parameters: {task: ...}",
@@ -91,6 +92,42 @@ REFUSED = {
     "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}":
         "synthesis.stroke: this rests on what the synthesis finds\n  found:   'H'\n  allowed: parameters that do not",
 }  # fmt: skip
+
+
+NO_MECHANISM = {
+    "crank-slider, stroke: 10, k: 1, ratio: 1e250": "ratio: this is too large",
+    "crank-slider, stroke: 10, nu: 1e200, pressure: 30": "nu: this is too large",
+    "crank-slider, stroke: 10, k: 1, pressure: 1e-200": "pressure: this is too small",
+    "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
+    "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
+    "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2":
+        "l3: this is too large for a mechanism\n  found:   1e+250\n  allowed: 0.001 to 1e+09 mm",
+    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]":
+        "near[0]: this is too large for a mechanism\n  found:   1e+200\n  allowed: 1e+09 mm or less",
+    "four-bar-by-k, l3: 100, psi1: 1e16, psi2: 10000000000000050, k: 1.2": "psi1: this is too large",
+    "shaper, stroke: 10, k: 1.7, frame_ratio: .499, rod_ratio: 3e9": "rod_ratio: this is too large",
+    "grashof, l1: 1e200, l2: 1e200, l3: 1e200, l4: 1e199": "l1: this is too large",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("block", NO_MECHANISM)
+def test_sizes_that_no_mechanism_has_are_refused_before_numbers_overflow(block):
+    assert refusal(f"{{task: {block}}}").startswith(f"synthesis.{NO_MECHANISM[block]}")
+
+
+def test_sizes_at_the_bounds_give_numbers():
+    for more in (
+        "k: 1, ratio: 1e6",
+        "nu: 1e6, pressure: 0.001",
+        "nu: 0, pressure: 1e-6 rad",
+        "k: 1.0000000001, ratio: 1e6",
+    ):
+        found = build(
+            read_text(
+                f"tmm: 1\nsynthesis: {{task: crank-slider, stroke: 10, {more}}}\n{LINKAGE.format(speed=1.0)}", "x"
+            )
+        )
+        assert all(np.isfinite(float(v.value)) for v in found.synthesis.outcome.found if v.kind != "word")
 
 
 @pytest.mark.parametrize("text", REFUSED)
@@ -145,6 +182,16 @@ def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
     assert done.returncode == 2 and "there is no linkage that could use what is found" in done.stderr
     done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
     assert done.returncode == 2 and "this file has no synthesis" in done.stderr
+
+
+def test_numbers_of_what_is_found_are_numbers_in_the_table_and_texts_are_no_formulas(tmp_path):
+    file = tmp_path / "guided.yaml"
+    block = "{task: coupler-positions, positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]}"
+    file.write_text(f"tmm: 1\nsynthesis: {block}\n", encoding="utf-8")
+    assert tmm("synthesis", file, "-o", tmp_path).returncode == 0
+    rows = (tmp_path / "guided" / "synthesis-found.csv").read_text(encoding="utf-8").splitlines()
+    values = {row.split(",")[0]: row.split(",")[-2] for row in rows[1:]}
+    assert min(float(values[name]) for name in ("Ax", "Ay", "Dx", "Dy")) < 0
 
 
 def test_explain_says_where_parameters_come_from():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -114,6 +115,97 @@ def test_pairs_come_back_and_the_mechanism_of_the_task_is_among_the_roots(count,
     for value, truth in ((found.l1, l1), (found.l2, l2), (found.l3, l3)):
         assert np.asarray(value, float) == pytest.approx(truth, rel=2e-4)  # how sharply near pairs tell the lengths
     comes_back(given_phi, given_psi, found)
+
+
+def pairs_of(l1, l2, l3, start, span, count, rng):
+    """Pairs (rad) of a four-bar of unit frame within a small span, to the last bit; None where it does not close."""
+    share = np.concatenate([[0], np.sort(rng.uniform(0.1, 0.9, count - 2)), [1]])
+    phi = start + span * share
+    if np.min(np.diff(share)) < 0.08:
+        return None
+    with mp.workdps(50):
+        psi = []
+        for angle in phi:
+            way = l1 * mp.expj(float(angle)) - 1
+            cosine = (l3**2 + abs(way) ** 2 - l2**2) / (2 * l3 * abs(way))
+            if abs(cosine) > 1:
+                return None
+            psi.append(mp.arg(way) + mp.acos(cosine))
+        return phi, np.array([float(angle) for angle in psi])
+
+
+def exact_lengths(phi, psi):
+    """l1 and l3 over l4 of all four-bars through five pairs, at 50 digits: a cubic of the tangent of phi0 - psi0."""
+    with mp.workdps(50):
+        phi, psi = [mp.mpf(float(x)) for x in phi], [mp.mpf(float(x)) for x in psi]
+        rows = mp.matrix([[mp.cos(q), mp.sin(q), mp.cos(p), mp.sin(p), 1] for p, q in zip(phi, psi, strict=True)])
+        u, v = (mp.lu_solve(rows, mp.matrix(right)) for right in (
+            [mp.cos(p - q) for p, q in zip(phi, psi, strict=True)],
+            [-mp.sin(p - q) for p, q in zip(phi, psi, strict=True)]))  # fmt: skip
+
+        def sides(t):
+            x = [a + t * b for a, b in zip(u, v, strict=True)]
+            return mp.mpc(x[0], x[1]), mp.mpc(x[2], x[3])
+
+        def form(t):
+            a, b = sides(t)
+            return (b * mp.conj(a) * mp.mpc(1, t)).imag
+
+        at = [mp.mpf(x) for x in (0, 1, -1, 2)]
+        cubic = mp.lu_solve(mp.matrix([[t**3, t**2, t, 1] for t in at]), mp.matrix([form(t) for t in at]))
+        found = []
+        companion = mp.matrix([[-cubic[k] / cubic[0] for k in (1, 2, 3)], [1, 0, 0], [0, 1, 0]])
+        for t in mp.eig(companion, left=False, right=False):
+            if abs(mp.im(t)) < mp.mpf(10) ** -25 * (1 + abs(t)):
+                turn = mp.sqrt(1 + mp.re(t) ** 2)
+                found.append([float(turn / abs(side)) for side in sides(mp.re(t))])
+        return found
+
+
+@pytest.mark.parametrize("span", [2, 4, 8, 30])
+def test_no_four_bar_through_five_near_pairs_is_lost(span):
+    rng, count = np.random.default_rng(span), 0
+    while count < 30:
+        l1, l2, l3 = rng.uniform(0.2, 3, 3)
+        made = pairs_of(l1, l2, l3, rng.uniform(-3, 3), np.radians(span), 5, rng)
+        if made is None:
+            continue
+        count += 1
+        truth = sorted(exact_lengths(*made))
+        found = solutions(*made, None, None)
+        own = sorted(
+            (float(a), float(b)) for a, b in zip(found.l1[0], found.l3[0], strict=True) if np.isfinite(float(a))
+        )
+        assert len(own) == len(truth)
+        assert np.array(own) == pytest.approx(np.array(truth), rel=1e-6)
+
+
+@pytest.mark.parametrize("free", ["phi0", "psi0", ""])
+def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
+    rng, count = np.random.default_rng(5), 0
+    while count < 30:
+        l1, l2, l3 = rng.uniform(0.2, 3, 3)
+        made = pairs_of(l1, l2, l3, rng.uniform(-3, 3), np.radians(1), 4 if free else 3, rng)
+        if made is None:
+            continue
+        count += 1
+        found = solutions(*made, **{name: None if name == free else 0.0 for name in ("phi0", "psi0")})
+        assert np.nanmin(np.abs(found.l1 / l1 - 1) + np.abs(found.l3 / l3 - 1)) < 1e-5
+
+
+@pytest.mark.parametrize("block", [
+    "[[30, 30], [60, 60], [90, 90]]", "[[30, 210], [60, 240], [90, 270]]",
+    "[[20, 40], [50, 70], [90, 110], [100, 120]]",
+    "[[0, 10], [20, 30], [40, 50], [60, 70], [90, 100]]", "[[30, 50], [60, 80], [90, 110]], psi0: -20",
+])  # fmt: skip
+def test_equal_angles_are_those_of_any_parallelogram(block):
+    found = problem(f"pairs: {block}, l4: 100")
+    outcome = found.synthesis.outcome
+    assert "synthesis_four_bar_by_angles.parallelogram" in outcome.notes
+    l1, l2, l3, l4 = (outcome.parameters[name].value for name in ("l1", "l2", "l3", "l4"))
+    assert (l1, l2) == (l3, l4)
+    for m in measured(outcome, solve(found, "kinematics")):
+        assert m.difference <= MET, m
 
 
 @pytest.mark.parametrize(("count", "zeros"), [(3, (0.0, 0.0)), (4, (None, 0.0)), (4, (0.0, None)), (5, (None, None))])
@@ -227,6 +319,25 @@ def test_the_nearest_output_angle_that_is_told_is_good_and_one_that_is_nearer_is
     problem("pairs: [[30, 60], [80, 60], [120, 82.728]], l4: 100")
     with pytest.raises(ProblemError, match="branch defect"):
         problem("pairs: [[30, 60], [80, 60], [120, 82.729]], l4: 100")
+
+
+@pytest.mark.parametrize("block", [
+    "pairs: [[30, 60], [60, 60], [90, 60]]", "function: x^2, x: [0, 1], input: [30, 120], output: [0, 90], points: 4",
+    "pairs: [[30, 60], [80, 60], [120, 100]]",
+])  # fmt: skip
+def test_the_four_bar_of_the_angle_that_is_told_can_be_made(block):
+    with pytest.raises(ProblemError) as caught:
+        problem(f"{block}, l4: 100")
+    told = str(caught.value).partition("the last output angle ")[2].partition(" deg")[0]
+    assert told
+    last = (
+        block.rpartition("output: [0, ")[0] + f"output: [0, {told}], points: 4"
+        if "function" in block
+        else (block.rpartition(", ")[0] + f", {told}]]")
+    )
+    found = problem(f"{last}, l4: 100").synthesis.outcome.parameters
+    links = [float(found[name].value) for name in ("l1", "l2", "l3", "l4")]
+    assert max(links) < 51 * min(links)
 
 
 def test_a_branch_defect_that_is_kept_shows_on_the_mechanism():

@@ -258,7 +258,8 @@ def refusal(more, **angles):
 REFUSED = [
     (", near: [-300, -40]", {},
      ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
-     "[-300, -40]", "a place beside an arc, such as [254.885 mm, 52.6479 mm]"),
+     "[-300, -40]",
+     "[160.535 mm, 132.11 mm]: the nearest pivot with a largest pressure angle of 80 deg or less"),
     ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position, "
      "or stand all but in it",
      "5", "k 4.74945 or less, or psi2 110.23 deg or more"),
@@ -298,6 +299,51 @@ REFUSED = [
 @pytest.mark.parametrize(("more", "angles", "reason", "found", "allowed"), REFUSED)
 def test_what_cannot_be_is_refused_with_the_reason_and_the_nearest_that_can(more, angles, reason, found, allowed):
     assert refusal(more, **angles) == f"{reason}\n  found:   {found}\n  allowed: {allowed}"
+
+
+def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_just_passes_it():
+    # the pivots of this arc are from 2.2e-6 below D to 1.99 above it
+    one = Asked(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
+    f = choose(one)
+    assert abs(f.a.imag) < 1e-14 and f.pressure < np.radians(89)
+    beta = widest(one, 1) * np.linspace(0, 1, 2_000_001)[1:-1]
+    along = at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), 1)
+    (crossings,) = np.nonzero(np.diff(np.sign(along.a.imag)))
+    assert len(crossings) == 2 and f.pressure == pytest.approx(np.min(along.pressure[crossings]), abs=1e-5)
+
+
+def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
+    task, _, _ = drawn(9, 1, 300, least=0.02)
+    for n in range(300):
+        one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
+        scan = [at(one, places(one, side), side).a.imag for side in arcs(one)]
+        if any(np.any(np.diff(np.sign(offsets))) for offsets in scan):
+            f = choose(one)
+            assert abs(f.a.imag) < MET * f.l4
+        else:
+            with pytest.raises(Infeasible):
+                choose(one)
+
+
+@pytest.mark.parametrize("way", ["best", "level", "near"])
+def test_a_support_that_is_far_away_takes_no_digits(way):
+    one = Asked(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None)
+    here = choose(one)
+    for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
+        there = choose(replace(one, support=far, near=None if one.near is None else one.near + far))
+        assert (there.w, there.l1, there.l2, there.l4) == (here.w, here.l1, here.l2, here.l4)
+
+
+def test_a_place_that_no_pivot_is_near_to_is_refused_with_the_nearest_sound_pivot():
+    one = Asked(0.1, math.radians(10), math.radians(50), 1.2, choose="near", near=0.1 + 0.03j)
+    with pytest.raises(Infeasible) as caught:
+        choose(one)
+    told = complex(*(caught.value.values[name][0] for name in "xy"))
+    every = [at(one, places(one, side), side) for side in arcs(one)]
+    sound = np.concatenate([f.a[f.pressure < np.radians(80)] for f in every])
+    assert abs(told - one.near) == pytest.approx(np.min(np.abs(sound - one.near)), rel=1e-12)
+    f = choose(replace(one, near=told))
+    assert abs(f.a - told) < 1e-9 and f.pressure < np.radians(80.01)
 
 
 def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -20,6 +21,7 @@ from tmm_cli.results.terminal import heading
 from tmm_cli.vectors import Real
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
+PLAIN = re.compile(r"-?\d+(\.\d*)?(e[+-]?\d+)?")  # a number that stands among words
 ROWS, NUMBERS = 2048, 8192  # of a table, of an array in a chunk: they stay in the cache
 FIGURES = ["%.0s0", *(f"%.{n}g" for n in range(1, 18)), ""]  # by how many are true; the last one: not known
 REPEATED = 0.5  # of an array: with more repetitions than that it is worth to format each number once
@@ -94,7 +96,7 @@ def _runs(values: Real) -> tuple[Real, Real | None]:
 
 
 def _cell(text: str) -> str:
-    safe = "'" + text if text.startswith(FORMULA) else text
+    safe = "'" + text if text.startswith(FORMULA) and not PLAIN.fullmatch(text) else text
     return '"' + safe.replace('"', '""') + '"' if any(c in safe for c in ',"\r\n') else safe
 
 

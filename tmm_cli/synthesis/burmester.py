@@ -72,8 +72,11 @@ def beside(places: Any, radius: Any, side: float) -> Any:
     return (places[..., 0] + places[..., 1]) / 2 + 1j * side * height * way / (2 * half)
 
 
-def by_turn(poses: Poses, turn: Any, branch: int) -> Dyads:
-    """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none."""
+def by_turn(poses: Poses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
+    """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none.
+
+    ends: turns are known to have dyads, and are not outside the last ones but for rounding.
+    """
     places, angles = np.asarray(poses.places, COMPLEX), np.asarray(poses.angles, EXACT)
     d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
     d2, d3, d4 = (
@@ -84,7 +87,8 @@ def by_turn(poses: Poses, turn: Any, branch: int) -> Dyads:
     rest = d2 + d3 + d4 - d2 * second
     with np.errstate(all="ignore"):
         cosine = (np.abs(rest) ** 2 + np.abs(d3) ** 2 - np.abs(d4) ** 2) / (2 * np.abs(rest) * np.abs(d3))
-        sine = np.sqrt((1 - cosine) * (1 + cosine)) * (1 if branch == 0 else -1)
+        cosine = np.clip(cosine, -1, 1) if ends else cosine
+        sine = np.sqrt((1 - cosine) * (1 + cosine)) * np.where(np.equal(branch, 0), 1, -1)
         third = rest / np.abs(rest) * (cosine + 1j * sine) * np.abs(d3) / d3
         least = (second - 1) * a[..., 1] - (third - 1) * a[..., 0]
         w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.roots import least
-from tmm_cli.synthesis.burmester import Dyads, Poses, beside, by_turn, centre, marks
+from tmm_cli.synthesis import burmester_search
+from tmm_cli.synthesis.burmester import Dyads, Poses, beside, by_turn, centre, unit
+from tmm_cli.synthesis.burmester_search import Limits
 from tmm_cli.synthesis.record import Infeasible
 
 W: Final = "synthesis_coupler_positions"
 SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
-TURNS: Final = 240  # turns of AB, and of DC, that are compared on Burmester's curves
+TURNS: Final = 240  # turns of AB, and of DC, that are compared for a suggestion
 FINE: Final = 1440  # turns among which the pivot nearest to a place is sought
 SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
+FAR, NEAR = 100.0, 10.0  # reach of a given turn, over that size: beyond it is refused; of what is told instead
+SURE: Final = 1e-6  # rad: with less than that of transmission it is not sure that a four-bar passes
+ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 SIDES: Final = {"left": 1.0, "right": -1.0}
 
 
@@ -104,12 +109,19 @@ def of_turn(asked: Asked, name: str, turn: Any = None) -> Dyads:
     return by_turn(asked.poses, np.asarray(side.turn if turn is None else turn, np.longdouble), side.branch)
 
 
-def exists(asked: Asked, found: Dyads) -> Any:
-    """Whether there are such dyads, with links that are neither infinite nor of no length."""
+def reach(asked: Asked, found: Dyads) -> Any:
+    """How far pivots (from place 1) and pins reach, over the size of the task; inf where there is no dyad."""
+    with np.errstate(all="ignore"):
+        ends = (found.pivot - asked.poses.places[..., 0], found.pin)
+        largest = np.maximum(*(np.abs(x) for x in ends)) / asked.size
+    return np.where(np.isnan(largest), np.inf, largest)
+
+
+def exists(asked: Asked, found: Dyads, far: float = FAR) -> Any:
+    """Whether there are such dyads, with ends that are not far away and links of some length."""
     with np.errstate(all="ignore"):
         length = np.abs(asked.poses.on_frame(found.pin)[..., 0] - found.pivot)
-        there = np.isfinite(found.pivot) & (np.abs(found.pivot) < asked.size / SAME)
-        return there & np.isfinite(length) & (length > SAME * asked.size)
+        return (reach(asked, found) < far) & np.isfinite(length) & (length > SAME * asked.size)
 
 
 def of_near(asked: Asked, name: str) -> Dyads:
@@ -134,27 +146,70 @@ def of_near(asked: Asked, name: str) -> Dyads:
 
 
 def best(asked: Asked, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such."""
-    count = TURNS if asked.within is None else FINE  # a box may be small
-    turns = {name: (-np.pi + 2 * np.pi * (np.arange(count) + 0.5) / count) for name in ("AB", "DC")}
-    picked: dict[str, tuple[float, int]] = {}
-    step = np.pi / count
-    for _ in range(16):  # the whole curves first, then nearer and nearer to the best
-        here = {name: rows(asked, given, turns[name], picked.get(name), name) for name in ("AB", "DC")}
-        (one, of_one), (other, of_other) = here["AB"], here["DC"]
-        if not len(of_one) or not len(of_other):
+    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+    first, size = asked.poses.places[0], asked.size
+    ends = [max((float(abs(x)) for x in row), default=0.0) for row in (
+        [one.pivot - first for one in given.values()], [one.pin for one in given.values()])]  # fmt: skip
+    limits = Limits(
+        SHORTEST * size, LONGEST * size, LONGEST * size + ends[0], LONGEST * size + ends[1],
+        None if asked.within is None else asked.outside,
+    )  # fmt: skip
+    for loose in (False, True):  # without a sound one: one whose branches only are not the same
+        found = burmester_search.best(asked.poses, size, limits, dict(given), loose)
+        if found is None:
             _refuse_empty(asked)
-        found = marks(asked.poses, one[:, None], other[None, :])
-        good = fair(asked, one[:, None], other[None, :])
-        if asked.within is not None and not np.any(good):
-            raise Infeasible("pivots_within", f"{W}.no_room", f"{W}.roomy")
-        score = found.least - 10.0 * (found.defect > 0) - 20.0 * ~good
-        i, j = np.unravel_index(int(np.argmax(np.nan_to_num(score, nan=-99.0))), score.shape)
-        picked = {"AB": of_one[i], "DC": of_other[j]}
-        taken = one[int(i)], other[int(j)]
-        turns = {name: picked[name][0] + step * np.linspace(-2, 2, 9) for name in picked}
-        step /= 2
-    return taken
+        elif found[2] > SURE:
+            return found[:2]
+    assert found is not None
+    frame, coupler = abs(found[0].pivot - found[1].pivot), abs(found[0].pin - found[1].pin)
+    if limits.shortest <= min(frame, coupler) and frame <= limits.frame and coupler <= limits.coupler:
+        return found[:2]
+    if asked.within is not None:
+        raise Infeasible("pivots_within", f"{W}.no_room", f"{W}.roomy")
+    raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")
+
+
+def still(poses: Poses) -> bool:
+    """Whether the coupler does not turn between any positions."""
+    return bool(np.all(np.abs(unit(poses.angles - poses.angles[0]) - 1) < SAME))
+
+
+def parallel(asked: Asked) -> tuple[Dyads, Dyads]:
+    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
+
+    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
+    """
+    places, angles = asked.poses.places, asked.poses.angles
+    middle = min((centre(places[[k for k in range(4) if k != out]]) for out in range(4)), key=lambda z: float(
+        np.nan_to_num(abs(z), nan=np.inf)))  # fmt: skip
+    arms = places - middle
+    radius = abs(arms[0])
+    if not (np.isfinite(radius) and radius < FAR * asked.size):
+        raise Infeasible("positions", f"{W}.still_line", f"{W}.still_slider")
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
+        other = centre(places[:3])
+        on = other + abs(places[0] - other) * (places[3] - other) / abs(places[3] - other)
+        values = {"x": (float(on.real), "length", "exact"), "y": (float(on.imag), "length", "exact")}
+        raise Infeasible(("positions", 3), f"{W}.still_off", f"{W}.still_on", values)
+    turn = float(np.angle(complex(arms[1] / arms[0])))
+    for name, side in asked.sides.items():
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
+            raise Infeasible(f"{name}_turn", f"{W}.still_turn", f"{W}.nearest_turn", {"turn": (turn, "angle", "exact")})
+    steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
+    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
+    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, asked.size)
+    if asked.within is not None:
+        low, high = asked.within
+        frame *= min(1.0, ROOM * min(abs((high - low).real), abs((high - low).imag)) / float(abs(frame)))
+        middles = [(low + high) / 2 + sign * frame / 2 for sign in (-1, 1)]
+    else:
+        middles = [middle + sign * frame / 2 for sign in (-1, 1)]
+    pivots = [
+        asked.sides[name].near if name in asked.sides and asked.sides[name].near is not None else at
+        for name, at in zip(("AB", "DC"), middles, strict=True)
+    ]
+    one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
+    return one, other
 
 
 def rows(
@@ -186,7 +241,8 @@ def _refuse_empty(asked: Asked) -> None:
     """No link is to be had: because of the box, with the pivot that is nearest to it, or at all."""
     if asked.within is not None:
         grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
-        found = [rows(replace(asked, within=None), {}, grid, (0.0, branch), "AB")[0] for branch in (0, 1)]
+        plain = Asked(asked.places, asked.angles, asked.sides, asked.keep)
+        found = [rows(plain, {}, grid, (0.0, branch), "AB")[0] for branch in (0, 1)]
         pivots = np.asarray(np.concatenate([x.pivot for x in found]), complex)
         if len(pivots):
             place = complex(pivots[int(np.argmin(asked.outside(pivots)))])

@@ -9,7 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.burmester import Dyads, by_turn, centre, marks
-from tmm_cli.synthesis.coupler_dyads import SIDES, TURNS, Asked, Side, W, dyad, exists, fair, of_turn, rows
+from tmm_cli.synthesis.coupler_dyads import FAR, SIDES, TURNS, Asked, Side, W, dyad, exists, fair, of_turn, reach, rows
+from tmm_cli.synthesis.coupler_dyads import NEAR as CLOSE
 from tmm_cli.synthesis.record import Infeasible, Shown
 
 GRID: Final = np.radians(0.1)  # of turns that are tried
@@ -25,15 +26,20 @@ TIMES: Final = 20.0  # how far
 def refuse_turn(asked: Asked, name: str, given: Mapping[str, Dyads]) -> None:
     """No link turns as asked: raises Infeasible with the nearest turn that is sound, or that there is at all."""
     key, reason = f"{name}_turn", f"{W}.no_turn"
+    values: dict[str, Shown] = {}
+    own = given[name]
+    if np.isfinite(reach(asked, own)):
+        length = float(abs(asked.poses.on_frame(own.pin)[..., 0] - own.pivot))
+        reason, values = f"{W}.far_turn", {"length": (length, "length"), "name": (name, "word")}
     others = [found for other, found in given.items() if other != name and bool(exists(asked, found))]
     if asked.keep:
-        told = _nearest(lambda turns: exists(asked, of_turn(asked, name, turns)), asked.sides[name].turn, GRID)
+        told = _nearest(lambda turns: exists(asked, of_turn(asked, name, turns), CLOSE), asked.sides[name].turn, GRID)
     else:
         told = _turn(asked, name, others[0] if others else None) if others or len(given) == 1 else None
     if told is not None:
-        raise Infeasible(key, reason, f"{W}.nearest_turn", {"turn": told})
-    words, values = _by_both_turns(asked)
-    raise Infeasible(key, reason, f"{W}.{words}", values)
+        raise Infeasible(key, reason, f"{W}.nearest_turn", values | {"turn": told})
+    words, told_values = _by_both_turns(asked)
+    raise Infeasible(key, reason, f"{W}.{words}", values | told_values)
 
 
 def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
@@ -52,7 +58,8 @@ def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
 def _sound(asked: Asked, one: Any, other: Any) -> Any:
     """Whether four-bars are without defects, broadcast together."""
     with np.errstate(all="ignore"):
-        return (marks(asked.poses, one, other).defect == 0) & exists(asked, one) & exists(asked, other)
+        far = CLOSE if len(asked.places) == 4 else FAR
+        return (marks(asked.poses, one, other).defect == 0) & exists(asked, one, far) & exists(asked, other, far)
 
 
 def _pair(name: str, own: Dyads, other: Dyads) -> tuple[Dyads, Dyads]:

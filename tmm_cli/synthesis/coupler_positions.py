@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.synthesis import guidance, loop
 from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
-from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn
+from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
 from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
@@ -32,6 +32,8 @@ def both(asked: Asked) -> tuple[Dyads, Dyads]:
     """Dyads AB and DC. Raises Infeasible."""
     if len(asked.places) < 4:
         return dyad(asked, "AB"), dyad(asked, "DC")
+    if still(asked.poses):
+        return parallel(asked)
     given = {}
     for name, side in asked.sides.items():
         given[name] = of_near(asked, name) if side.near is not None else of_turn(asked, name)
@@ -87,7 +89,8 @@ def solve(asked: Asked) -> Outcome:
         Value("", float(mark.way), "angle", f"{W}.way"),
         Value("", None, "word", f"{W}.defect", f"{W}.{defect or 'sound'}"),
     ]
-    four = len(asked.places) == 4
+    free = len(asked.places) == 4 and still(asked.poses)
+    four = len(asked.places) == 4 and not free
     for name, found in (("AB", one), ("DC", other)) if four else ():
         side = asked.sides.get(name, Side())
         if side.turn is None:
@@ -102,8 +105,9 @@ def solve(asked: Asked) -> Outcome:
     by_pivot = {name for name, side in asked.sides.items() if side.pivot is not None}
     drawn = guidance.construction(asked.poses, one, other, W, ("AB" in by_pivot, "DC" in by_pivot))
     return Outcome(
-        _given(asked), tuple(values), f"{W}.source_{len(asked.places)}", _demands(asked, one, other, mark), drawn,
-        listings=(_curve(asked),) if four else (),
+        _given(asked), tuple(values), f"{W}.source_{'still' if free else len(asked.places)}",
+        _demands(asked, one, other, mark), drawn, (f"{W}.any_parallelogram",) if free else (),
+        (_curve(asked),) if four else (),
     )  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.nearest_pairs import refuse_found
 from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, real, through
+from tmm_cli.synthesis.parallelogram import parallelogram
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.synthesis.structural_error import errors, extremes
 from tmm_cli.vectors import settled
@@ -80,14 +81,16 @@ def solve(asked: Asked) -> Outcome:
         for k, (a, b) in enumerate(zip(asked.phi, asked.psi, strict=True))
     ]
     demands.append(Demand(f"{W}.transmission", mark.least, "angle", partial(_transmission, mark.worst), False, 1.0))
-    demands.append(Demand(f"{W}.crank_turns", float(mark.crank), "number", crank_turns, asked=False))
+    any_one = parallelogram(asked.phi, asked.psi, asked.phi0, asked.psi0) is not None
+    if not any_one:  # it has change points
+        demands.append(Demand(f"{W}.crank_turns", float(mark.crank), "number", crank_turns, asked=False))
     drawings: list[Any] = [construction(one, asked.phi, asked.psi, float(size), W)]
     if asked.function and not mark.defect:
         curve, error = errors(one, asked, W)
         values.append(Value("", error, "angle", f"{W}.error"))
         demands.append(Demand(f"{W}.error", error, "angle", partial(_largest, one, asked), False, 1.0))
         drawings.append(curve)
-    notes = (f"{W}.reversed",) if mark.reversed else ()
+    notes = ((f"{W}.parallelogram",) if any_one else ()) + ((f"{W}.reversed",) if mark.reversed else ())
     listings = (_solutions(asked, found, at),) if len(found) > 1 else ()
     if _free(asked):
         notes, listings = (*notes, f"{W}.free_note"), (*listings, _family(asked))

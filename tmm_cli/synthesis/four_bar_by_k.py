@@ -13,6 +13,7 @@ from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider import k_of
 from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bound, places, whole, widest
 from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing
+from tmm_cli.synthesis.four_bar_level import level_places, nearest_sound
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
 
@@ -20,7 +21,8 @@ __all__ = ["PARAMETERS", "Asked", "Found", "arcs", "at", "bound", "choose", "pla
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 W: Final = "synthesis_four_bar_by_k"
 STEP: Final = 1e-14  # the least step of a derivative, relative
-NEAR: Final = 1e-3  # of w - 1: the farthest that polishing moves a pivot which is found in ordinary precision
+SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
+SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
 INSIDE: Final = 4e-5  # of a range of lengths: how far from its ends a length is told
 SCAN: Final = 100  # values of theta that are tried for level supports
 LEVEL: Final = 1e-6  # rad of theta, from where a pivot is level first: an end of an arc
@@ -64,6 +66,9 @@ EQUATIONS: Final[Mapping[str, Callable[[Found, Asked], Any]]] = {
 
 def _crossings(asked: Asked, side: int, function: Any) -> list[Any]:
     """Where a function of what is found vanishes along an arc."""
+    if asked.choose == "level":
+        fair = [float(w) for w in level_places(asked) if 1 < w < bound(asked, side)]
+        return [w for w in fair if abs((f := at(asked, w, side)).a.imag) < SAME * (f.l2 + asked.l3)]
     w = places(asked, side)
     values = function(at(asked, w, side), asked)
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
@@ -98,7 +103,17 @@ def _plain(asked: Asked) -> Asked:
 
 
 def choose(asked: Asked) -> Found:
-    """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible."""
+    """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible.
+
+    It is looked for with D in the origin: a support that is far away takes no digits.
+    """
+    near = None if asked.near is None else asked.near - asked.support
+    found = _from_support(replace(asked, support=0 * asked.support, near=near), asked.support)
+    return replace(found, a=asked.support + found.a)
+
+
+def _from_support(asked: Asked, support: Any) -> Found:
+    """The same with D in the origin; support: where D is, for messages."""
     plain = _plain(asked)
     equation, goal = EQUATIONS[asked.choose], LEAST.get(asked.choose, _pressure)
     if asked.choose in LEAST:
@@ -109,23 +124,26 @@ def choose(asked: Asked) -> Found:
         _not_there(plain)
     w, side = min(found, key=lambda one: float(goal(at(plain, *one), plain)))
     if not inside(plain, w, side):
-        return _at_end(asked, w, side)
+        if asked.choose == "near":
+            _dead_end(plain, support)
+        return at(asked, w, side)
+    value = equation(at(asked, w, side), asked)
     for _ in range(4):  # the same in the precision of the data
         step = max(1e-7 * (w - 1), STEP * w)
-        value, beyond = (equation(at(asked, x, side), asked) for x in (w, w + step))
-        if beyond == value or abs(step * value) > NEAR * (w - 1) * abs(beyond - value):  # rounding, no slope
+        beyond = equation(at(asked, w + step, side), asked)
+        better = w - step * value / (beyond - value) if beyond != value else w
+        residual = equation(at(asked, better, side), asked)
+        if not (np.abs(residual) < np.abs(value) and inside(plain, better, side)):
             break
-        w = w - step * value / (beyond - value)
+        w, value = better, residual
     return at(asked, w, side)
 
 
-def _at_end(asked: Asked, w: Any, side: int) -> Found:
-    """At the ends of the arcs the rocker is dead; far away on an arc that is nearly straight it is not."""
-    plain = _plain(asked)
-    if asked.choose != "near":
-        return at(asked, w, side)
-    other = at(plain, _best(plain, side, "best") if plain.k > 1 else 3.0, side)
-    values = {"x": (other.a.real, "length"), "y": (other.a.imag, "length")}
+def _dead_end(asked: Asked, support: Any) -> None:
+    """At the ends of the arcs the rocker is dead: the nearest pivot where it is far from that."""
+    a, most = nearest_sound([at(asked, places(asked, side), side) for side in arcs(asked)], asked.near, SOUND)
+    a += complex(support)
+    values = {"x": (a.real, "length"), "y": (a.imag, "length"), "pressure": (max(most, SOUND), "angle")}
     raise Infeasible("near", f"{W}.near_end", f"{W}.near_inside", values)
 
 

@@ -19,7 +19,9 @@ from tmm_cli.vectors import PI
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4
-SINGULAR: Final = 1e-18  # determinants of numbers about 1; those of near positions are small and still good
+SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
+REFINEMENTS: Final = 6
+ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
 
 
 @dataclass(frozen=True)
@@ -40,21 +42,44 @@ class Bars:
         return self.l1 * _unit(self.phi0 + phi), 1 + self.l3 * _unit(self.psi0 + psi)
 
 
-def solve_linear(rows: Any, right: Any) -> Any:
-    """Linear systems (..., n, n), (..., n), refined in extended precision; nan where they are singular."""
+def inverse(rows: Any) -> Any:
+    """Inverses (..., m, n) of rows (..., n, m) in ordinary precision, for corrections; of least squares where there are
+    more rows than columns, of least length where there are fewer; nan where rows are singular, whatever their size.
+
+    Near positions make rows that are nearly the same: their determinant is as small as it may be, and they are still
+    good while their least singular value, over the largest one, is more than rounding.
+    """
     near = np.asarray(rows, dtype=float)
-    finite = np.isfinite(near).all((-1, -2))[..., None, None]
-    sound = (np.abs(np.linalg.det(np.where(finite, near, 0.0))) > SINGULAR) & finite[..., 0, 0]
-    near = np.where(sound[..., None, None], near, np.eye(near.shape[-1]))
-    found = np.zeros(np.shape(right), dtype=EXACT)
-    for _ in range(3):
-        rest = right - (rows * found[..., None, :]).sum(-1)
-        found = found + np.linalg.solve(near, np.asarray(rest, dtype=float)[..., None])[..., 0]
-    return np.where(sound[..., None], found, np.nan)
+    finite = np.isfinite(near).all((-1, -2), keepdims=True)
+    left, sizes, right = np.linalg.svd(np.where(finite, near, 0.0), full_matrices=False)
+    sound = finite[..., 0] & (sizes[..., -1:] > SINGULAR * sizes[..., :1])
+    back = np.where(sound, 1 / np.where(sound, sizes, 1.0), np.nan)
+    return np.einsum("...ki,...k,...jk->...ij", right, back, left)
 
 
-def three(phi: Any, psi: Any) -> Any:
-    """p, q, s (tasks, 3) of three pairs with their zero angles in them."""
+def solve_linear(rows: Any, right: Any) -> Any:
+    """Linear systems (..., n, m), (..., n), refined in extended precision; nan where they are singular."""
+    back = inverse(rows)
+    found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
+    for _ in range(REFINEMENTS):
+        rest = np.asarray(right - (rows * found[..., None, :]).sum(-1), dtype=float)
+        found = found + (back * rest[..., None, :]).sum(-1)
+    return found
+
+
+def solve_homogeneous(rows: Any) -> Any:
+    """Two vectors (..., m, 2) that span what rows (..., m - 2, m) send to zero, in extended precision."""
+    near, back = np.asarray(rows, dtype=float), inverse(rows)
+    near = np.where(np.isfinite(near), near, 0.0)
+    found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
+    for _ in range(REFINEMENTS):
+        rest = np.asarray((rows[..., None] * found[..., None, :, :]).sum(-2), dtype=float)
+        found = found - np.matmul(back, rest)
+    return found
+
+
+def of_zeros(phi: Any, psi: Any) -> Any:
+    """p, q, s (tasks, 3) of three or more pairs with their zero angles in them."""
     return solve_linear(_rows(phi, psi), np.cos(phi - psi))
 
 
@@ -71,13 +96,17 @@ def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
     Angles half a turn away are the same four-bars.
     """
 
-    def form(angle: float) -> Any:
-        one, other = (phi + angle, psi) if free == "phi0" else (phi, psi + angle)
-        return np.linalg.det(np.asarray(np.concatenate(
-            [_rows(one, other), np.cos(one - other)[..., None]], axis=-1), dtype=float))  # fmt: skip
+    turn = phi - psi
+    angle, sign = (phi, -1) if free == "phi0" else (psi, 1)
+    still = np.cos(psi if free == "phi0" else phi)
+    over_cos, over_sin = (np.cos(angle), np.cos(turn)), (-np.sin(angle), sign * np.sin(turn))  # columns that turn
 
-    a, c = form(0.0), form(np.pi / 2)
-    b = 2 * form(np.pi / 4) - a - c
+    def form(one: Any, other: Any) -> Any:  # the column of ones leaves differences of the rows
+        (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(x[..., 1:] - x[..., :1], -1, 0) for x in (still, one, other))
+        return a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
+
+    a, c = form(*over_cos), form(*over_sin)
+    b = form(over_cos[0], over_sin[1]) + form(over_sin[0], over_cos[1])
     with np.errstate(all="ignore"):
         root = np.sqrt(b * b - 4 * a * c)
         big = -(b + np.where(b < 0, -root, root)) / 2
@@ -87,28 +116,65 @@ def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
 
 
 def five(phi: Any, psi: Any) -> tuple[Any, Any]:
-    """Both zero angles (tasks, 3), nan where not real, of five pairs."""
-    ones = np.ones_like(phi)
-    rows = np.stack([np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), ones], axis=-1)
-    of_cos, of_sin = solve_linear(rows, np.cos(phi - psi)), solve_linear(rows, -np.sin(phi - psi))
-    a = [np.asarray(x[:, 0] + 1j * x[:, 1], complex) for x in (of_cos, of_sin)]  # p e^(-i psi0) over cos, sin of delta
-    b = [np.asarray(x[:, 2] + 1j * x[:, 3], complex) for x in (of_cos, of_sin)]  # -q e^(-i phi0)
-    x, z = b[0] * a[0].conj(), b[1] * a[1].conj()
-    y = b[0] * a[1].conj() + b[1] * a[0].conj()
-    cubic = np.stack([z.real, y.real + z.imag, x.real + y.imag, x.imag], axis=-1)  # of tan(delta)
-    phi0, psi0 = np.full((len(x), 3), np.nan), np.full((len(x), 3), np.nan)
-    for k, row in enumerate(cubic):
-        if not np.all(np.isfinite(row)) or not np.any(row):
-            continue
-        tangents = np.roots(row)
-        deltas = [float(np.arctan(t.real)) for t in tangents if abs(t.imag) < 1e-7 * (1 + abs(t))]
-        if abs(row[0]) <= SINGULAR * np.max(np.abs(row)):
-            deltas.append(np.pi / 2)
-        for j, delta in enumerate(deltas[:3]):
-            cosine, sine = np.cos(delta), np.sin(delta)
-            psi0[k, j] = -np.angle(a[0][k] * cosine + a[1][k] * sine)
-            phi0[k, j] = psi0[k, j] + delta
+    """Both zero angles (tasks, 3), nan where not real, of five pairs.
+
+    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), all times a number: two vectors
+    span their solutions, and the directions of the three complex numbers, which must agree, make a cubic form.
+    """
+    columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
+    span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
+    a, b, turn = (span[:, k] + 1j * span[:, k + 1] for k in (0, 2, 5))  # (tasks, 2) over both vectors
+    phi0, psi0 = np.full((len(a), 3), EXACT(np.nan)), np.full((len(a), 3), EXACT(np.nan))
+    for k in range(len(a)):
+        cubic = np.convolve(np.convolve(b[k], a[k].conj()), turn[k]).imag
+        for j, angle in enumerate(angles_of_form(cubic[::-1])):
+            both = np.array([np.cos(angle), np.sin(angle)])
+            side, delta = (a[k] * both).sum(), (turn[k] * both).sum()
+            if abs(delta) > ENDLESS * abs(side):  # else l1 is nothing beside the frame
+                psi0[k, j] = -np.angle(side)
+                phi0[k, j] = psi0[k, j] + np.angle(delta)
     return phi0, psi0
+
+
+def angles_of_form(form: Any) -> list[Any]:
+    """Angles (rad, in a half turn) where a form f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine and sine vanishes.
+
+    Between the angles where it is extreme (its slope is a form too) it has one sign change or none: no root is lost
+    because two are near each other, and none is made of two complex ones.
+    """
+    if not np.all(np.isfinite(form)) or not np.any(form):
+        return []
+    half = EXACT(PI)
+
+    def value(angle: Any) -> Any:
+        c, s = np.cos(angle), np.sin(angle)
+        return ((form[0] * s + form[1] * c) * s + form[2] * c * c) * s + form[3] * c * c * c
+
+    f0, f1, f2, f3 = (float(f) for f in form / np.max(np.abs(form)))
+    # over z = e^(2 i angle) the form times e^(3 i angle) is a cubic, and so is its slope
+    powers = [np.array([1, 1]), np.array([-1j, 1j])]  # 2 cos, 2 sin: coefficients of e^(i angle), e^(-i angle)
+
+    def product(*which: int) -> Any:
+        one = np.array([1.0 + 0j])
+        for k in which:
+            one = np.convolve(one, powers[k])
+        return one
+
+    waves = f0 * product(1, 1, 1) + f1 * product(1, 1, 0) + f2 * product(1, 0, 0) + f3 * product(0, 0, 0)
+    slope = waves * np.array([3j, 1j, -1j, -3j])
+    extremes = np.angle(np.roots(slope)) / 2
+    scan = np.sort(np.concatenate([extremes, np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1]])).astype(EXACT)
+    ends = np.append(scan, scan[0] + half)
+    values = value(ends)
+    values[-1] = -values[0]  # half a turn on, a form of odd degree is what it was, of the other sign
+    found = []
+    for k in np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1])):
+        low, high, below = ends[k], ends[k + 1], np.signbit(values[k])
+        for _ in range(70):
+            middle = (low + high) / 2
+            low, high = (middle, high) if np.signbit(value(middle)) == below else (low, middle)
+        found.append((low + high) / 2)
+    return found[:3]
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
@@ -131,12 +197,8 @@ def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
 
 def solve_newton(slopes: Any, rest: Any) -> Any:
     """A step of Newton's method; zero where the slopes are singular (a double root)."""
-    near = np.asarray(slopes, dtype=float)
-    sound = np.isfinite(near).all((-1, -2)) & np.isfinite(np.asarray(rest, float)).all(-1)
-    near = np.where(sound[:, None, None], near, np.eye(near.shape[-1]))
-    sound &= np.abs(np.linalg.det(near)) > 1e-300
-    near = np.where(sound[:, None, None], near, np.eye(near.shape[-1]))
-    return np.where(sound[:, None], np.linalg.solve(near, np.asarray(rest, float)[..., None])[..., 0], 0.0)
+    step = (inverse(slopes) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
+    return np.where(np.isfinite(step), step, 0.0)
 
 
 def bars(values: Any, phi: Any, psi: Any) -> Bars:
@@ -167,7 +229,7 @@ def solutions(phi: Any, psi: Any, phi0: float | None = 0.0, psi0: float | None =
     found = []
     for k in range(one.shape[1]):
         a, b = one[:, k] + EXACT(given_phi), other[:, k] + EXACT(given_psi)
-        linear = three((phi + a[:, None])[:, :3], (psi + b[:, None])[:, :3])
+        linear = of_zeros(phi + a[:, None], psi + b[:, None])
         values = np.concatenate([linear, a[:, None], b[:, None]], axis=-1)
         values = polished(values, phi, psi, free) if free else values
         found.append(bars(values, phi, psi))

@@ -105,7 +105,7 @@ def four_bar(asked: FourBar) -> FourBarFound:
     pairs = equal[..., 0] & equal[..., 2]  # at a change point one pair of equal links brings the other
     kind = np.where(excess > 0, shortest, 4 + longest)
     kind = np.where(change, np.where(pairs, np.where(equal[..., 1], 13, 12), 8 + shortest), kind)
-    kind = np.where(2 * ranked[..., 3] >= total, -1, kind)
+    kind = np.where(2 * ranked[..., 3] >= total - same, -1, kind)
     joints = []
     for k in range(4):
         x, y, z, w = (links[..., (k + i) % 4] for i in range(4))

@@ -12,10 +12,11 @@ from tmm_cli.synthesis import freudenstein
 from tmm_cli.synthesis.freudenstein import Bars
 from tmm_cli.synthesis.functions import Function
 from tmm_cli.synthesis.grashof import FourBar, four_bar
+from tmm_cli.synthesis.parallelogram import parallelogram
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
 LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
-SHORT, LONG = 1e-9, 1e9  # lengths over l4 that still make a four-bar
+SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,8 @@ def quality(one: Bars, asked: Asked) -> Quality:
 def through(asked: Asked, scan: int = SCAN) -> list[Bars]:
     """All four-bars that are found for the task, over l4; scan: how many are compared where one length is free."""
     if len(asked.phi) > 2:
+        if (one := parallelogram(asked.phi, asked.psi, asked.phi0, asked.psi0)) is not None:
+            return [one]
         found = freudenstein.solutions([asked.phi], [asked.psi], asked.phi0, asked.psi0)
         return [found[0, k] for k in range(found.l1.shape[1]) if real(found[0, k])]
     phi, psi = (np.asarray([row], freudenstein.EXACT) for row in (asked.phi, asked.psi))

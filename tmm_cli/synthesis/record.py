@@ -90,7 +90,7 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
     `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind) or
     (number, kind, side): `most`, `least` allowed, or `below`, `above` for limits that are not allowed themselves; they
-    are rounded to that side, so that what is printed can be typed in.
+    are rounded to that side, so that what is printed can be typed in; `exact`: nothing beside it will do.
     """
 
     def __init__(

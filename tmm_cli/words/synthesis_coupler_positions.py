@@ -43,7 +43,18 @@ WORDS: dict[str, str] = {
     f"{_W}.short": "{name} does not reach both places",
     f"{_W}.longer": "{name} {length} or more",
     f"{_W}.no_turn": "no link through the four positions turns by this angle from the first to the second",
+    f"{_W}.far_turn": "{name} of this turn is {length} long, or its ends are as far from the positions: near the turn "
+    "of the coupler itself links grow beyond all bounds",
     f"{_W}.nearest_turn": "{turn}",
+    f"{_W}.still_line": "the coupler does not turn, and its places lie on a line: links would be infinitely long",
+    f"{_W}.still_slider": "places on a circle, or a slider",
+    f"{_W}.still_off": "the coupler does not turn: all its points go on equal circles, and the fourth place is not on "
+    "that through the others",
+    f"{_W}.still_on": "x = {x}, y = {y}; or a coupler that turns",
+    f"{_W}.still_turn": "the coupler does not turn: both links turn as its places do on their circle",
+    f"{_W}.any_parallelogram": "the coupler does not turn: any parallelogram with these arms does it; AD is free in "
+    "length and direction, taken across the arms in the middle of their way",
+    f"{_W}.source_still": "all points of a coupler that does not turn go on equal circles: A and D are their centres",
     f"{_W}.other_positions": "other positions",
     f"{_W}.no_curve": "Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)",
     f"{_W}.has_branch": "branch defect: some positions are on the other assembly of the four-bar",

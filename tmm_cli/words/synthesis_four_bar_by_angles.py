@@ -73,6 +73,8 @@ WORDS: dict[str, str] = {
     f"{_W}.short_locks": "order",
     f"{_W}.nearest_alone": "the last output angle {psi}",
     f"{_W}.other_alone": "other angles; no output angle alone within 60 deg of the given one helps",
+    f"{_W}.parallelogram": "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its "
+    "transmission angle is that of DC with AD; l1/l4 is free, 1/2 is taken",
     f"{_W}.reversed": "a zero angle is half a turn from the given one: in the given sense there is no such link",
     f"{_W}.its_branch": "branch defect: this solution has some pairs on its other assembly",
     f"{_W}.its_locks": "order defect: the input of this solution locks on the way",

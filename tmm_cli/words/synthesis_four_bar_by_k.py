@@ -76,7 +76,8 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.level_none": "no pivot of the admissible arcs is as high as D",
     "synthesis_four_bar_by_k.near_end": "the nearest place of the admissible arcs is an end of them, where the rocker "
     "is dead",
-    "synthesis_four_bar_by_k.near_inside": "a place beside an arc, such as [{x}, {y}]",
+    "synthesis_four_bar_by_k.near_inside": "[{x}, {y}]: the nearest pivot with a largest pressure "
+    "angle of {pressure} or less",
     "synthesis_four_bar_by_k.l1_none": "no pivot of the admissible arcs gives such a crank",
     "synthesis_four_bar_by_k.l2_none": "no pivot of the admissible arcs gives such a coupler",
     "synthesis_four_bar_by_k.l1_same": "with k = 1 every crank is half of C1C2",

@@ -50,10 +50,15 @@ def shaped(found: Any) -> Block:
     """The block in the shape of its task."""
     if not isinstance(found, dict):
         raise PydanticCustomError("dict_type", "keys with values are wanted")
-    if found.get("task") not in TASKS:
+    if not _known(found.get("task")):
         _named().model_validate({"task": found["task"]} if "task" in found else {})
     block: Block = reader(found["task"]).Shape.model_validate(found)
     return block
+
+
+def _known(name: Any) -> bool:
+    """Whether it is a task's name; a list or a block has no place among names."""
+    return isinstance(name, str) and name in TASKS
 
 
 class SynthesisFile(Strict):
@@ -70,7 +75,7 @@ class SynthesisFile(Strict):
 def model(block: Any, path: tuple[str | int, ...]) -> type[BaseModel] | None:
     """The model at a path inside the block, for messages."""
     task = block.get("task") if isinstance(block, dict) else None
-    here: type[BaseModel] | None = reader(str(task)).Shape if task in TASKS else Block
+    here: type[BaseModel] | None = reader(str(task)).Shape if _known(task) else Block
     for step in path:
         if isinstance(step, int) or here is None:
             continue

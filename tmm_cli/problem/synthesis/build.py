@@ -15,6 +15,7 @@ from tmm_cli.problem.expressions import check_parameter, resolve_parameters
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block, reader
+from tmm_cli.problem.synthesis.bounded import Bounded
 from tmm_cli.problem.units import KINDS, Quantity, UnitSystem, plain_text
 from tmm_cli.synthesis import task
 from tmm_cli.synthesis.record import Infeasible, sound
@@ -48,7 +49,8 @@ def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: V
         search = getattr(reader(block.task), "SEARCH", False)
         if search and variant is None:
             raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
-        return reader(block.task).asked(block, Sense(early, units), *((linkage_of,) if search else ()))
+        sense = Sense(early, units) if search else Bounded(early, units)
+        return reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
     except Infeasible as error:
         raise _refused(error, block, units).at("synthesis") from None
     except OfTheFile as error:

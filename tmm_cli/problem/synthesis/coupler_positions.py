@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sin
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
@@ -24,6 +25,7 @@ def _pose(found: Any) -> Any:
 Pose = Annotated[list[Value], BeforeValidator(_pose)]
 Where = Literal["left", "right"]
 DYADS = ("AB", "DC")
+SAME = 1e-12  # half a whole turn more is the same angle
 
 
 class Shape(Block):
@@ -66,9 +68,10 @@ def asked(shape: Shape, sense: Sense) -> Asked:
         for k, pose in enumerate(shape.positions)
     ]
     for k in range(count):
-        if poses[k] in poses[:k]:
+        same = [m for m in range(k) if poses[m][0] == poses[k][0] and abs(sin((poses[m][1] - poses[k][1]) / 2)) < SAME]
+        if same:
             raise ProblemError(
-                "this position is there already", path=("positions", k), found=f"position {poses.index(poses[k]) + 1}",
+                "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",
                 allowed="different positions",
             )  # fmt: skip
     sides = {name: side for name in DYADS if (side := _side(shape, sense, name, count)) is not None}

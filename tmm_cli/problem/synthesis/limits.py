@@ -35,6 +35,7 @@ def _whole(values: Mapping[str, Shown]) -> dict[str, tuple[Any, str, str]]:
 def _text(row: tuple[Any, str, str], number: Decimal | None, digits: int, units: UnitSystem) -> str:
     if number is None:
         return say(row[0]) if row[1] == "said" else str(row[0])
+    digits = DIGITS[-1] if row[2] == "exact" else digits
     return f"{float(number):.{digits}g} {units.symbol(KINDS[row[1]].dimension)}".rstrip()
 
 
@@ -46,8 +47,8 @@ def _rounded(value: Any, kind: str, side: str, digits: int, units: UnitSystem) -
         return exact
     step = Decimal(1).scaleb(exact.adjusted() - digits + 1)
     number = exact.quantize(step, ROUND_HALF_EVEN)
-    if not side:
-        return number
+    if side in ("", "exact"):
+        return number if not side else exact
     sign = 1 if side in LOW else -1
     margin = STRICT * abs(exact) if side in ("above", "below") else Decimal(0)
     while sign * (units.si(float(number), dimension) - float(value)) < 0 or sign * (number - exact) < margin:
@@ -57,7 +58,7 @@ def _rounded(value: Any, kind: str, side: str, digits: int, units: UnitSystem) -
 
 def _crossed(values: Mapping[str, tuple[Any, str, str]], found: Mapping[str, Decimal]) -> bool:
     """Whether a least allowed value would be printed above a most allowed one of its kind."""
-    bounds = [(*values[name], number) for name, number in found.items() if values[name][2]]
+    bounds = [(*values[name], number) for name, number in found.items() if values[name][2] not in ("", "exact")]
     return any(
         low[1] == high[1] and low[0] < high[0] and low[3] >= high[3]
         for low in bounds if low[2] in LOW for high in bounds if high[2] not in LOW
