@@ -122,6 +122,14 @@ def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_two_seeds():
     assert best == pytest.approx([0.39599372e-3] * 2, rel=1e-7)
 
 
+def test_what_is_found_is_assembled_though_the_sketch_is_far_from_it():
+    # at its bound, the shortest rod lies far from where the file sketches B for rods of 240 mm
+    text = SLIDER.replace("[OA/2 + AB, -e]", "[270, -20]").replace("OPTIONS", "  objective: box\n  generations: 40")
+    problem = build(read_text(text, "x.yaml"))
+    assert problem.synthesis.outcome.notes == ("synthesis_optimal.not_as_sketched",)
+    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+
+
 def test_the_nearest_value_that_is_told_can_be_met():
     task = "  objective: box\n  constraints: [{of: pressure, most: 10 deg}, {of: stroke, equal: VALUE}]\n"
     with pytest.raises(ProblemError) as caught:

@@ -113,6 +113,8 @@ class _Builder:
             links, hinges, slides, driver, self.sketch(links, driver), output=outputs[0] if outputs else None,
             others=drivers[1:], meshes=meshes, outputs=outputs,
         )  # fmt: skip
+        if self.synthesis is not None and self.synthesis.outcome.sketch is not None:
+            linkage = replace(linkage, sketch=self.synthesis.outcome.sketch)
         linkage = with_masses(linkage, shape, self.sense)
         linkage = self.sprung(replace(linkage, loads=build_loads(linkage, shape, self.sense)))
         limit = self.sense.positive(shape.checks.lever, NUMBER, ("checks", "lever"), zero=True)

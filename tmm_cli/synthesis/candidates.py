@@ -15,7 +15,7 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.family import Iterated
 from tmm_cli.forces.plan import Reactions
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import Linkage, Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
@@ -26,6 +26,7 @@ from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.apart import Apart
+from tmm_cli.variants.sketch import alike, sketch_of
 from tmm_cli.variants.taped import Taped
 from tmm_cli.variants.together import Together
 from tmm_cli.variants.way import Places
@@ -131,14 +132,16 @@ class Search:
             for goal in self.goals
         )
 
-    def fits(self, x: Real) -> bool:
-        """Whether it can be assembled as the file sketches it."""
+    def sketch(self, x: Real) -> Sketch | None:
+        """How a candidate looks at the place of the sketch, where the file's own sketch does not show its assembly."""
+        numbers = self.numbers(x)
+        own = self.program.sketch(numbers)
         try:
-            linkage = self.asked.make([float(number) for number in self.numbers(x)])
-            assemble(linkage, mobile(linkage))
+            linkage = self.asked.make([float(number) for number in numbers])
+            shown = sketch_of(linkage, assemble(linkage, mobile(linkage)))
         except Refused:
-            return False
-        return True
+            return own
+        return None if alike(own, shown) else own
 
     def _check_use(self) -> None:
         """Every parameter changes something. Raises Infeasible."""

@@ -57,8 +57,11 @@ def told(search: Search, found: Best) -> Outcome:
     objectives = found.evolved.objective[np.isfinite(found.evolved.objective)]
     if asked.objective.of in (*PLAIN, *FORCES) and not np.ptp(objectives):
         notes = (*notes, f"{W}.constant")
+    sketch = search.sketch(found.x)
+    if sketch is not None:
+        notes = (*notes, f"{W}.not_as_sketched")
     return Outcome(
-        tuple(given), tuple(numbers), f"{W}.source", tuple(demands), tuple(drawings), notes, tuple(listings)
+        tuple(given), tuple(numbers), f"{W}.source", tuple(demands), tuple(drawings), notes, tuple(listings), sketch
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from tmm_cli.linkage import Sketch
     from tmm_cli.synthesis.construction import Construction, Diagram
 
 Shown = tuple[Any, ...]  # of a refusal: value, kind, and perhaps which side of it is allowed
@@ -67,7 +68,8 @@ class Outcome:
     """What a task gives. parameters: what the linkage may use, by name; source: key of the words on the formula.
 
     asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
-    notes: keys of words below what was found; listings: further tables.
+    notes: keys of words below what was found; listings: further tables. sketch: how the mechanism is assembled,
+    where the file's own does not show it.
     """
 
     asked: tuple[Value, ...]
@@ -77,6 +79,7 @@ class Outcome:
     drawings: tuple[Construction | Diagram, ...] = ()
     notes: tuple[str, ...] = field(default=())
     listings: tuple[Listing, ...] = ()
+    sketch: Sketch | None = None
 
     @property
     def parameters(self) -> dict[str, Value]:

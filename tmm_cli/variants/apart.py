@@ -10,9 +10,11 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
 from tmm_cli.family import Make
+from tmm_cli.linkage import Sketch
 from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
 from tmm_cli.refused import Refused
+from tmm_cli.variants.sketch import sketch_of
 from tmm_cli.variants.way import Places, Way
 from tmm_cli.vectors import Real
 
@@ -39,6 +41,11 @@ class Apart:
     def without(self, part: str) -> Self:
         """The same: what is not wanted costs little here."""
         return self
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch. Raises what assembly raises."""
+        linkage = self.make([float(number) for number in numbers])
+        return sketch_of(linkage, assemble(linkage, self.structure.again(linkage)))
 
     def about(self, numbers: Real) -> Self:
         """For variants near one: no other than for all."""

@@ -8,8 +8,12 @@ from typing import Self
 
 import numpy as np
 
+from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked
 from tmm_cli.family import Iterated, Make, family
+from tmm_cli.linkage import Sketch
+from tmm_cli.mobile import mobile
+from tmm_cli.variants.sketch import sketch_of
 from tmm_cli.variants.way import Places, Way
 from tmm_cli.vectors import Real
 
@@ -28,6 +32,7 @@ class Taped:
         if self.ordinary.others or self.ordinary.driver.stroke is not None or (forces and by_stroke):
             raise Iterated
         program = family(make, first, asked, forces=forces)
+        self.make, self.kernels = make, assemble(self.ordinary, mobile(self.ordinary))
         self.program = program.only(*(name for name in program.outputs if name not in UNUSED))
 
     @property
@@ -44,6 +49,11 @@ class Taped:
         new = copy(self)
         new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
         return new
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch."""
+        linkage = self.make([float(number) for number in numbers])
+        return sketch_of(linkage, [kernel.again(linkage) for kernel in self.kernels])
 
     def about(self, numbers: Real) -> Self:
         """For variants near one: no other than for all."""

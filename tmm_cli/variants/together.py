@@ -20,7 +20,7 @@ from tmm_cli.groups.base import Dyad, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import Pose
 from tmm_cli.groups.track import State
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import Linkage, Sketch
 from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Law, move
@@ -28,6 +28,7 @@ from tmm_cli.stack import changed, numbers
 from tmm_cli.strokes import output_link
 from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.varied import Varied
+from tmm_cli.variants.sketch import sketch_of
 from tmm_cli.variants.strokes import find_strokes, spread
 from tmm_cli.variants.walk import Step, Walked, kernels_of, walk
 from tmm_cli.variants.way import Places, Way
@@ -112,6 +113,22 @@ class Together:
     def without(self, part: str) -> Self:
         """The same: what is not wanted costs little here."""
         return self
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch."""
+        one = numbers[None, :]
+        walked = self._walked(one, self.way(one))
+        linkage = replace(self.make([float(number) for number in numbers]), sketch=self.ordinary.sketch)
+        kernels = []
+        for kernel in kernels_of(linkage, self.kernels):
+            if walked is not None and isinstance(kernel, Newton):
+                links, home = kernel.group.links, walked.home
+                x, turn = (
+                    np.stack([part[n][:, home] for n in links], axis=-1) for part in (walked.x, walked.turn)
+                )  # fmt: skip
+                kernel = replace(kernel, start=State(x, turn))
+            kernels.append(kernel)
+        return sketch_of(linkage, kernels)
 
     def about(self, numbers: Real) -> Program:
         """The same for variants near one, whose groups are not followed anew but start from where its own are."""
