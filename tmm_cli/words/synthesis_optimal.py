@@ -83,8 +83,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.other_sketch": "a sketch that fits, e.g. with places that rest on the parameters",
     "synthesis_optimal.unused": "nothing in the file rests on this parameter",
     "synthesis_optimal.used": "a parameter that lengths, places, masses or loads of the file rest on",
-    "synthesis_optimal.not_as_sketched": "the file's sketch does not show the mechanism that was found: it is assembled as "
-    "the middle of the bounds is",
+    "synthesis_optimal.not_as_sketched": "the file's sketch does not show the mechanism that was found: it is "
+    "assembled as the middle of the bounds is",
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
