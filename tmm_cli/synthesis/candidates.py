@@ -5,8 +5,7 @@ Coarsely from places all round the cycle, for the search; exactly from windows a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, Final
 
@@ -15,12 +14,13 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.family import Iterated
 from tmm_cli.forces.plan import Reactions
-from tmm_cli.linkage import Linkage, Sketch
+from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
 from tmm_cli.stack import numbers
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
+from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
@@ -44,59 +44,6 @@ CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
 POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
 GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
 LOST = 10.0  # violation of what cannot be assembled, above all others
-
-
-@dataclass(frozen=True)
-class Limit:
-    """A constraint: least <= goal <= most (SI); equal where they are the same. at: its place among those asked for."""
-
-    goal: Goal
-    least: float | None = None
-    most: float | None = None
-    at: tuple[str | int, ...] = ()
-
-    @property
-    def equal(self) -> bool:
-        return self.least is not None and self.least == self.most
-
-    @property
-    def scale(self) -> float:
-        """What a miss is measured against."""
-        if self.goal.of in LEAST:
-            return 1.0
-        return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
-
-    def missed(self, value: Any) -> Any:
-        """By how much, in shares of the scale; 0 where it is kept."""
-        low = 0.0 if self.least is None else self.least - value
-        high = 0.0 if self.most is None else value - self.most
-        return np.maximum(np.maximum(low, high), 0.0) / self.scale
-
-    def margin(self, value: float) -> float:
-        """How far the value is from its nearer limit, in its unit."""
-        above = np.inf if self.least is None else value - self.least
-        return float(min(above, np.inf if self.most is None else self.most - value))
-
-
-@dataclass(frozen=True)
-class Asked:
-    """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
-    order. target: the objective is to come near to this. positions: round the cycle, in the search.
-    population, generations: 0 for as many as the number of parameters wants.
-    """
-
-    low: dict[str, float]
-    high: dict[str, float]
-    kinds: dict[str, str]
-    make: Callable[[Sequence[Any]], Linkage] = field(compare=False)
-    objective: Goal
-    limits: tuple[Limit, ...] = ()
-    target: float | None = None
-    positions: int = 72
-    population: int = 0
-    generations: int = 0
-    seed: int = 1
-    progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
 
 
 class Search:

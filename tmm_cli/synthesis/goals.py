@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import reduce
-from itertools import combinations, product
+from itertools import combinations
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -20,6 +20,7 @@ from tmm_cli.motion import Motion
 from tmm_cli.pressure import followers, sides
 from tmm_cli.strokes import output_link, output_place, output_slope
 from tmm_cli.synthesis.peaks import peak, zero
+from tmm_cli.synthesis.readings import apart_squared, forward_share, nearest, peaks_of, ratio_of, sums, swept
 from tmm_cli.vectors import Real
 
 PEAKS: Final = ("pressure", "moment", "reaction", "margin", "crank", "box")
@@ -32,9 +33,7 @@ LEAST: Final = ("margin", "crank")  # whose least value counts
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
 OF_A_SIDE = 3  # points that may come to bear on a side of the box
-MOST_SUMS = 200  # of which the largest counts
 CLOSELY = "closely."  # outputs that are wanted for windows alone
-SIDE = 0.3  # of its range: a lower peak so far below the highest one is no rival
 
 Read = Callable[[str], Real]  # an output by name, (variants, places)
 
@@ -145,12 +144,12 @@ class Goal:
         if self.of in PEAKS:
             return self.told(sum(np.max(read(name), axis=1) for name in self.curves))
         if self.of == "k":
-            return _ratio(_forward(read("slope")))
+            return ratio_of(forward_share(read("slope")))
         if self.of in STROKES:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
             if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
-                travel[past] = _swept(run[past])
+                travel[past] = swept(run[past])
             if self.of == "stroke":
                 return np.asarray(travel)
             found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * read("rate")[:, 0] / over.cycle
@@ -198,12 +197,12 @@ class Goal:
             found = []
             for side, (axis, sign) in enumerate(SIDES):
                 ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(sum(over.counts))}
-                tops = [(y[at], k, at) for k, y in ys.items() for at in _peaks(y, MOST_PEAKS, over.closed)]
+                tops = [(y[at], k, at) for k, y in ys.items() for at in peaks_of(y, MOST_PEAKS, over.closed)]
                 tops.sort(reverse=True)
                 found += [(f"{side}{axis}{k}", at) for _, k, at in tops[:OF_A_SIDE]]
             return found
         if self.of in PEAKS:
-            return [("y0", k) for k in _peaks(read("y0")[0], MOST_PEAKS, over.closed)]
+            return [("y0", k) for k in peaks_of(read("y0")[0], MOST_PEAKS, over.closed)]
         if self.of in STROKES:
             slope = read("slope")[0]
             moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
@@ -222,7 +221,7 @@ class Goal:
         in windows. Places are shares of the way.
         """
         if self.of == "length":
-            return _sums([[exact(f"{CLOSELY}{n}.{k}")[:, 0] for k in range(m)] for n, m in enumerate(over.counts)])
+            return sums([[exact(f"{CLOSELY}{n}.{k}")[:, 0] for k in range(m)] for n, m in enumerate(over.counts)])
         if self.of in PLAIN:
             return exact("value")[:, :1]
         if self.of == "box":
@@ -230,7 +229,7 @@ class Goal:
             for curve, _, read in parts:
                 side = int(curve[0])
                 sides[side].append(peak(SIDES[side][1] * read(CLOSELY + curve[1:])))
-            return _sums(sides)
+            return sums(sides)
         if self.of in PEAKS:
             ys = [np.arctan(read(c)) if self.of == "pressure" else read(c) for c, _, read in parts]
             rough = over.rough and self.of in FORCES
@@ -260,55 +259,13 @@ class Goal:
             for _, start, read in parts:
                 slope = read("slope")
                 forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
-            return _ratio(np.mod(forward, 1.0))[:, None]
+            return ratio_of(np.mod(forward, 1.0))[:, None]
         if self.of == "path" and not self.places:
-            near = [-peak(-_square(read, self.wanted[int(n)])) for n, _, read in parts]
+            near = [-peak(-apart_squared(read("px"), read("py"), self.wanted[int(n)])) for n, _, read in parts]
             off = np.sqrt(np.maximum(np.stack(near, axis=1), 0))
         else:
             off = self.deviations(exact, over)
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
-
-
-def _swept(angles: Real) -> Real:
-    """The range of angles that are told within -pi..pi and lie nearer than pi to the next ones; (variants,)."""
-    turns = np.rint(np.diff(angles, axis=1) / (2 * np.pi))
-    whole = angles.copy()
-    whole[:, 1:] -= 2 * np.pi * np.cumsum(turns, axis=1)
-    found: Real = np.max(whole, axis=1) - np.min(whole, axis=1)
-    return found
-
-
-def _square(read: Read, wanted: complex) -> Real:
-    """Of the distance of a path from a point."""
-    found: Real = (read("px") - wanted.real) ** 2 + (read("py") - wanted.imag) ** 2
-    return found
-
-
-def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
-    """Distances of a polygon (variants, corners) from points, (variants, points).
-
-    Of the corner that is nearest, and of the sides that meet there.
-    """
-    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    square, rows, corners = (x * x + y * y) / 2, np.arange(len(x)), x.shape[1]
-    near, work, other = np.empty((len(wanted), len(x)), dtype=int), np.empty_like(x), np.empty_like(x)
-    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
-        np.multiply(x, w.real, out=work)
-        np.subtract(square, work, out=work)
-        np.multiply(y, w.imag, out=other)
-        np.subtract(work, other, out=work)
-        np.argmin(work, axis=1, out=k)
-    wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
-    px, py = x[rows, near] - wx, y[rows, near] - wy
-    best = px * px + py * py
-    after = np.where(near + 1 == corners, 0 if closed else near, near + 1)
-    for beside in (near - 1 if closed else np.maximum(near - 1, 0), after):
-        sx, sy = x[rows, beside] - wx - px, y[rows, beside] - wy - py
-        with np.errstate(all="ignore"):
-            share = np.minimum(np.maximum(-(px * sx + py * sy) / (sx * sx + sy * sy), 0), 1)
-        best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
-    found: Real = np.sqrt(best).T
-    return found
 
 
 def points_of(linkage: Linkage) -> list[str]:
@@ -323,43 +280,3 @@ def spans_of(linkage: Linkage, link: str) -> list[Any]:
     points = linkage.links[link].points
     names = [n for n in points if link != FRAME or any(n == h.point and FRAME in h.links for h in linkage.hinges)]
     return [np.abs(points[a] - points[b]) for a, b in combinations(names, 2)]
-
-
-def _sums(parts: list[list[Real]]) -> Real:
-    """Sums of one quantity of each part, in all ways, (variants, sums): the largest is the sum of the largest ones.
-
-    Where that were too many the largest of a part stands for it.
-    """
-    kept = [list(part) for part in parts if part]
-    while np.prod([len(part) for part in kept]) > MOST_SUMS:
-        longest = max(kept, key=len)
-        longest[:] = [reduce(np.maximum, longest)]
-    return np.stack([np.sum(some, axis=0) for some in product(*kept)], axis=1)
-
-
-def _forward(slope: Real) -> Real:
-    """Share of the cycle in which a curve rises, from its slope at equal steps."""
-    after = np.roll(slope, -1, axis=1)
-    up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
-    with np.errstate(all="ignore"):
-        found: Real = np.mean(up / (up + down), axis=1)
-    return found
-
-
-def _ratio(share: Real) -> Real:
-    """k from the share of one of two strokes: the longer over the shorter."""
-    with np.errstate(all="ignore"):
-        found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
-    return found
-
-
-def _peaks(y: Real, most: int, closed: bool) -> list[int]:
-    """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
-    before, after = np.roll(y, 1), np.roll(y, -1)
-    if not closed:
-        before[0] = after[-1] = -np.inf
-    found = np.flatnonzero((y >= before) & (y > after))
-    if not found.size:
-        return [int(np.argmax(y))]
-    found = found[np.argsort(-y[found], kind="stable")][:most]
-    return [int(k) for k in found if not y[k] < np.max(y) - SIDE * np.ptp(y)]  # some are kept where not all is known
