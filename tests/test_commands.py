@@ -95,6 +95,17 @@ def test_csv_tables_have_a_row_a_position_and_units_of_the_file(shaper):
     assert len(rows) == 13
 
 
+def test_two_files_of_one_name_do_not_take_each_others_folder(tmp_path):
+    text = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
+    for student in ("ivan", "petr"):
+        (tmp_path / student).mkdir()
+        (tmp_path / student / "task.yaml").write_text(text, encoding="utf-8")
+    files = [tmp_path / student / "task.yaml" for student in ("ivan", "petr")]
+    done = tmm("kinematics", *files, "-o", tmp_path / "out")
+    assert done.returncode == 2 and "have one name" in done.stderr and not (tmp_path / "out").exists()
+    assert tmm("kinematics", *files).returncode == 0
+
+
 def test_a_second_run_is_the_same_to_the_byte(shaper, tmp_path):
     assert tmm("run", SHAPER, "-o", tmp_path).returncode == 0
     for path in shaper[1].iterdir():

@@ -264,7 +264,7 @@ REFUSED = [
      "or stand all but in it",
      "5", "k 4.74945 or less, or psi2 110.23 deg or more"),
     ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
-     "0.8", "1 or more; 1.25 for the same strokes"),
+     "0.8", "more than 1; 1.25 for the same strokes"),
     ("", {"k": 1}, ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
      "1", "k more than 1; or l2, l4, near or choose: supports level, the pressure angle "
      "being more than 27.5 deg always"),

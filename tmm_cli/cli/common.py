@@ -47,16 +47,19 @@ def say(text: str) -> None:
 
 
 def each(
-    files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False, headed: bool = True
+    files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False, headed: bool = True,
+    out: Path | None = None,
 ) -> NoReturn:  # fmt: skip
     """Do the work on every file, with a progress bar when there are several; exit with the worst code.
 
-    headed: the tables of each of several files come under its name. Bad input is one message and does not
-    keep the other files from being worked on.
+    out: where each of them has a folder of its name, so that no two may have the same. headed: the tables of each of
+    several files come under its name. Bad input is one message and does not keep the other files from being worked on.
     """
     from tmm_cli.problem.errors import ProblemError
 
     worst = OK
+    if out is not None:
+        _refuse_one_name(files)
     for file in _progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")
@@ -72,6 +75,20 @@ def each(
             code = BAD_INPUT
         worst = max(worst, code)
     raise typer.Exit(worst)
+
+
+def _refuse_one_name(files: Sequence[str]) -> None:
+    """Files whose results would take the place of one another's end the command before its work."""
+    from tmm_cli.results.files import folder_name
+    from tmm_cli.words import say as word
+
+    first: dict[str, str] = {}
+    for file in files:
+        folder = folder_name(Path(file).stem)
+        if folder in first and Path(first[folder]).resolve() != Path(file).resolve():
+            say("error: " + word("command.one_name", first=first[folder], second=file, folder=folder))
+            raise typer.Exit(BAD_INPUT)
+        first[folder] = file
 
 
 def _progress(files: Sequence[Any]) -> Iterable[Any]:

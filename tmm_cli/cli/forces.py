@@ -10,4 +10,8 @@ def forces(
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
     names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
-    each(files, lambda file: report(solved(file, "forces", position), names, as_json, out, digits), as_json=as_json)
+
+    def work(file: str) -> int:
+        return report(solved(file, "forces", position), names, as_json, out, digits)
+
+    each(files, work, as_json=as_json, out=out)

@@ -39,4 +39,4 @@ def kinematics(
             return list_assemblies(file, as_json, out, position)
         return report(solved(file, "kinematics", position, asked), names, as_json, out, digits)
 
-    each(files, work, as_json=as_json)
+    each(files, work, as_json=as_json, out=out)

@@ -55,4 +55,4 @@ def run(
 
         return drawing_files(results)
 
-    each(files, work, as_json=as_json, headed=False)
+    each(files, work, as_json=as_json, out=out, headed=False)

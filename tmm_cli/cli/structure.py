@@ -41,7 +41,7 @@ def structure(
             _draw(results, out)
         return code
 
-    each(files, work, as_json=as_json)
+    each(files, work, as_json=as_json, out=out)
 
 
 def _draw(results: Results, out: Path | None) -> None:

@@ -48,7 +48,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
             say(f"warning: {fault}")
         return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
-    each(files, work, as_json=as_json)
+    each(files, work, as_json=as_json, out=out)
 
 
 def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:

@@ -68,7 +68,8 @@ def show(
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
         for k in part:
             words = table.columns[k].dimension is None
-            rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", min_width=_least(told[k]))
+            least = _least(told[k], words)
+            rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", min_width=least)
         for row in range(len(printed)):
             rich_table.add_row(*(Text(told[k][1][row]) for k in part))
         console.print(rich_table)
@@ -83,9 +84,10 @@ def _told(column: Column, shown: list[str], units: UnitSystem) -> tuple[str, lis
     return heading(column, units), shown
 
 
-def _least(column: tuple[str, list[str]]) -> int:
-    """The least width of a column: a heading may be broken between its words, a cell may not."""
-    return max([len(word) for word in column[0].split()] + [len(cell) for cell in column[1]], default=0)
+def _least(column: tuple[str, list[str]], words: bool) -> int:
+    """The least width of a column: headings and words may be broken between words, numbers may not."""
+    parts = [word for cell in column[1] for word in cell.split()] if words else column[1]
+    return max([len(part) for part in (*column[0].split(), *parts)], default=0)
 
 
 def _parts(table: Table, told: list[tuple[str, list[str]]], width: int) -> list[list[int]]:
@@ -93,7 +95,7 @@ def _parts(table: Table, told: list[tuple[str, list[str]]], width: int) -> list[
     keys = 0
     while keys < len(told) and (table.columns[keys].dimension is None or keys == 1):
         keys += 1
-    wide = [_least(column) + 3 for column in told]
+    wide = [_least(told[k], column.dimension is None) + 3 for k, column in enumerate(table.columns)]
     if keys == len(told):  # words only: the first column tells the rows apart
         if sum(wide) <= width + 1:
             return [list(range(len(told)))]

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
 
 MET = 1e-9  # relative: what differs by more is not met
+ROUNDING = 1e-12  # relative: what is smaller is zero
 
 
 @dataclass(frozen=True)
@@ -28,5 +29,10 @@ class Measured:
 
 def measured(outcome: Outcome, results: Results) -> tuple[Measured, ...]:
     """Every demand on the mechanism."""
-    values = [(demand, float(demand.measure(results))) for demand in outcome.demands]
+    values = [(demand, _settled(demand, float(demand.measure(results)))) for demand in outcome.demands]
     return tuple(Measured(demand, value, demand.difference(value)) for demand, value in values)
+
+
+def _settled(demand: Demand, value: float) -> float:
+    """The same; zero where it is nothing but rounding beside what counts."""
+    return 0.0 if abs(value) <= ROUNDING * max(abs(demand.value), demand.at) else value

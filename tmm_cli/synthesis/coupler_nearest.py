@@ -13,6 +13,7 @@ from tmm_cli.synthesis.coupler_dyads import FAR, SIDES, TURNS, Asked, Side, W, d
 from tmm_cli.synthesis.coupler_dyads import NEAR as CLOSE
 from tmm_cli.synthesis.record import Infeasible, Shown
 
+USABLE: Final = np.radians(1.0)  # of least transmission: a choice that is told gives a four-bar that moves
 GRID: Final = np.radians(0.1)  # of turns that are tried
 COARSE: Final = np.radians(0.5)  # the same, where the other link is free
 INWARDS: Final = 1e-6  # rad, or a share of a length, from where there is a sound four-bar first
@@ -56,10 +57,12 @@ def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
 
 
 def _sound(asked: Asked, one: Any, other: Any) -> Any:
-    """Whether four-bars are without defects, broadcast together."""
+    """Whether four-bars are without defects and not all but dead, broadcast together."""
     with np.errstate(all="ignore"):
         far = CLOSE if len(asked.places) == 4 else FAR
-        return (marks(asked.poses, one, other).defect == 0) & exists(asked, one, far) & exists(asked, other, far)
+        found = marks(asked.poses, one, other)
+        moves = (found.defect == 0) & (found.least > USABLE)
+        return moves & exists(asked, one, far) & exists(asked, other, far)
 
 
 def _pair(name: str, own: Dyads, other: Dyads) -> tuple[Dyads, Dyads]:

@@ -7,6 +7,7 @@ a pivot, or those of best transmission. Positions must be on one assembly, reach
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -16,7 +17,7 @@ from tmm_cli.synthesis import guidance, loop
 from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
 from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Shown, Value
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Asked", "Side", "both", "solve"]
@@ -73,6 +74,31 @@ def _curve(asked: Asked) -> Listing:
 
 def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
+    try:
+        return _solved(asked)
+    except Infeasible as error:
+        if asked.within is None:
+            raise
+        raise _roomier(asked, error) from None
+
+
+def _roomier(asked: Asked, error: Infeasible) -> Infeasible:
+    """A refusal because of a box names the pivots of the best four-bar anywhere, if there is one."""
+    try:
+        one, other = both(replace(asked, within=None))
+    except Infeasible:
+        return error
+    if int(marks(asked.poses, one, other).defect):
+        return error
+    values: dict[str, Shown] = {
+        f"{point}{axis}": (float(part), "length")
+        for point, pivot in (("A", complex(one.pivot)), ("D", complex(other.pivot)))
+        for axis, part in (("x", pivot.real), ("y", pivot.imag))
+    }  # fmt: skip
+    return Infeasible("pivots_within", error.reason, f"{W}.box_of_best", values)
+
+
+def _solved(asked: Asked) -> Outcome:
     one, other = both(asked)
     for key, names, gap in (("C", "B and C", one.pin - other.pin), ("D", "A and D", one.pivot - other.pivot)):
         if not abs(gap) > SAME * asked.size:

@@ -217,7 +217,7 @@ def refuse(asked: Asked) -> None:
         values = {
             "k": (most, "number", "below"), "ratio": (longest, "number", "below"), "given": (length, "number"),
         }  # fmt: skip
-        possible = longest > 1
+        possible = longest > 1 + 1e-5  # or it would be printed as what is refused
         raise Infeasible("k", f"{W}.k_above", f"{W}.k_most" if possible else f"{W}.k_most_alone", values)
     if limit is not None and not 0 < limit < np.pi / 2:
         raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")

@@ -58,8 +58,12 @@ def _law(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
         for header, own in (("at", place), ("wanted", kind), ("reached", kind), ("off", kind))
     )
     rows = tuple(zip(goal.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
-    lines = (Line(f"{W}.curve", q, run), Line(f"{W}.wanted", at, wanted, dots=True))
-    drawn = Diagram(_name(search, n), f"{W}.law_drawn", (f"{W}.driver_at", place), (f"{W}.run", kind), lines)
+    lines = (
+        Line(f"{W}.curve", q, run), Line(f"{W}.wanted", at, wanted, dots=True),
+        Line(f"{W}.reached", at, there, dots=True),
+    )  # fmt: skip
+    up = (f"{W}.angle_of_link" if swings else f"{W}.run", kind)
+    drawn = Diagram(_name(search, n), f"{W}.law_drawn", (f"{W}.driver_at", place), up, lines)
     return Listing(_name(search, n), f"{W}.law_reached", columns, rows), drawn
 
 
@@ -75,17 +79,21 @@ def _path(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
         there = spots(Places(NONE, np.array(goal.places)))
     else:
         there = spots(Places(_closest(lambda shares: spots(Places(shares, NONE)), wanted, search.closed), NONE))
-    rows = tuple(
+    rows: tuple[tuple[float, ...], ...] = tuple(
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
     )
     columns = tuple((f"{W}.column_{header}", "length") for header in ("x", "y", "x_reached", "y_reached", "off"))
+    if goal.places:
+        rows = tuple((q, *row) for q, row in zip(goal.places, rows, strict=True))
+        columns = ((f"{W}.column_at", "angle" if search.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
         Line(f"{W}.path_of", path.real, path.imag), Line(f"{W}.wanted", wanted.real, wanted.imag, dots=True),
         Line(f"{W}.reached", there.real, there.imag, dots=True),
     )  # fmt: skip
     across, up = ((f"{W}.column_{header}", "length") for header in ("x", "y"))
     drawn = Diagram(_name(search, n), f"{W}.path_drawn", across, up, lines, equal=True)
-    return Listing(_name(search, n), f"{W}.path_reached", columns, rows), drawn
+    title = f"{W}.path_reached_at" if goal.places else f"{W}.path_reached"
+    return Listing(_name(search, n), title, columns, rows), drawn
 
 
 def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:

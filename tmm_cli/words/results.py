@@ -114,6 +114,8 @@ WORDS: dict[str, str] = {
     "digits.beside_bound": "\u00b1 rounding",
     "digits.beside_lengths": "\u00b1 lengths",
     "digits.beside_paper": "\u00b1 paper",
+    "command.one_name": "{first} and {second} have one name, so that the results of both would go to the folder "
+    "{folder}: name them differently, or compute them one by one",
     "table.more": "... and {rows} rows more: -o DIR writes them all, --json too",
     "table.more_json": "... and {rows} rows more: --json prints them all",
     "table.more_only": "... and {rows} rows more",

@@ -56,9 +56,9 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.positive": "there is no such link",
     "synthesis_four_bar_by_k.more_than_zero": "more than zero",
     "synthesis_four_bar_by_k.k_below": "k is the time of the working stroke over that of the idle one, the shorter",
-    "synthesis_four_bar_by_k.k_least": "1 or more; {k} for the same strokes",
+    "synthesis_four_bar_by_k.k_least": "more than 1; {k} for the same strokes",
     "synthesis_four_bar_by_k.k_range": "1 to {k}",
-    "synthesis_four_bar_by_k.k_zero": "1 or more",
+    "synthesis_four_bar_by_k.k_zero": "more than 1",
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
     "synthesis_four_bar_by_k.swing_range": "psi2 from {low} to {high}, other than psi1 = {psi1}",
     "synthesis_four_bar_by_k.k_above": "k is too large for this swing: on the whole circle the rocker would pass its "

@@ -49,6 +49,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.most": "at most",
     "synthesis_optimal.objective": "objective",
     "synthesis_optimal.path_reached": "Wanted points and the nearest that are reached",
+    "synthesis_optimal.path_reached_at": "Wanted points and those that are reached at these places of the driver",
+    "synthesis_optimal.angle_of_link": "angle of the link",
     "synthesis_optimal.path_drawn": "Path of the point over the whole way of the driver",
     "synthesis_optimal.path_of": "path",
     "synthesis_optimal.law_reached": "Wanted law and what is reached",
