@@ -41,7 +41,7 @@ ALIKE = {
     "planetary-dwell-press": (),
     "tilter": (("checks|output", "friction: {coefficient: 0.1, radius: 20}\noutput"),),
     "crank-slider-offset": (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),),
-    "loader": (("speed: v}", "speed: v, stroke: [240, 340]}"),),
+    "loader": (("speed: v}", "speed: v, stroke: [240, 300]}"),),  # the sketch is at its end
 }
 
 
@@ -121,6 +121,10 @@ def test_a_stroke_has_no_k():
     with pytest.raises(ProblemError) as caught:
         build(read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", "k", ""))), "x.yaml"))
     assert "this belongs to a driver that turns on and on" in str(caught.value)
+    law = "{of: law, link: 3, at: [0, 130], values: [10, 50]}"
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", law, ""))), "x.yaml"))
+    assert "the driver does not go there" in str(caught.value) and "0 to 120 mm" in str(caught.value)
     with pytest.raises(ProblemError) as caught:
         text = text_of("cylinder", edits[1], (r"points: \{", block("{AB: [240, 270]}", "mass", "")))
         build(read_text(text, "x.yaml"))

@@ -409,7 +409,7 @@ def test_a_box_without_a_pivot_is_refused_with_pivots_that_a_box_may_hold():
     with pytest.raises(ProblemError) as caught:
         problem(f"positions: {FOUR}, pivots_within: [[1000, 1000], [1010, 1010]]")
     ax, ay, dx, dy = (float(number) for number in re.findall(r"(\S+) mm", caught.value.allowed.replace("[", "")))
-    low, high = [min(ax, dx) - 0.01, min(ay, dy) - 0.01], [max(ax, dx) + 0.01, max(ay, dy) + 0.01]
+    low, high = [min(ax, dx) - 10, min(ay, dy) - 10], [max(ax, dx) + 10, max(ay, dy) + 10]
     problem(f"positions: {FOUR}, pivots_within: [{low}, {high}]")
     with pytest.raises(ProblemError, match="a box is for pivots that are free"):
         problem(f"positions: {FOUR}, pivots_within: [[0, 0], [9, 9]], AB_turn: 10, DC_turn: 5")

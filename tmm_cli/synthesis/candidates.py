@@ -23,6 +23,7 @@ from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, p
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
+from tmm_cli.synthesis.readings import peaks_of
 from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.apart import Apart
@@ -39,6 +40,7 @@ SCAN = 720  # places where peaks are looked for before the polish
 NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
 ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
 BLOCK = 125  # candidates at once
+RIVALS = 8  # highest places of what may jump
 ZOOMS = 9  # of a peak that may be a jump
 CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
 POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
@@ -61,7 +63,8 @@ class Search:
         driver = self.linkage.driver
         if driver.kind != "turn" and driver.stroke is None:
             raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
-        if any(d.acceleration for d in self.linkage.drivers) and any(goal.of in FORCES for goal in self.goals):
+        timed = any(goal.of in (*FORCES, "speed") for goal in self.goals)
+        if timed and any(d.acceleration for d in self.linkage.drivers):
             raise Infeasible("task", f"{W}.accelerated", f"{W}.steady")
         self.program = self._program()
         self.coarse = self.program.without(CLOSELY)
@@ -257,15 +260,23 @@ class Search:
         return [float(value) for value in values]
 
     def _highest(self, x: Real, n: int) -> float:
-        """The largest value of a quantity that may jump: closer and closer about its highest place."""
-        shares, best = self.over(SCAN), -np.inf
+        """The largest value of a quantity that may jump: closer and closer about its highest places."""
+
+        def values(shares: Real) -> Real:
+            found = self.run(np.stack([x, x]), Places(shares, np.zeros(0)))
+            first: Real = _reader(found, n, slice(0, len(shares)))("y0")[0]
+            return first
+
+        scan = self.over(SCAN)
+        y = values(scan)
+        best, step = float(np.nanmax(y)), scan[1] - scan[0]
+        middle = scan[peaks_of(y, RIVALS, self.closed)]
         for _ in range(ZOOMS):
-            y = _reader(self.run(np.stack([x, x]), Places(shares, np.zeros(0))), n, slice(0, len(shares)))("y0")[0]
-            k = int(np.nanargmax(y))
-            best = max(best, float(y[k]))
-            step = shares[1] - shares[0]
-            shares = np.linspace(shares[k] - step, shares[k] + step, WINDOW)
+            shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
             shares = shares if self.closed else np.clip(shares, 0.0, 1.0)
+            there = values(shares.ravel()).reshape(shares.shape)
+            middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
+            best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
         return best
 
     def polished(self, x: Real) -> Real:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tmm_cli.linkage import FRAME
 
 if TYPE_CHECKING:
@@ -16,8 +18,11 @@ NONE = math.nan
 def stroke(results: Results) -> float:
     """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over the driver's own stroke."""
     if results.way is not None and not results.way.full:
-        main = next((t for t in results.travels if t.link == results.mechanism.output), None)
-        return main.high - main.low if main is not None else NONE
+        from tmm_cli.strokes import find_travel
+
+        way, link = results.way, results.mechanism.output
+        found = link and find_travel(results.linkage, results.kernels, np.array([way.start, way.end]), link)
+        return found.high - found.low if found else NONE
     strokes = results.strokes
     return strokes.travel if strokes is not None and strokes.strokes else NONE
 

@@ -61,14 +61,23 @@ def best(search: Search) -> Best:
 def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
     """The best of what the polish leads to from some starts, and of themselves."""
     found: list[tuple[float, float, Real, list[float]]] = []
-    for start in starts:
-        for x in (search.polished(start), start):
-            try:
-                values = search.exactly(x)
-            except ValueError:
-                continue
-            missed = float(sum(limit.missed(v) for limit, v in zip(search.limits, values[1:], strict=True)))
-            found.append((missed if missed > KEPT else 0.0, float(search.wanted(np.array(values[0]))), x, values))
+
+    def take(x: Real) -> None:
+        try:
+            values = search.exactly(x)
+        except ValueError:
+            return
+        missed = float(sum(limit.missed(v) for limit, v in zip(search.limits, values[1:], strict=True)))
+        found.append((missed if missed > KEPT else 0.0, float(search.wanted(np.array(values[0]))), x, values))
+
+    try:
+        for start in starts:
+            take(start)
+            take(search.polished(start))
+    except KeyboardInterrupt:
+        if not found:
+            raise
+        evolved = replace(evolved, stopped=True)
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
         raise Infeasible("vary", f"{W}.never", f"{W}.wider")

@@ -35,7 +35,7 @@ from tmm_cli.variants.way import Places, Way
 from tmm_cli.vectors import Real, Vector
 
 Program = Callable[[Real, Places], Mapping[str, Real]]
-SINGLE = (".table", ".ratio", "acceleration")  # numbers that every variant has alike
+SINGLE = (".table", "acceleration")  # numbers that every variant has alike
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Together:
         self.structure = mobile(ordinary)
         self.kernels = assemble(ordinary, self.structure)
         for path, number in numbers(make([Varied(x, x) for x in first])):
-            if isinstance(number, Varied) and any(part in path for part in SINGLE):
+            if isinstance(number, Varied) and (any(part in path for part in SINGLE) or path in _of_cycle(ordinary)):
                 raise DependsOnData(path)
         self.turns = Mechanism(ordinary, self.structure).way.turns
         at = np.array([ordinary.sketch.at])
@@ -181,3 +181,10 @@ class Together:
             else:
                 found.append(own)
         return flat, tuple(found)
+
+
+def _of_cycle(linkage: Linkage) -> set[str]:
+    """Numbers on which it hangs after how many turns all comes round: ratios of toothed wheels, speeds of drivers."""
+    ratios = {f"meshes[{k}].ratio" for k, mesh in enumerate(linkage.meshes) if mesh.kind == "gear"}
+    speeds = {"driver.rate", *(f"others[{k}].rate" for k in range(len(linkage.others)))} if linkage.others else set()
+    return ratios | speeds

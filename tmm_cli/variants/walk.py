@@ -24,6 +24,7 @@ from tmm_cli.vectors import Real, Vector, unit
 NODES = 72  # in a turn, or in a stroke
 CHANGES = 8  # steps from the first linkage to a variant
 ROUNDS = 7  # of Newton's method from node to node
+NEAR_END = 1e-9  # of the way: the sketch is at an end of it
 LEAP = 0.2  # a state so far from the expected one (sizes of the group, rad) is another
 FINER = 6  # parts of a step in which some variant has leapt
 CLOSED = 1e-6  # of a cycle: what is no farther off has come back
@@ -89,9 +90,9 @@ class Walked:
         low, at, high = (self.q[:, k][:, None] for k in (0, self.home, -1))
         after = len(self.q[0]) - 1 - self.home
         with np.errstate(all="ignore"):
-            place = np.where(
-                within >= at, self.home + (within - at) / (high - at) * after, (within - low) / (at - low) * self.home,
-            )  # fmt: skip
+            above = np.where(high > at, (within - at) / (high - at), 0.0) * after
+            below = np.where(at > low, (within - low) / (at - low), 0.0) * self.home
+            place = np.where(within >= at, self.home + above, below)
         place = np.clip(np.nan_to_num(place), 0, len(self.q[0]) - 1)
         node = np.minimum(place.astype(int), len(self.q[0]) - 2)
         share = place - node
@@ -124,11 +125,16 @@ def walk(make: Make, first: Real, numbers: Real, kernels: Sequence[Kernel], home
     start = replace(steps[-1], q=at)
     turns = max(1, round(float(np.max(way.span)) / (2 * np.pi))) if way.closed else 1
     count = NODES * turns
-    down = 0 if way.closed else count // 2
+    share = 0.0 if way.closed else float(np.mean((at[:, None] - way.low) / way.span))
+    down = (
+        round(count * share)
+        if share < NEAR_END or share > 1 - NEAR_END
+        else min(max(round(count * share), 1), count - 1)
+    )
     low, high = way.low, way.low + way.span
     q = np.concatenate(
         [low + (at[:, None] - low) * np.arange(down) / max(down, 1),
-         at[:, None] + (high - at[:, None]) * np.arange(count - down + 1) / (count - down)], axis=1,
+         at[:, None] + (high - at[:, None]) * np.arange(count - down + 1) / max(count - down, 1)], axis=1,
     )  # fmt: skip
     nodes: dict[int, Step] = {down: start}
     reached = np.zeros(q.shape, dtype=bool)
@@ -157,17 +163,18 @@ def _spread(home: Step, variants: int) -> Step:
 
 
 def _expected(past: Sequence[Step], q: Real) -> Step:
-    """What the last three steps lead to at q."""
+    """What the last three steps lead to at q; the last one itself where they are at one place."""
     past = list(past)[-3:]
 
     def on(values: Sequence[Any]) -> Any:
         total: Any = 0.0
-        for k, value in enumerate(values):
-            weight: Any = 1.0
-            for other in past[:k] + past[k + 1 :]:
-                weight = weight * (q - other.q) / (past[k].q - other.q)
-            total = total + weight * value
-        return total
+        with np.errstate(all="ignore"):
+            for k, value in enumerate(values):
+                weight: Any = 1.0
+                for other in past[:k] + past[k + 1 :]:
+                    weight = weight * (q - other.q) / (past[k].q - other.q)
+                total = total + weight * value
+        return np.where(np.isfinite(total), total, values[-1])
 
     return Step(
         q, {n: on([s.x[n] for s in past]) for n in past[0].x}, {n: on([s.turn[n] for s in past]) for n in past[0].turn}

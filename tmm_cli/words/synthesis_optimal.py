@@ -76,8 +76,8 @@ WORDS: dict[str, str] = {
     "sequential quadratic programming on the exact peaks",
     "synthesis_optimal.no_stroke": "how far the driver goes is wanted for an optimal synthesis",
     "synthesis_optimal.a_stroke": "a crank, or a driver with a stroke: driver: {{link: ..., stroke: [from, to]}}",
-    "synthesis_optimal.accelerated": "forces of a driver that is accelerated depend on where it starts, and "
-    "have no cycle",
+    "synthesis_optimal.accelerated": "forces and mean speeds of a driver that is accelerated depend on where it "
+    "starts, and have no cycle",
     "synthesis_optimal.steady": "drivers of constant speed, or other quantities",
     "synthesis_optimal.no_cycle": "this belongs to a driver that turns on and on, and this one has a stroke",
     "synthesis_optimal.a_crank": "another quantity, or a crank without a stroke",

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from tmm_cli.linkage import Linkage
+from tmm_cli.mobile import mobile
 from tmm_cli.problem.dimensions import KINDS
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.expressions import evaluate_quantity
@@ -177,8 +178,6 @@ def _kind_of(source: Any, sense: Sense) -> str | None:
 
 
 def _dimension(goal: Goal, linkage: Linkage) -> Dimension:
-    from tmm_cli.mobile import mobile
-
     return KINDS[goal.kind(linkage, mobile(linkage).solved)].dimension
 
 
@@ -195,8 +194,8 @@ def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int,
     if need := NEEDS.get(given.of):
         name = getattr(given, need) or ""
         known = {
-            "pair": [h.point for h in linkage.hinges] + [s.name for s in linkage.slides], "link": linkage.moving,
-            "point": [p for link in linkage.moving for p in linkage.links[link].points],
+            "pair": [pair.name for pair in mobile(linkage).pairs], "link": linkage.moving,
+            "point": list(dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points)),
         }[need]  # fmt: skip
         if not name:
             raise ProblemError(f"the key `{need}` is missing", path=(*path, need), allowed=", ".join(known))
@@ -207,7 +206,7 @@ def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int,
     if given.of == "law":
         dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
-    places = [sense.number(v, ANGLE, (*path, "at", n)) for n, v in enumerate(given.at)]
+    places = [_place(v, linkage, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
     if given.of in ("path", "law"):
         key = "through" if given.of == "path" else "values"
         if not wanted:
@@ -220,6 +219,20 @@ def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int,
     return Goal(
         given.of, name, tuple(given.links), tuple(map(float, places)), tuple(wanted), given.norm, given.relative
     )
+
+
+def _place(value: Any, linkage: Linkage, sense: Sense, path: tuple[str | int, ...]) -> float:
+    """A place of the driver, within its stroke if it has one."""
+    driver = linkage.driver
+    dimension = ANGLE if driver.kind == "turn" else LENGTH
+    found = sense.number(value, dimension, path)
+    if driver.stroke is not None and not driver.stroke[0] <= found <= driver.stroke[1]:
+        low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in driver.stroke)
+        raise ProblemError(
+            "the driver does not go there", path=path, found=quote(value),
+            allowed=f"a place of its stroke, {low} to {high} {sense.units.symbol(dimension)}",
+        )  # fmt: skip
+    return found
 
 
 def _bar() -> Callable[[int, int], None]:
