@@ -23,6 +23,7 @@ COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
     "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
 }  # fmt: skip
+BETWEEN = 12  # places along an edge that are tried for the notes
 LEADER = 4.0  # mm from which a line leads from a place to its label
 
 # Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
@@ -189,20 +190,23 @@ class Sheet:
             self.ground.boxes.append(about(at + share * width * complex(way) / abs(way), height, height))
 
     def corner(self) -> None:
-        """Put the notes into the emptiest corner."""
+        """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
         if not self.notes:
             return
-        width = max(len(t) for t in self.notes) * 2.0 + 5
+        width = max(label_extent(Label(t, 0j, 9, DARK))[0] for t in self.notes) + 5
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
-        corners = [complex(x, y) for y in (low.imag, high.imag - height) for x in (high.real - width, low.real)]
+        right, top = high.real - width, high.imag - height
+        fields = [complex(x, y) for y in (low.imag, top) for x in (right, low.real)]
+        fields += [complex(x, y) for y in (low.imag, top) for x in np.linspace(right, low.real, BETWEEN)]
+        fields += [complex(x, y) for x in (right, low.real) for y in np.linspace(low.imag, top, BETWEEN)]
         crowd = np.concatenate(self.ground.points) if self.ground.points else np.zeros(0, complex)
 
         def covered(c: complex) -> int:
             inside = (crowd.real > c.real - 2) & (crowd.real < c.real + width + 2)
             return int(np.count_nonzero(inside & (crowd.imag > c.imag - 2) & (crowd.imag < c.imag + height + 2)))
 
-        at = min(corners, key=covered)
+        at = min(fields, key=covered)
         self.axes.add_patch(
             Polygon(
                 [
