@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.labels import Label, aside, extent
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 from tmm_cli.vectors import Vector
 
@@ -12,6 +12,7 @@ OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line fr
 OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
+LETTERED = 6.0  # mm about a lettered place: its letter needs room there
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
 NAMES = "#7a3d99"
 
@@ -60,6 +61,8 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
             deep = ((crowd - z) * np.conj(side)).real
             beside = np.abs(((crowd - z) * np.conj(side)).imag)
             found += 0.5 * float(np.count_nonzero((deep > 4) & (deep < abs(end_ - z)) & (beside < 0.8)))
+        stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
+        found += 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
         for a, b, c, d in sheet.ground.boxes:
             for z in (first, last, middle, middle + v * width / 2, middle - v * width / 2):
                 found += 40.0 * (a - 1 < z.real < b + 1 and c - 1 < z.imag < d + 1)

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
+from matplotlib.textpath import TextPath
 
 from tmm_cli.draw.labels import Ground, Label, about, nearest
 from tmm_cli.draw.labels import extent as label_extent
@@ -18,6 +19,9 @@ from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
 from tmm_cli.words import say
 
 MM = 1 / 25.4  # inches
+POINTS = 72 * MM  # in a millimetre
+HINTED = 1.06  # pixels widen a text by up to this
+CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
@@ -193,7 +197,7 @@ class Sheet:
         """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
         if not self.notes:
             return
-        width = max(label_extent(Label(t, 0j, 9, DARK))[0] for t in self.notes) + 5
+        width = HINTED * max(TextPath((0, 0), t, size=9).get_extents().width for t in self.notes) / POINTS + 4
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
         right, top = high.real - width, high.imag - height
@@ -203,8 +207,9 @@ class Sheet:
         crowd = np.concatenate(self.ground.points) if self.ground.points else np.zeros(0, complex)
 
         def covered(c: complex) -> int:
-            inside = (crowd.real > c.real - 2) & (crowd.real < c.real + width + 2)
-            return int(np.count_nonzero(inside & (crowd.imag > c.imag - 2) & (crowd.imag < c.imag + height + 2)))
+            off = crowd - c - complex(width, height) / 2
+            across, up = width / 2 + CLEAR, height / 2 + CLEAR
+            return int(np.count_nonzero((np.abs(off.real) < across) & (np.abs(off.imag) < up)))
 
         at = min(fields, key=covered)
         self.axes.add_patch(
