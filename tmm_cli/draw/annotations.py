@@ -33,7 +33,7 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
     width, height = extent(label)
 
     tail = 2 * HEAD + 3 + width
-    fits = length > 2 * HEAD + 1 and length > width + 1
+    fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
     stands = ("between",) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
 
