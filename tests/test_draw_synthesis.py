@@ -6,14 +6,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 
 from tmm_cli import load, solve
-from tmm_cli.draw.construction import PAD, SMALLER, border, construction, granted, inside
+from tmm_cli.draw.construction import PAD, SMALLER, border, construction, field, granted, inside
 from tmm_cli.draw.lettering import rename
+from tmm_cli.draw.scheme import BOX
+from tmm_cli.draw.sheet import LOAD
 from tmm_cli.draw.synthesis import sheets
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.synthesis import (
+    burmester_lines,
     coupler_positions,
     crank_slider,
     four_bar_by_angles,
@@ -162,3 +166,68 @@ def test_the_history_is_never_empty():
     rows[2:, 1] = 0
     shown = history.diagram(rows, lambda f: f, 2.4, "length", "length")
     assert list(shown.lines[1].y[2:]) == [2.5, 2.5] and np.all(np.isnan(shown.lines[1].y[:2]))
+
+
+@pytest.mark.parametrize("k", [1.1, 1.3, 1.5, 2.0])
+def test_no_label_stands_on_the_hatching_of_a_guide(k):
+    for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.4, 0.6)):
+        sheet = construction("", one, UnitSystem())
+        guide = next(s for s in one.segments if s.style == "guide")
+        left, right = sorted(sheet.on(z).real for z in (guide.start, guide.end))
+        rail = sheet.on(guide.start).imag - BOX[1] / 2 - 0.5
+        for name, a, b, low, high in boxes(sheet.finish())[2:]:
+            if name not in {s.name for s in one.spots}:  # a point may be on the rail
+                assert min(b, right) - max(a, left) < 0.5 or min(high, rail) - max(low, rail - 1.5) < 0.3, name
+
+
+@pytest.mark.parametrize("rows", [
+    ((0, 0, 0), (50, 10, 20), (100, 50, 50), (120, 120, 90)),
+    ((-7, -21, 29), (45, -11, 31), (100, 20, 34), (169, -27, 63)),  # all round the curve within few degrees of a turn
+])  # fmt: skip
+def test_curves_of_four_positions_have_neither_gaps_nor_corners_and_pass_through_the_joints(rows):
+    places, angles = tuple((x + 1j * y) / 1000 for x, y, _ in rows), tuple(np.radians([r[2] for r in rows]))
+    for one in drawn(coupler_positions, places=places, angles=angles):
+        at = {spot.name: spot.at for spot in one.spots}
+        size = max(np.ptp(np.real(list(at.values()))), np.ptp(np.imag(list(at.values()))))
+        for name, joints in (("m", "AD"), ("k1", ("B1", "C1"))):
+            pieces = [np.array(curve.places) for curve in one.curves if curve.name == name]
+            for z in pieces:
+                near = np.abs(z - at["A"]) < 2 * size
+                steps = np.diff(z)
+                assert np.max(np.abs(steps)[near[1:]], initial=0) < 0.03 * size
+                bends = np.abs(np.angle(steps[1:] / steps[:-1]))[near[1:-1] & (np.abs(steps[1:]) > 1e-3 * size)]
+                assert np.max(bends, initial=0) < 0.1
+                ends = [z[0], z[-1]]  # a loop is closed, all else is followed beyond the sheet
+                assert abs(ends[0] - ends[1]) < 0.02 * size or min(abs(e - at["A"]) for e in ends) > 2 * size
+            for joint in joints:
+                assert min(np.min(np.abs(z - at[joint])) for z in pieces) < 0.01 * size
+
+
+def test_a_curve_that_comes_back_is_on_the_sheet_as_a_whole():
+    turn = np.exp(1j * np.linspace(0, 2 * np.pi, 400))
+    low, high = burmester_lines.frame(
+        [0j, 1 + 1j], [tuple(-0.4 + 0.8 * turn), tuple(np.linspace(0, 1.2, 50) * (3 + 0j))]
+    )
+    assert (low, high) == pytest.approx((-1.2 - 0.8j, 1.3 + 1j), abs=0.1)
+
+
+def test_a_size_too_short_for_its_text_has_it_beside_the_arrows():
+    (one,) = slider(1.02, 4.0)
+    sheet = construction("", one, UnitSystem())
+    size = next(s for s in one.sizes if s.name == "e")
+    middle = (sheet.on(size.start).imag + sheet.on(size.end).imag) / 2
+    _, left, right, low, high = next(text for text in boxes(sheet.finish()) if text[0].startswith("e = "))
+    assert right - left > high - low and low < middle < high
+
+
+@pytest.mark.parametrize("k, ratio, cut", [(1.08, 3.5, 1), (1.2, 3.0, 1), (1.8, 1.5, 0)])
+def test_an_arc_ends_in_an_arrow_where_the_edge_cuts_it(k, ratio, cut):
+    (one,) = slider(k, ratio)
+    sheet = construction("", one, UnitSystem())
+    low, high = field(sheet)
+    bold = [a for a in one.arcs if a.style == "bold"]
+    ends = [sheet.on(a.centre + a.radius * np.exp(1j * t)) for a in bold for t in (a.start, a.end)]
+    assert sum(not (low.real < z.real < high.real and low.imag < z.imag < high.imag) for z in ends) == cut
+    tips = [complex(*p.get_xy()[0]) for p in sheet.axes.patches if p.get_facecolor() == to_rgba(LOAD)]
+    assert len(tips) == cut
+    assert all(min((z - low).real, (high - z).real, (z - low).imag, (high - z).imag) < 1e-6 for z in tips)

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.labels import Label, aside, extent
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 from tmm_cli.vectors import Vector
 
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
 OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
-INNER = 3.2  # heads that fit between the extension lines
+INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
+LETTERED = 6.0  # mm about a lettered place: its letter needs room there
+UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
 NAMES = "#7a3d99"
 
 
 def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
-    """A dimension line beside two places (mm), where the least is in its way; text along it, above or left of it."""
+    """A dimension line beside two places (mm), where the least is in its way; text along it, above or left of it.
+
+    The text of a short one goes on along it, at whichever end is free, or stands beside an upright one.
+    """
     way = end - start
     way = way if along == 0 else along * float((way * np.conj(along)).real) / abs(along) ** 2
     length = abs(way)
@@ -27,50 +32,61 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
     label = Label(text, 0j, TEXT, DARK)
     width, height = extent(label)
 
-    def lines(side: complex, offset: float) -> tuple[complex, complex, complex]:
-        """Ends of the dimension line, middle of the text."""
+    tail = 2 * HEAD + 3 + width
+    fits = length > 2 * HEAD + 1 and length > width + 3
+    inner = length > INNER * HEAD
+    stands = ("between",) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
+
+    def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
+        """Ends of the dimension line, middle and direction of the text."""
         foot = max((z * np.conj(side)).real for z in (start, end)) + offset
         first, last = (z + (foot - (z * np.conj(side)).real) * side for z in (start, end))
-        fits = length > 2 * HEAD + 1 and length > width + 1
-        above = up_of(u)
-        middle = (first + last) / 2 if fits else last + u * (2 * HEAD + 1.5 + width / 2)
-        return first, last, middle + (height / 2 + 0.7) * above
+        middle = (first + last) / 2
+        if stand == "beside":
+            return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
+        if stand != "between":
+            reach = 2 * HEAD + 1.5 + width / 2
+            middle = last + u * reach if stand == "after" else first - u * reach
+        return first, last, middle + (height / 2 + 0.7) * up_of(u), u
 
-    def cost(side: complex, offset: float) -> float:
-        first, last, middle = lines(side, offset)
-        outer = 0.0 if length > INNER * HEAD else 3 * HEAD
+    def cost(side: complex, offset: float, stand: str) -> float:
+        first, last, middle, v = lines(side, offset, stand)
+        outer = 0.0 if inner else 2 * HEAD
+        low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         run = ((crowd - first) * np.conj(u)).real
         off = np.abs(((crowd - first) * np.conj(u)).imag)
-        found = float(np.count_nonzero((run > -outer - 1) & (run < length + outer + 1) & (off < 1.5)))
-        found += 2.0 * float(np.count_nonzero(_in_text(crowd, middle, u, width, height)))
+        found = float(np.count_nonzero((run > -low_run - 1) & (run < length + high_run + 1) & (off < 1.5)))
+        found += 2.0 * float(np.count_nonzero(_in_text(crowd, middle, v, width, height)))
         for z, end_ in ((start, first), (end, last)):
             deep = ((crowd - z) * np.conj(side)).real
             beside = np.abs(((crowd - z) * np.conj(side)).imag)
             found += 0.5 * float(np.count_nonzero((deep > 4) & (deep < abs(end_ - z)) & (beside < 0.8)))
+        stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
+        found += 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
         for a, b, c, d in sheet.ground.boxes:
-            for z in (first, last, middle, middle + u * width / 2, middle - u * width / 2):
+            for z in (first, last, middle, middle + v * width / 2, middle - v * width / 2):
                 found += 40.0 * (a - 1 < z.real < b + 1 and c - 1 < z.imag < d + 1)
         low, high = sheet.ground.low, sheet.ground.high
-        for z in (first, last, middle + u * width / 2, middle - u * width / 2):
+        for z in (first, last, middle + v * width / 2, middle - v * width / 2):
             found += 100.0 * (not (low.real < z.real < high.real and low.imag < z.imag < high.imag))
-        return found + 0.25 * offset
+        return found + 0.25 * offset + 2.0 * (stand == "before") + 1.0 * (stand == "after")
 
-    side, offset = min(((1j * u * s, o) for o in OFFSETS for s in (1, -1)), key=lambda one: cost(*one))
-    first, last, middle = lines(side, offset)
+    choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
+    side, offset, stand = min(choices, key=lambda one: cost(*one))
+    first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
             sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4)
-    if length > INNER * HEAD:
-        for tail, tip in ((last, first), (first, last)):
-            sheet.arrow(tail, tip, DARK, 0.6, 4.5)
-    else:  # heads from outside, on a line that goes on under the text
-        beyond = last + u * (2 * HEAD + 3 + width)
-        for tail, tip in ((first - 2 * HEAD * u, first), (last + 2 * HEAD * u, last)):
-            sheet.arrow(tail, tip, DARK, 0.6, 4.5)
-        sheet.line([first, beyond], DARK, 0.6, z=4.5)
-    if INNER * HEAD < length <= width + 1 or INNER * HEAD < length <= 2 * HEAD + 1:
-        sheet.line([last, last + u * (2 * HEAD + 3 + width)], DARK, 0.6, z=4.5)
-    sheet.along(middle, text, TEXT, u)
+    if inner:
+        for back, tip in ((last, first), (first, last)):
+            sheet.arrow(back, tip, DARK, 0.6, 4.5)
+    else:  # heads from outside
+        sheet.line([first, last], DARK, 0.6, z=4.5)
+        for back, tip in ((first - 2 * HEAD * u, first), (last + 2 * HEAD * u, last)):
+            sheet.arrow(back, tip, DARK, 0.6, 4.5)
+    if stand in ("after", "before"):  # the line goes on under the text
+        sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK, 0.6, z=4.5)
+    sheet.along(middle, text, TEXT, v)
 
 
 def up_of(u: complex) -> complex:

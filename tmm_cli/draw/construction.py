@@ -26,6 +26,8 @@ PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
 SMALLER = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
 FINE = 1.0  # mm between places along an arc
 QUIET = 12.0  # mm about a place on a curve that should be free for its name
+ON_EDGE = 1e-6  # mm from the edge of the field: a line is cut there
+ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
 EDGE = 4.0  # mm inside the field where curves are cut
 NAMES = "#7a3d99"
 
@@ -133,11 +135,30 @@ def _curve(
     for piece in pieces if not named else ():
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
         sheet.ground.points.append(np.array(piece))
+        for tip, before in ((piece[0], piece[1:]), (piece[-1], piece[-2::-1])):
+            _goes_on(sheet, tip, before, colour)
     if name and named and pieces:
-        places = [piece[int(share * (len(piece) - 1))] for piece in pieces for share in np.linspace(0.1, 0.9, 9)]
+        places = [place for piece in pieces for place in _evenly(piece)]
         crowd = np.concatenate(sheet.ground.points)
         free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < QUIET)), -abs(z)))
         sheet.labels.append(Label(name, free, 10, NAMES, "italic", far=True))
+
+
+def _goes_on(sheet: Sheet, tip: complex, before: Sequence[complex], colour: str) -> None:
+    """A small arrow at the end of a line, places before it given, if the edge of the field cuts it there."""
+    low, high = field(sheet)
+    if min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag) > ON_EDGE:
+        return
+    tail = next((z for z in before if abs(z - tip) > ARROW), None)
+    if tail is not None:
+        sheet.arrow(tip + ARROW * (tail - tip) / abs(tail - tip), tip, colour, 0.5, 2.1)
+
+
+def _evenly(piece: Sequence[complex]) -> list[complex]:
+    """Places along a line at even ways from each other."""
+    z = np.array(piece)
+    way = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
+    return [complex(np.interp(share * way[-1], way, z)) for share in np.linspace(0.1, 0.9, 17)]
 
 
 def _along(sheet: Sheet, arc: Arc) -> list[complex]:

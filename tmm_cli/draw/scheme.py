@@ -13,6 +13,7 @@ from tmm_cli.motion import Motion
 from tmm_cli.vectors import unit
 from tmm_cli.words import say
 
+STRIP = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 HINGE, BOX, STONE = 1.3, (9.0, 5.0), (7.5, 4.2)  # mm: radius of a hinge; length and width of a slider, a stone
 
 
@@ -229,12 +230,14 @@ def inside(sheet: Sheet, start: complex, end: complex) -> tuple[complex, complex
 
 
 def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
-    """Short slanted strokes on the side where the frame is."""
+    """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
     for k in range(number):
         foot = start + along * (k + 0.5) * abs(end - start) / number
-        sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=k % 2 == 0)
+        sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
+    for depth in STRIP:
+        sheet.ground.line(start + depth * outward, end + depth * outward)
 
 
 def reach(sheet: Sheet, motion: Motion, link: str, at: complex, k: int) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
+from matplotlib.textpath import TextPath
 
 from tmm_cli.draw.labels import Ground, Label, about, nearest
 from tmm_cli.draw.labels import extent as label_extent
@@ -18,11 +19,15 @@ from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
 from tmm_cli.words import say
 
 MM = 1 / 25.4  # inches
+POINTS = 72 * MM  # in a millimetre
+HINTED = 1.06  # pixels widen a text by up to this
+CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
     "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
 }  # fmt: skip
+BETWEEN = 12  # places along an edge that are tried for the notes
 LEADER = 4.0  # mm from which a line leads from a place to its label
 
 # Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
@@ -189,20 +194,24 @@ class Sheet:
             self.ground.boxes.append(about(at + share * width * complex(way) / abs(way), height, height))
 
     def corner(self) -> None:
-        """Put the notes into the emptiest corner."""
+        """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
         if not self.notes:
             return
-        width = max(len(t) for t in self.notes) * 2.0 + 5
+        width = HINTED * max(TextPath((0, 0), t, size=9).get_extents().width for t in self.notes) / POINTS + 4
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
-        corners = [complex(x, y) for y in (low.imag, high.imag - height) for x in (high.real - width, low.real)]
+        right, top = high.real - width, high.imag - height
+        fields = [complex(x, y) for y in (low.imag, top) for x in (right, low.real)]
+        fields += [complex(x, y) for y in (low.imag, top) for x in np.linspace(right, low.real, BETWEEN)]
+        fields += [complex(x, y) for x in (right, low.real) for y in np.linspace(low.imag, top, BETWEEN)]
         crowd = np.concatenate(self.ground.points) if self.ground.points else np.zeros(0, complex)
 
         def covered(c: complex) -> int:
-            inside = (crowd.real > c.real - 2) & (crowd.real < c.real + width + 2)
-            return int(np.count_nonzero(inside & (crowd.imag > c.imag - 2) & (crowd.imag < c.imag + height + 2)))
+            off = crowd - c - complex(width, height) / 2
+            across, up = width / 2 + CLEAR, height / 2 + CLEAR
+            return int(np.count_nonzero((np.abs(off.real) < across) & (np.abs(off.imag) < up)))
 
-        at = min(corners, key=covered)
+        at = min(fields, key=covered)
         self.axes.add_patch(
             Polygon(
                 [

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from tmm_cli.synthesis.burmester import Dyads, Poses, by_turn
+from tmm_cli.synthesis.burmester import Dyads, Poses
+from tmm_cli.synthesis.burmester_lines import frame, lines
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style
 
-FINE: Final = 2881  # turns at which the curves are computed
-AROUND: Final = 0.3  # how far beyond the four-bar the drawing of the curves goes, in its size
-FAR: Final = 8.0  # in the same: how far curves are followed
+CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
 
 
 def construction(
@@ -69,8 +68,8 @@ def construction(
         )  # fmt: skip
         return (Construction(title, tuple(segments), tuple(arcs), tuple(spots), tuple(sorted(kinds)), chain="four-bar",
                              values=values),)  # fmt: skip
-    ends = np.array([s.at for s in spots])
-    curves = _curves(poses, ends)
+    found = lines(poses, [s.at for s in spots])
+    curves = tuple(Curve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
     notes = (f"{words}.curves",)
     near = Construction(
         f"{words}.construction_4", tuple(segments), tuple(arcs), tuple(spots), notes, curves, chain="four-bar",
@@ -78,39 +77,8 @@ def construction(
     )  # fmt: skip
     few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
     links = [s for s in segments if s.style == "link"]
-    bar = np.array([s.at for s in few])
-    size = AROUND * max(np.ptp(bar.real), np.ptp(bar.imag)) * (1 + 1j)
-    frame = (complex(bar.real.min(), bar.imag.min()) - size, complex(bar.real.max(), bar.imag.max()) + size)
     wide = Construction(
         f"{words}.curves_alone", tuple(links), (), tuple(few), notes, curves, "curves", chain="four-bar",
-        around=frame,
+        around=frame([s.at for s in few], [line for row in found for line in row]),
     )  # fmt: skip
     return near, wide
-
-
-def _curves(poses: Poses, around: Any) -> tuple[Curve, ...]:
-    """Centre points (bold) and circle points in position 1 (dashed)."""
-    step = 2 * np.pi / FINE
-    turns = -np.pi + step * (np.arange(FINE) + 0.37)  # not just 0 or a turn of the plane: no link is told by these
-    size = max(np.ptp(around.real), np.ptp(around.imag))
-    box = (around.real.min() - FAR * size, around.real.max() + FAR * size,
-           around.imag.min() - FAR * size, around.imag.max() + FAR * size)  # fmt: skip
-    found: list[Curve] = []
-    for branch in (0, 1):
-        dyads = by_turn(poses, turns, branch)
-        kinds: tuple[tuple[Any, Style, str], ...] = (
-            (dyads.pivot, "bold", "m"), (poses.on_frame(dyads.pin)[..., 0], "dashed", "k1"),
-        )  # fmt: skip
-        for places, style, name in kinds:
-            for part in _parts(np.asarray(places, complex), box, 0.5 * size):
-                found.append(Curve(tuple(complex(p) for p in part), style, name))
-    return tuple(found)
-
-
-def _parts(places: Any, box: tuple[float, float, float, float], gap: float) -> list[Any]:
-    """Pieces of a curve inside a box, cut where neighbours are far apart."""
-    with np.errstate(all="ignore"):
-        inside = (places.real > box[0]) & (places.real < box[1]) & (places.imag > box[2]) & (places.imag < box[3])
-        near = inside[1:] & inside[:-1] & (np.abs(np.diff(places)) < gap)
-    cuts = np.flatnonzero(~near) + 1
-    return [part for part in np.split(places, cuts) if len(part) > 2]
