@@ -261,7 +261,7 @@ def test_a_narrow_terminal_breaks_the_table_of_schemes_and_cuts_nothing():
     text = console.export_text()
     assert all(len(line) <= 60 for line in text.splitlines())
     assert all(f"{i}-{j}" in text for scheme in found for i, j, _ in scheme.joints)
-    assert "0-1 1-2 0-3 2-3 3-4 2-5 4-5" in text
+    assert text.count("links/pairs") == 1  # words are broken rather than the table
 
 
 def test_the_command_counts_chains_by_assortment():

@@ -17,6 +17,7 @@ from tmm_cli.results.table import Column, Table, true_digits
 from tmm_cli.words import say
 
 MOST_ROWS = 120  # on a terminal; files have them all
+GAP = 3  # between columns
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
 
 
@@ -66,10 +67,9 @@ def show(
     for number, part in enumerate(_parts(table, told, console.width)):
         title = table.title if number == 0 else say("table.continued", title=table.title)
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-        for k in part:
+        for k, wide in zip(part, _widths(table, told, part, console.width), strict=True):
             words = table.columns[k].dimension is None
-            least = _least(told[k], words)
-            rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", min_width=least)
+            rich_table.add_column(Text(told[k][0]), justify="left" if words else "right", width=wide)
         for row in range(len(printed)):
             rich_table.add_row(*(Text(told[k][1][row]) for k in part))
         console.print(rich_table)
@@ -90,12 +90,24 @@ def _least(column: tuple[str, list[str]], words: bool) -> int:
     return max([len(part) for part in (*column[0].split(), *parts)], default=0)
 
 
+def _widths(table: Table, told: list[tuple[str, list[str]]], part: list[int], width: int) -> list[int]:
+    """Widths of columns beside each other: as their texts want, less of the widest where they do not fit."""
+    least = [_least(told[k], table.columns[k].dimension is None) for k in part]
+    wide = [max([len(text) for text in (told[k][0], *told[k][1])], default=0) for k in part]
+    while sum(wide) > width + 1 - GAP * len(part):
+        slack = [k for k in range(len(part)) if wide[k] > least[k]]
+        if not slack:
+            break
+        wide[max(slack, key=lambda k: wide[k])] -= 1
+    return wide
+
+
 def _parts(table: Table, told: list[tuple[str, list[str]]], width: int) -> list[list[int]]:
     """Columns that fit beside each other; what tells the rows apart stands in every part."""
     keys = 0
     while keys < len(told) and (table.columns[keys].dimension is None or keys == 1):
         keys += 1
-    wide = [_least(told[k], column.dimension is None) + 3 for k, column in enumerate(table.columns)]
+    wide = [_least(told[k], column.dimension is None) + GAP for k, column in enumerate(table.columns)]
     if keys == len(told):  # words only: the first column tells the rows apart
         if sum(wide) <= width + 1:
             return [list(range(len(told)))]
