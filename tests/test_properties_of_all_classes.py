@@ -84,7 +84,7 @@ def alike(one, other, *, spin=lambda v: v, sense=1, size=1.0, time=1, names=None
 
 
 @given(LINKAGES)
-@settings(max_examples=16, deadline=None)
+@settings(max_examples=14, deadline=None)
 def test_pairs_stay_closed_and_links_in_equilibrium(it):
     _, motion, loads, reactions = found(it)
     for hinge in it.hinges:
@@ -142,7 +142,7 @@ def in_equilibrium(it, motion, loads, reactions, name):
 
 
 @given(LINKAGES)
-@settings(max_examples=16, deadline=None)
+@settings(max_examples=14, deadline=None)
 def test_lever_and_powers_agree_with_the_force_plan(it):
     _, motion, loads, reactions = found(it)
     drivers = power(motion, reactions)
