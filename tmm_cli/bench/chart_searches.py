@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
 from tmm_cli.bench.chart import DARK, MM
+from tmm_cli.bench.chart_axes import bare
 from tmm_cli.bench.searches import NAMES, NEAR, PER_SECOND, Searches
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.words import say
@@ -32,13 +33,6 @@ def chart(measured: Searches) -> Figure:
     return figure
 
 
-def _bare(axes: Any, title: str) -> None:
-    axes.set_title(title, fontsize=10, loc="left")
-    axes.tick_params(labelsize=8)
-    axes.grid(True, color="#e2e2e2", lw=0.5)
-    axes.set_axisbelow(True)
-
-
 def _rates(axes: Any, measured: Searches) -> None:
     for name in NAMES:
         rates = [r for r in measured.rates if r.problem == name]
@@ -58,7 +52,7 @@ def _rates(axes: Any, measured: Searches) -> None:
     axes.set_xlabel(say("searches.axis_generation"), fontsize=9)
     axes.set_ylabel(say("searches.axis_rate"), fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    _bare(axes, say("searches.panel_rate"))
+    bare(axes, say("searches.panel_rate"))
 
 
 def _found(axes: Any, measured: Searches) -> None:
@@ -81,4 +75,4 @@ def _found(axes: Any, measured: Searches) -> None:
     axes.set_xlabel(say("searches.axis_evaluations"), fontsize=9)
     axes.set_ylabel(say("searches.axis_off"), fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    _bare(axes, say("searches.panel_found", near=measured.near, count=len(measured.found)))
+    bare(axes, say("searches.panel_found", near=measured.near, count=len(measured.found)))

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from tmm_cli.bench.chart import GREY, MM
+from tmm_cli.bench.chart_axes import bare
 from tmm_cli.bench.speed import Growth, Speed
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.words import say
@@ -32,13 +33,6 @@ def chart(speed: Speed) -> Figure:
     return figure
 
 
-def _bare(axes: Any, title: str) -> None:
-    axes.set_title(title, fontsize=10, loc="left")
-    axes.tick_params(labelsize=8)
-    axes.grid(True, color="#e2e2e2", lw=0.5)
-    axes.set_axisbelow(True)
-
-
 def _times(axes: Any, speed: Speed) -> None:
     for name, colour in COLOURS.items():
         races = [r for r in speed.races if r.mechanism == name and r.variants == 1]
@@ -53,7 +47,7 @@ def _times(axes: Any, speed: Speed) -> None:
     axes.set_xlabel(say("speed.positions"), fontsize=9)
     axes.set_ylabel(say("speed.axis"), fontsize=9)
     axes.legend(fontsize=8, frameon=False)
-    _bare(axes, say("speed.panel_time"))
+    bare(axes, say("speed.panel_time"))
 
 
 def _ratios(axes: Any, speed: Speed) -> None:
@@ -73,7 +67,7 @@ def _ratios(axes: Any, speed: Speed) -> None:
     axes.set_xlabel(f"{say('speed.variants')} x {say('speed.positions')}", fontsize=9)
     axes.set_ylabel(say("speed.axis_ratio"), fontsize=9)
     axes.legend(fontsize=8, frameon=False, ncol=3, loc="upper left")
-    _bare(axes, say("speed.panel_ratio"))
+    bare(axes, say("speed.panel_ratio"))
 
 
 def _growth(axes: Any, growth: Growth) -> None:
@@ -90,4 +84,4 @@ def _growth(axes: Any, growth: Growth) -> None:
     axes.set_xlabel(say(f"speed.{growth.what}"), fontsize=9)
     axes.set_ylabel(say("speed.axis_ms"), fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper left")
-    _bare(axes, say("speed.panel_growth", what=say(f"speed.{growth.what}"), exponent=growth.exponent))
+    bare(axes, say("speed.panel_growth", what=say(f"speed.{growth.what}"), exponent=growth.exponent))
