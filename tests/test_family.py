@@ -30,7 +30,7 @@ def maker(name, given):
         units = UnitSystem(shape.units)
         units = VariedUnits(units) if any(isinstance(x, Varied) for x in numbers) else units
         varied = {key: Quantity(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
-        return builder.variant(varied | resolve_parameters(rest, units, varied), units)
+        return builder.variant(varied | resolve_parameters(rest, units, varied), units).linkage
 
     return make, [known[key].value for key in given]
 

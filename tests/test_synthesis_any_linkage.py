@@ -14,6 +14,7 @@ from tmm_cli.batch import everything
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.synthesis.driven import asked_over, driven
 from tmm_cli.stack import changed, numbers
 from tmm_cli.synthesis.check import measured
 from tmm_cli.variants.apart import Apart
@@ -29,10 +30,6 @@ def text_of(name, *edits):
     return text
 
 
-def linkage_of(text):
-    return build(read_text(text, "x.yaml")).linkage
-
-
 ALIKE = {
     "press-class-iii": (),
     "cam-lever": (),
@@ -42,18 +39,20 @@ ALIKE = {
     "tilter": (("checks|output", "friction: {coefficient: 0.1, radius: 20}\noutput"),),
     "crank-slider-offset": (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),),
     "loader": (("speed: v}", "speed: v, stroke: [240, 300]}"),),  # the sketch is at its end
+    "clamp": (),  # through its positions
 }
 
 
 @pytest.mark.parametrize("name", ALIKE)
 def test_variants_solved_together_are_those_solved_one_by_one(name):
-    linkage = linkage_of(text_of(name, *ALIKE[name]))
+    problem = build(read_text(text_of(name, *ALIKE[name]), "x.yaml"))
+    linkage, over = problem.linkage, asked_over(None, problem.linkage.driver, problem)
     given = [(p, v) for p, v in numbers(linkage) if re.fullmatch(r"links\.[^0].*\.points\..*", p) and abs(v) > 0][:5]
     first = [abs(v) for _, v in given]
 
     def make(x):
         new = {path: v * (size / abs(v)) for (path, v), size in zip(given, x, strict=True)}
-        return replace(changed(linkage, new), sketch=linkage.sketch)
+        return driven(replace(problem, linkage=replace(changed(linkage, new), sketch=linkage.sketch)), over)
 
     def asked(motion, reactions):
         return {**everything(motion, reactions), "moves": motion.moving}
@@ -98,6 +97,22 @@ OPTIMAL = {
         "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"), (", acceleration: 20 rad/s.2", "")),
         "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.2 m/s}", "",
     ),
+    "speed of an accelerated crank": (
+        "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"),), "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.4 m/s}", "",
+    ),
+    "accelerated from the working stroke on": (
+        "crank-slider-offset", (("l: 190", "Q: 1"),), "{l: [180, 260]}", "moment",
+        "{of: reaction, pair: A, most: 5 kN}",
+    ),
+    "accelerated clockwise": (
+        "crank-slider-offset", (("l: 190", "Q: 1"), ("turns: ccw", "turns: cw"), (", when: working stroke", ""),
+                                ("from: working stroke", "from: 40 deg")), "{l: [180, 260]}", "moment", "",
+    ),
+    "acceleration": (
+        "crank-slider-offset", (("20 rad/s.2", "eps"),),
+        "{eps: [1 rad/s^2, 20 rad/s^2]}", "{of: reaction, pair: O, target: 500 N}", "",
+    ),
+    "slider through its positions": ("clamp", (("AB: 200, ", ""),), "{AB: [195, 205]}", "moment", ""),
 }  # fmt: skip
 
 
@@ -125,7 +140,19 @@ def test_a_stroke_has_no_k():
     with pytest.raises(ProblemError) as caught:
         build(read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", law, ""))), "x.yaml"))
     assert "the driver does not go there" in str(caught.value) and "0 to 120 mm" in str(caught.value)
+    for over, said, allowed in (
+        ("cycle", "the driver does not turn on and on", "stroke, positions or [from, to]"),
+        ("[10, 130]", "the driver does not go there", "places of its stroke, 0 to 120 mm"),
+        ("[30, 20]", "the lower end comes first", "[from, to]"),
+    ):
+        with pytest.raises(ProblemError) as caught:
+            text = text_of(
+                "cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", f"moment\n  over: {over}", ""))
+            )
+            build(read_text(text, "x.yaml"))
+        assert caught.value.message == said and caught.value.allowed == allowed
     with pytest.raises(ProblemError) as caught:
-        text = text_of("cylinder", edits[1], (r"points: \{", block("{AB: [240, 270]}", "mass", "")))
+        text = text_of("cylinder", edits[1], ("at: .0, 20.*120., detail: .3.", "count: 12"),
+                       (r"points: \{", block("{AB: [240, 270]}", "mass", "")))  # fmt: skip
         build(read_text(text, "x.yaml"))
     assert "how far the driver goes is wanted" in str(caught.value)

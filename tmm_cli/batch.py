@@ -139,11 +139,14 @@ def prepare(
 
 def solved(
     linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: Any, asked: Asked, forces: bool,
-    strokes: Strokes | None, *, blank: bool = True,
+    strokes: Strokes | None, *, blank: bool = True, start: Any = None,
 ) -> Mapping[str, Any]:  # fmt: skip
-    """The stages with time as the parameter of the motion, so that no transfer function needs be scaled."""
+    """The stages with time as the parameter of the motion, so that no transfer function needs be scaled.
+
+    start: where the driver's law begins (rad or m); in the sketch when left out.
+    """
     lead = linkage.driver
-    law = Law(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+    law = Law(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
     speed = law.speed(q)
     drives = {
         link: Drive(d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration))

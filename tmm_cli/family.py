@@ -26,11 +26,13 @@ class Iterated(ValueError):  # noqa: N818  it says what is the matter
     """Groups that are found by iteration, or friction, cannot be written on a tape."""
 
 
-def family(make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> Program:
+def family(
+    make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False, start: float | None = None
+) -> Program:
     """A program of the varying numbers, each (variants, 1), and the driver's places (positions,).
 
-    make: the linkage for given numbers, floats or Varied; first: those of the linkage whose assembly all have. Raises
-    Iterated, and what assembly raises.
+    make: the linkage for given numbers, floats or Varied; first: those of the linkage whose assembly all have; start:
+    where the driver's law begins, in the sketch when left out. Raises Iterated, and what assembly raises.
     """
     ordinary = make(first)
     structure = mobile(ordinary)
@@ -43,6 +45,6 @@ def family(make: Make, first: Sequence[float], asked: Asked, *, forces: bool = F
         stands = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
         linkage = replace(changed(varied, stands), sketch=ordinary.sketch)
         own = tuple(kernel.again(linkage) for kernel in kernels)
-        return solved(linkage, structure.again(linkage), own, data[-1], asked, forces, None, blank=False)
+        return solved(linkage, structure.again(linkage), own, data[-1], asked, forces, None, blank=False, start=start)
 
     return record(stages, *[1] * len(first), 2)

@@ -136,7 +136,7 @@ def find_pressure(
 ) -> tuple[Pressure, ...]:
     """The largest pressure angle of every driven link; allowed: of sliding and of turning links (rad)."""
     law = Law(way.start, 1.0, 0.0, 1)
-    ends = (way.end - way.start) * 1e-9 * (not way.full)
+    ends = (way.end - way.start) * 1e-9 * (not (way.full or way.inclusive))
     q = np.linspace(way.start + ends, way.end - ends, SCAN * way.turns + 1)
     scan = move(linkage, kernels, q, law, 0)  # statics needs no velocities
     found = []

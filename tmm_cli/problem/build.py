@@ -93,11 +93,11 @@ class _Builder:
                 raise error.at("parameters") from None
         self.sense = Sense(parameters, units)
 
-    def variant(self, parameters: dict[str, Quantity], units: UnitSystem) -> Linkage:
-        """The linkage with other parameters, for a synthesis that searches."""
+    def variant(self, parameters: dict[str, Quantity], units: UnitSystem) -> Problem:
+        """The file with other parameters, for a synthesis that searches."""
         other = copy(self)
         other.sense, other.synthesis = Sense(parameters, units), None
-        return other.problem().linkage
+        return other.problem()
 
     def problem(self) -> Problem:
         shape = self.shape

@@ -57,15 +57,10 @@ class Search:
         self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
         self.goals = (asked.objective, *(limit.goal for limit in self.limits))
         self.first = self._first()
-        self.linkage = asked.make(self.first)
+        self.variant = asked.make(self.first)
+        self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
         self._check_use()
-        driver = self.linkage.driver
-        if driver.kind != "turn" and driver.stroke is None:
-            raise Infeasible("task", f"{W}.no_stroke", f"{W}.a_stroke")
-        timed = any(goal.of in (*FORCES, "speed") for goal in self.goals)
-        if timed and any(d.acceleration for d in self.linkage.drivers):
-            raise Infeasible("task", f"{W}.accelerated", f"{W}.steady")
         self.program = self._program()
         self.coarse = self.program.without(CLOSELY)
         way = self.program.way(np.array([self.first]))
@@ -74,20 +69,26 @@ class Search:
         for at, goal in ((("objective",), self.goals[0]), *((limit.at, limit.goal) for limit in asked.limits)):
             if goal.of in CYCLIC and not self.closed:
                 raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
+            if goal.of == "speed" and not goal.slides(self.linkage, self.groups):
+                raise Infeasible(at, f"{W}.swings", f"{W}.slider")
         self.step = 1 / asked.positions
         loads = self.linkage.loads
         rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
+        self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
         self.overs = tuple(
-            Over(not goal.slides(self.linkage, self.groups), self.closed, self.cycle, rough, self._counts(goal))
+            Over(
+                not goal.slides(self.linkage, self.groups), self.closed and not (self.jumps and goal.of in FORCES),
+                self.cycle, rough, self._counts(goal),
+            )
             for goal in self.goals
-        )
+        )  # fmt: skip
 
     def sketch(self, x: Real) -> Sketch | None:
         """How a candidate looks at the place of the sketch, where the file's own sketch does not show its assembly."""
         numbers = self.numbers(x)
         own = self.program.sketch(numbers)
         try:
-            linkage = self.asked.make([float(number) for number in numbers])
+            linkage = self.asked.make([float(number) for number in numbers]).linkage
             shown = sketch_of(linkage, assemble(linkage, mobile(linkage)))
         except Refused:
             return own
@@ -134,7 +135,7 @@ class Search:
         refusal: Refused | None = None
         for share in shares:
             numbers = [float(x) for x in self.low + share * (self.high - self.low)]
-            linkage = self.asked.make(numbers)
+            linkage = self.asked.make(numbers).linkage
             try:
                 assemble(linkage, mobile(linkage))
             except Refused as error:
@@ -160,17 +161,22 @@ class Search:
         return (self.program if closely else self.coarse)(self.numbers(x), places)
 
     def over(self, count: int) -> Real:
-        """Shares of the way: of a closed one without its end."""
-        return np.arange(count) / (count if self.closed else count - 1)
+        """Shares of the way: of a closed one without its end, but after it where forces are others there."""
+        shares = np.arange(count) / (count if self.closed else count - 1)
+        return np.append(shares, 1.0) if self.jumps else shares
+
+    def along(self, n: int, count: int) -> slice:
+        """Which of these shares count for a goal."""
+        return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
     @cached_property
     def exact(self) -> list[slice]:
         """Where the places of the goals stand after those over the way; of a goal without any, the way."""
-        found, at = [], self.asked.positions
-        for goal in self.goals:
-            n = len(goal.places)
-            found.append(slice(at, at + n) if n else slice(0, self.asked.positions))
-            at += n
+        found, at = [], self.asked.positions + self.jumps
+        for n, goal in enumerate(self.goals):
+            count = len(goal.places)
+            found.append(slice(at, at + count) if count else self.along(n, self.asked.positions))
+            at += count
         return found
 
     @cached_property
@@ -220,9 +226,9 @@ class Search:
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
-            for name, k in goal.windows(_reader(found, n, slice(None)), self.overs[n]):
+            for name, k in goal.windows(_reader(found, n, self.along(n, SCAN)), self.overs[n]):
                 first = scan[k] - half
-                if not self.closed:
+                if not self.overs[n].closed:
                     first = min(max(first, 0.0), 1 - 2 * half)
                 blocks.append(first + step * np.arange(WINDOW))
                 own.append((name, float(first), slice(at, at + WINDOW)))
@@ -267,13 +273,13 @@ class Search:
             first: Real = _reader(found, n, slice(0, len(shares)))("y0")[0]
             return first
 
-        scan = self.over(SCAN)
+        scan, closed = self.over(SCAN)[self.along(n, SCAN)], self.overs[n].closed
         y = values(scan)
         best, step = float(np.nanmax(y)), scan[1] - scan[0]
-        middle = scan[peaks_of(y, RIVALS, self.closed)]
+        middle = scan[peaks_of(y, RIVALS, closed)]
         for _ in range(ZOOMS):
             shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
-            shares = shares if self.closed else np.clip(shares, 0.0, 1.0)
+            shares = shares if closed else np.clip(shares, 0.0, 1.0)
             there = values(shares.ravel()).reshape(shares.shape)
             middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
             best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)

@@ -129,6 +129,7 @@ class Goal:
                 found["run"] = output_place(motion, output)
             if self.of == "speed":
                 found["rate"] = linkage.driver.rate + 0.0 * found["slope"]
+                found["gain"] = linkage.driver.acceleration + 0.0 * found["slope"]
             return found
         if self.of == "law":
             return {"run": output_place(motion, self.name)}
@@ -152,7 +153,7 @@ class Goal:
                 travel[past] = swept(run[past])
             if self.of == "stroke":
                 return np.asarray(travel)
-            found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * read("rate")[:, 0] / over.cycle
+            found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * _mean_rate(read, over) / over.cycle
             return found
         return self.counted(self.deviations(read, over))
 
@@ -253,7 +254,7 @@ class Goal:
                     np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs
                 ]
                 whole = np.sum(np.abs(np.diff([*ends, ends[0]], axis=0)), axis=0)
-                speed: Real = whole * parts[0][2]("rate")[:, 0] / over.cycle
+                speed: Real = whole * _mean_rate(parts[0][2], over) / over.cycle
                 return speed[:, None]
             forward: Any = 0.0
             for _, start, read in parts:
@@ -266,6 +267,13 @@ class Goal:
         else:
             off = self.deviations(exact, over)
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
+
+
+def _mean_rate(read: Read, over: Over) -> Real:
+    """The crank's mean speed in the first cycle from position 0 on: half the sum of those at its ends, (variants,)."""
+    rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
+    found: Real = (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2
+    return found
 
 
 def points_of(linkage: Linkage) -> list[str]:

@@ -11,6 +11,7 @@ from tmm_cli.roots import least, top
 from tmm_cli.strokes import output_place
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.goals import FORCES, LEAST, PEAKS, PLAIN, Goal
+from tmm_cli.synthesis.measures import Ends
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:
@@ -18,26 +19,30 @@ if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
 
 SCAN = 1440  # places in a turn, or in a stroke
-OWN = {
-    "pressure": measures.pressure, "stroke": measures.stroke, "speed": measures.mean_speed, "k": measures.slower_ratio,
-}  # fmt: skip
+WAY = {"pressure": measures.pressure, "stroke": measures.stroke}
+CYCLE = {"speed": measures.mean_speed, "k": measures.slower_ratio}
 
 
-def measure(goal: Goal, results: Results) -> float:
-    """The value of a goal (SI, rad); nan where the mechanism has none."""
-    if goal.of in OWN:
-        return OWN[goal.of](results)
-    if not measures.goes_its_way(results):
+def measure(goal: Goal, results: Results, ends: Ends = None) -> float:
+    """The value of a goal (SI, rad) over the driver's way between two ends, else over its cycle.
+
+    nan where the mechanism has none.
+    """
+    if goal.of in CYCLE:
+        return CYCLE[goal.of](results)
+    if not measures.goes_its_way(results, ends):
         return measures.NONE
+    if goal.of in WAY:
+        return WAY[goal.of](results, ends)
     if goal.of in PLAIN:
         return float(_outputs(goal, results, np.array([results.start]))["value"])
     if goal.of in PEAKS:
-        total = sum(_peak(goal, results, name) for name in goal.curves)
+        total = sum(_peak(goal, results, ends, name) for name in goal.curves)
         return -total if goal.of in LEAST else total
-    return float(goal.counted(deviations(goal, results)[None, :])[0])
+    return float(goal.counted(deviations(goal, results, ends)[None, :])[0])
 
 
-def deviations(goal: Goal, results: Results) -> Real:
+def deviations(goal: Goal, results: Results, ends: Ends = None) -> Real:
     """Of a path or a law from each of what is wanted (m or rad)."""
     if goal.of == "law":
         off = output_place(_motion(results, np.array(goal.places)), goal.name) - np.array(goal.wanted)
@@ -47,7 +52,7 @@ def deviations(goal: Goal, results: Results) -> Real:
     if goal.places:
         apart: Real = np.abs(_motion(results, np.array(goal.places)).spot(goal.name) - np.array(goal.wanted))
         return apart
-    return np.array([_nearest(goal, results, wanted) for wanted in goal.wanted])
+    return np.array([_nearest(goal, results, ends, wanted) for wanted in goal.wanted])
 
 
 def _motion(results: Results, q: Real) -> Motion:
@@ -64,25 +69,27 @@ def _outputs(goal: Goal, results: Results, q: Real) -> Mapping[str, Any]:
     return goal.outputs(motion, reactions_of(motion, results.structure, results.strokes) if forces else None)
 
 
-def _highest(curve: Callable[[Real], Real], results: Results) -> float:
-    """The largest value of a curve over the driver's way."""
+def _highest(curve: Callable[[Real], Real], results: Results, ends: Ends) -> float:
+    """The largest value of a curve over the driver's way: in a cycle from position 0 on."""
     assert results.way is not None
-    full = results.way.full
-    low, high = (0.0, 2 * np.pi * results.way.turns) if full else (results.way.start, results.way.end)
-    q = np.linspace(low, high, SCAN * results.way.turns + 1) + (results.start if full else 0.0)
+    driver, turns = results.linkage.driver, results.way.turns
+    if ends is None and not results.way.full:
+        ends = results.way.start, results.way.end
+    low, high = ends or sorted((results.start, results.start + driver.sense * 2 * np.pi * turns))
+    q = np.linspace(low, high, SCAN * turns + 1)
     y = curve(q)
     k, step = int(np.nanargmax(y)), q[1] - q[0]
-    if not full and k in (0, len(q) - 1):
+    if (ends or driver.acceleration) and k in (0, len(q) - 1):
         return float(y[k])
     place, value = least(lambda x: -curve(x), q[k] - step, q[k] + step)
     place = top(lambda x: -curve(x), place, step)
     return float(max(curve(np.array([place]))[0], -value, y[k]))
 
 
-def _peak(goal: Goal, results: Results, name: str) -> float:
-    return _highest(lambda q: np.asarray(_outputs(goal, results, q)[name]), results)
+def _peak(goal: Goal, results: Results, ends: Ends, name: str) -> float:
+    return _highest(lambda q: np.asarray(_outputs(goal, results, q)[name]), results, ends)
 
 
-def _nearest(goal: Goal, results: Results, wanted: complex) -> float:
-    found = _highest(lambda q: -(np.abs(_motion(results, q).spot(goal.name) - wanted) ** 2), results)
+def _nearest(goal: Goal, results: Results, ends: Ends, wanted: complex) -> float:
+    found = _highest(lambda q: -(np.abs(_motion(results, q).spot(goal.name) - wanted) ** 2), results, ends)
     return float(np.sqrt(max(-found, 0.0)))

@@ -15,13 +15,16 @@ if TYPE_CHECKING:
 NONE = math.nan
 
 
-def stroke(results: Results) -> float:
-    """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over the driver's own stroke."""
-    if results.way is not None and not results.way.full:
+Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
+
+
+def stroke(results: Results, ends: Ends = None) -> float:
+    """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over a way of the driver."""
+    if results.way is not None and (ends or not results.way.full):
         from tmm_cli.strokes import find_travel
 
         way, link = results.way, results.mechanism.output
-        found = link and find_travel(results.linkage, results.kernels, np.array([way.start, way.end]), link)
+        found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
         return found.high - found.low if found else NONE
     strokes = results.strokes
     return strokes.travel if strokes is not None and strokes.strokes else NONE
@@ -39,31 +42,41 @@ def slower_ratio(results: Results) -> float:
     return max(k, 1 / k)
 
 
-def pressure(results: Results) -> float:
+def pressure(results: Results, ends: Ends = None) -> float:
     """The largest pressure angle on the output, rad."""
-    strokes = results.strokes
+    strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
-    found = [p.largest for p in results.pressure if p.link == link] or [p.largest for p in results.pressure]
+    if ends and results.motion is not None:
+        from tmm_cli.pressure import find_pressure
+        from tmm_cli.quality import Range
+
+        way, limits = Range(*ends, False, inclusive=True), results.problem.pressure_limits
+        over = find_pressure(results.linkage, results.kernels, way, results.motion, limits)
+    found = [p.largest for p in over if p.link == link] or [p.largest for p in over]
     return max(found, default=NONE)
 
 
 def mean_speed(results: Results) -> float:
-    """Mean speed of a sliding output over a turn of a crank of constant speed, m/s."""
-    strokes = results.strokes
-    if strokes is None or not strokes.strokes or strokes.kind != "slide" or results.linkage.driver.acceleration:
+    """Mean speed of a sliding output over a cycle, of an accelerated crank over the first from position 0 on, m/s."""
+    strokes, driver = results.strokes, results.linkage.driver
+    if strokes is None or not strokes.strokes or strokes.kind != "slide":
         return NONE
     way = math.fsum(abs(s.run) for s in strokes.strokes)
-    return way * results.linkage.driver.rate / strokes.cycle
+    last = driver.rate**2 + 2 * driver.acceleration * strokes.cycle
+    return NONE if last < 0 else way * (driver.rate + math.sqrt(last)) / (2 * strokes.cycle)
 
 
-def goes_its_way(results: Results) -> bool:
-    """Whether the driver turns fully, or goes the whole of its stroke."""
-    return results.way is not None and (results.way.full or results.way.inclusive)
+def goes_its_way(results: Results, ends: Ends = None) -> bool:
+    """Whether the driver turns fully, goes the whole of its stroke, or from one end to the other."""
+    way = results.way
+    if way is None:
+        return False
+    return way.full or (way.start <= ends[0] and ends[1] <= way.end if ends else way.inclusive)
 
 
-def crank_turns(results: Results) -> float:
+def crank_turns(results: Results, ends: Ends = None) -> float:
     """1 when it does, else 0."""
-    return float(goes_its_way(results))
+    return float(goes_its_way(results, ends))
 
 
 def end_angle(results: Results, near: float) -> float:

@@ -51,7 +51,7 @@ def best(search: Search) -> Best:
     for x, f in zip(evolved.population, evolved.objective, strict=True):
         if (
             len(starts) < STARTS
-            and not f - first > HOPE * abs(first)
+            and (f == first or not f - first > HOPE * abs(first))
             and all(np.max(np.abs(x - s)) > APART for s in starts)
         ):
             starts.append(x)

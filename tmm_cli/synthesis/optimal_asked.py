@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.goals import LEAST, Goal
+from tmm_cli.variants.way import Make
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,14 @@ class Limit:
 @dataclass(frozen=True)
 class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
-    order. target: the objective is to come near to this. positions: round the cycle, in the search.
+    order, with its way. target: the objective is to come near to this. positions: round the cycle, in the search.
     population, generations: 0 for as many as the number of parameters wants.
     """
 
     low: dict[str, float]
     high: dict[str, float]
     kinds: dict[str, str]
-    make: Callable[[Sequence[Any]], Linkage] = field(compare=False)
+    make: Make = field(compare=False)
     objective: Goal
     limits: tuple[Limit, ...] = ()
     target: float | None = None

@@ -11,7 +11,7 @@ from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.goals import FORCES, LEAST, PLAIN, Goal
 from tmm_cli.synthesis.history import diagram
 from tmm_cli.synthesis.measured_goals import measure
-from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.measures import Ends, crank_turns
 from tmm_cli.synthesis.reached import reached
 from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
 from tmm_cli.vectors import Real
@@ -33,13 +33,19 @@ def told(search: Search, found: Best) -> Outcome:
     for name, x, share in zip(asked.low, found.numbers, found.x, strict=True):
         word = "at_low" if share < ACTIVE else "at_high" if share > 1 - ACTIVE else "parameter"
         numbers.append(Value(name, float(x), asked.kinds[name], f"{W}.{word}"))
-    demands = [Demand(f"{W}.crank", 1.0, "number", crank_turns, asked=False)]
-    demands.append(_demand(search, 0, found.values[0], kinds[0], asked=False))
+    given_ends = asked.make([float(x) for x in found.numbers]).ends
+    ends = None if given_ends is None else (float(given_ends[0]), float(given_ends[1]))
+    if ends is not None:
+        slides = search.linkage.driver.kind == "slide"
+        given += [Value(name, x, "length" if slides else "angle", f"{W}.goes_{name}")
+                  for name, x in zip(("from", "to"), ends, strict=True)]  # fmt: skip
+    demands = [Demand(f"{W}.crank", 1.0, "number", partial(crank_turns, ends=ends), asked=False)]
+    demands.append(_demand(search, 0, found.values[0], kinds[0], ends, asked=False))
     for n, limit in enumerate(search.limits[1:], 2):
         if limit.equal:
-            demands.append(_demand(search, n, limit.least or 0.0, kinds[n], asked=True))
+            demands.append(_demand(search, n, limit.least or 0.0, kinds[n], ends, asked=True))
         else:
-            demands.append(_demand(search, n, found.values[n], kinds[n], asked=False))
+            demands.append(_demand(search, n, found.values[n], kinds[n], ends, asked=False))
     listings, drawings = (
         [_constraints(search, found, kinds)],
         [
@@ -65,10 +71,10 @@ def told(search: Search, found: Best) -> Outcome:
     )  # fmt: skip
 
 
-def _demand(search: Search, n: int, value: float, kind: str, *, asked: bool) -> Demand:
+def _demand(search: Search, n: int, value: float, kind: str, ends: Ends, *, asked: bool) -> Demand:
     goal = search.goals[n]
     at = 1e-6 if kind in ("length", "angle") and goal.of not in PLAIN else 0.0
-    return Demand(f"{W}.{_words(goal)}", value, kind, lambda results: measure(goal, results), asked=asked, at=at)
+    return Demand(f"{W}.{_words(goal)}", value, kind, partial(measure, goal, ends=ends), asked=asked, at=at)
 
 
 def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:

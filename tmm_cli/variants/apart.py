@@ -9,13 +9,13 @@ import numpy as np
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
-from tmm_cli.family import Make
 from tmm_cli.linkage import Sketch
 from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
 from tmm_cli.refused import Refused
+from tmm_cli.strokes import places as places_of
 from tmm_cli.variants.sketch import sketch_of
-from tmm_cli.variants.way import Places, Way
+from tmm_cli.variants.way import Make, Places, Way
 from tmm_cli.vectors import Real
 
 
@@ -28,7 +28,8 @@ class Apart:
 
     def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
         self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
-        self.ordinary = make(first)
+        self.variant = make(first)
+        self.ordinary = self.variant.linkage
         self.structure = mobile(self.ordinary)
         assemble(self.ordinary, self.structure)
         self.names = tuple(self._one(self.first, Places(np.zeros(1), np.zeros(0))))
@@ -36,7 +37,7 @@ class Apart:
     def way(self, columns: Real) -> Way:
         """The drivers' ways, as far as they can go round."""
         turns = Mechanism(self.ordinary, self.structure).way.turns
-        return Way.of(self.ordinary, len(columns), turns)
+        return Way.of(self.variant, len(columns), turns)
 
     def without(self, part: str) -> Self:
         """The same: what is not wanted costs little here."""
@@ -44,7 +45,7 @@ class Apart:
 
     def sketch(self, numbers: Real) -> Sketch:
         """How one variant looks at the place of the sketch. Raises what assembly raises."""
-        linkage = self.make([float(number) for number in numbers])
+        linkage = self.make([float(number) for number in numbers]).linkage
         return sketch_of(linkage, assemble(linkage, self.structure.again(linkage)))
 
     def about(self, numbers: Real) -> Self:
@@ -62,13 +63,18 @@ class Apart:
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
     def _one(self, numbers: Real, places: Places) -> dict[str, Real]:
-        linkage = self.make([float(x) for x in numbers])
+        variant = self.make([float(x) for x in numbers])
+        linkage = variant.linkage
         mechanism = Mechanism(linkage, self.structure.again(linkage))
         kernels, way = mechanism.kernels, mechanism.way
-        q = Way.of(linkage, 1, way.turns).at(places)[0]
-        strokes = mechanism.strokes if way.full and self.forces else None
+        strokes, start = mechanism.strokes if way.full and self.forces else None, None
+        if variant.accelerated:
+            begins = mechanism.strokes if variant.request.start == "working stroke" else None
+            start = float(places_of(variant.request, way, begins, linkage.driver.sense)[0])
+        q = Way.of(variant, 1, way.turns, start).at(places)[0]
         with np.errstate(all="ignore"):
             found = solved(
-                linkage, mechanism.structure, kernels, q, self.asked, self.forces, strokes, blank=True
+                linkage, mechanism.structure, kernels, q, self.asked, self.forces, strokes, blank=True,
+                start=start,
             )  # fmt: skip
         return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}

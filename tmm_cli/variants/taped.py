@@ -1,20 +1,20 @@
-"""Variants of a linkage by its tape: the fastest way, for groups in closed form whose crank turns round and round."""
+"""Variants of a linkage by its tape: the fastest way, for groups in closed form on a way that is the same for all."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from typing import Self
-
-import numpy as np
+from typing import Any, Self
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked
-from tmm_cli.family import Iterated, Make, family
+from tmm_cli.family import Iterated, family
 from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
+from tmm_cli.tape.varied import Varied
 from tmm_cli.variants.sketch import sketch_of
-from tmm_cli.variants.way import Places, Way
+from tmm_cli.variants.start import start_of
+from tmm_cli.variants.way import Make, Places, Way
 from tmm_cli.vectors import Real
 
 UNUSED = ("placed", "moving", "margin")
@@ -27,12 +27,18 @@ class Taped:
     """
 
     def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
-        self.ordinary = make(first)
+        self.make, self.variant = make, make(first)
+        self.ordinary = self.variant.linkage
         by_stroke = any(x.working_stroke_only or x.table is not None for x in self.ordinary.loads)
-        if self.ordinary.others or self.ordinary.driver.stroke is not None or (forces and by_stroke):
+        if self.ordinary.others or (forces and by_stroke):
             raise Iterated
-        program = family(make, first, asked, forces=forces)
-        self.make, self.kernels = make, assemble(self.ordinary, mobile(self.ordinary))
+        varied = make([Varied(x, x) for x in first])
+        start = start_of(varied)
+        if any(isinstance(x, Varied) for x in (start, *(varied.ends or ()))):
+            raise Iterated
+        self.start = start
+        program = family(lambda numbers: make(numbers).linkage, first, asked, forces=forces, start=start)
+        self.kernels = assemble(self.ordinary, mobile(self.ordinary))
         self.program = program.only(*(name for name in program.outputs if name not in UNUSED))
 
     @property
@@ -41,8 +47,8 @@ class Taped:
         return self.program.operations
 
     def way(self, columns: Real) -> Way:
-        """The crank's turn."""
-        return Way.of(self.ordinary, len(columns), 1)
+        """The crank's turn, or the way of the driver."""
+        return Way.of(self.variant, len(columns), 1, self.start)
 
     def without(self, part: str) -> Taped:
         """Without results whose names have such a part."""
@@ -52,7 +58,7 @@ class Taped:
 
     def sketch(self, numbers: Real) -> Sketch:
         """How one variant looks at the place of the sketch."""
-        linkage = self.make([float(number) for number in numbers])
+        linkage = self.make([float(number) for number in numbers]).linkage
         return sketch_of(linkage, [kernel.again(linkage) for kernel in self.kernels])
 
     def about(self, numbers: Real) -> Self:
@@ -60,5 +66,5 @@ class Taped:
         return self
 
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
-        q = np.concatenate([self.ordinary.sketch.at + 2 * np.pi * places.shares, places.driver])
+        q: Any = self.way(columns[:1]).at(places)[0]
         return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)

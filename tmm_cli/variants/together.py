@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
-from tmm_cli.family import Make
+from tmm_cli.family import Iterated
 from tmm_cli.groups.base import Dyad, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import Pose
@@ -25,13 +25,14 @@ from tmm_cli.mechanism import Mechanism
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Law, move
 from tmm_cli.stack import changed, numbers
-from tmm_cli.strokes import output_link
+from tmm_cli.strokes import Strokes, output_link
 from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.varied import Varied
 from tmm_cli.variants.sketch import sketch_of
+from tmm_cli.variants.start import start_of
 from tmm_cli.variants.strokes import find_strokes, spread
 from tmm_cli.variants.walk import Step, Walked, kernels_of, walk
-from tmm_cli.variants.way import Places, Way
+from tmm_cli.variants.way import Make, Places, Variant, Way
 from tmm_cli.vectors import Real, Vector
 
 Program = Callable[[Real, Places], Mapping[str, Real]]
@@ -74,18 +75,21 @@ class Together:
     """Called with numbers (variants, n) and places; gives what is asked, (variants, places), by name.
 
     All variants have the assembly that is led to from the first linkage's. Raises DependsOnData where a number that
-    varies is none of those that arrays can stand for, and what assembly raises.
+    varies is none of those that arrays can stand for, Iterated where each variant must go through its whole range, and
+    what assembly raises.
     """
 
     def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
         self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
-        self.ordinary = ordinary = make(first)
+        self.variant = make(first)
+        self.ordinary = ordinary = self.variant.linkage
         self.structure = mobile(ordinary)
         self.kernels = assemble(ordinary, self.structure)
         for path, number in numbers(make([Varied(x, x) for x in first])):
-            if isinstance(number, Varied) and (any(part in path for part in SINGLE) or path in _of_cycle(ordinary)):
+            single = any(part in path for part in SINGLE) or path in _of_cycle(ordinary)
+            if isinstance(number, Varied) and single:
                 raise DependsOnData(path)
-        self.turns = Mechanism(ordinary, self.structure).way.turns
+        self.turns = 1 if self.variant.ends else Mechanism(ordinary, self.structure).way.turns
         at = np.array([ordinary.sketch.at])
         poses = move(ordinary, self.kernels, at, Law(float(at[0]), 1.0, 0.0, 1), 0).poses
         links = [n for kernel in self.kernels for n in kernel.group.links]
@@ -98,17 +102,24 @@ class Together:
         self.by_strokes = forces and any(
             x.working_stroke_only or (x.table is not None and x.table.against != "crank angle") for x in ordinary.loads
         )
+        start_of(self.variant, 0.0)
+        if self.by_strokes and self.variant.ends and ordinary.driver.kind == "turn" and not ordinary.driver.stroke:
+            raise Iterated  # whether it has strokes hangs on whether its crank turns fully
 
-    def linkage(self, columns: Real) -> Linkage:
-        """A linkage of arrays (variants,), for numbers (variants, n)."""
+    def varied(self, columns: Real) -> Variant:
+        """A variant of arrays (variants,), for numbers (variants, n)."""
         varied = self.make([Varied(x, c) for x, c in zip(self.first, columns.T, strict=True)])
         arrays = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
-        found: Linkage = replace(changed(varied, arrays), sketch=self.ordinary.sketch)
-        return found
+        found: Variant = changed(varied, arrays)
+        return replace(found, linkage=replace(found.linkage, sketch=self.ordinary.sketch))
+
+    def linkage(self, columns: Real) -> Linkage:
+        """The same without its way."""
+        return self.varied(columns).linkage
 
     def way(self, columns: Real) -> Way:
         """The drivers' ways."""
-        return Way.of(self.linkage(columns), len(columns), self.turns)
+        return Way.of(self.varied(columns), len(columns), self.turns)
 
     def without(self, part: str) -> Self:
         """The same: what is not wanted costs little here."""
@@ -118,7 +129,7 @@ class Together:
         """How one variant looks at the place of the sketch."""
         one = numbers[None, :]
         walked = self._walked(one, self.way(one))
-        linkage = replace(self.make([float(number) for number in numbers]), sketch=self.ordinary.sketch)
+        linkage = replace(self.make([float(number) for number in numbers]).linkage, sketch=self.ordinary.sketch)
         kernels = []
         for kernel in kernels_of(linkage, self.kernels):
             if walked is not None and isinstance(kernel, Newton):
@@ -140,20 +151,27 @@ class Together:
         return self._found(columns, places, self._walked(columns, self.way(columns)))
 
     def _walked(self, columns: Real, way: Way) -> Walked | None:
-        return walk(self.linkage, self.first, columns, self.kernels, self.home, way) if self.walks else None
+        road = way.with_sketch(float(self.home.q))
+        return walk(self.linkage, self.first, columns, self.kernels, self.home, road) if self.walks else None
 
     def _found(self, columns: Real, places: Places, walked: Walked | None) -> dict[str, Real]:
-        way = self.way(columns)
-        strokes = None
-        if self.by_strokes and way.closed:
+        varied = self.varied(columns)
+        way, strokes, working = Way.of(varied, len(columns), self.turns), None, None
+        begins = varied.accelerated and varied.request.start == "working stroke"
+        if (self.by_strokes or begins) and way.closed:
             link = output_link(self.ordinary, self.structure.groups)
             strokes = find_strokes(lambda q: self._elements(columns, q, walked), way, self.ordinary, link)
+            working = _first_of(strokes, len(columns))
+        start = start_of(varied, working)
+        if start is not None:
+            way = Way.of(varied, len(columns), self.turns, start)
+            start = np.repeat(np.broadcast_to(start, len(columns)), places.count)
         q = way.at(places)
         flat, kernels = self._elements(columns, q, walked)
         with np.errstate(all="ignore"):
             found = solved(
                 flat, self.structure.again(flat), kernels, q.ravel(), self.asked, self.forces,
-                spread(strokes, q.shape[1]), blank=False,
+                spread(strokes if self.by_strokes else None, q.shape[1]), blank=False, start=start,
             )  # fmt: skip
         return {name: np.broadcast_to(value, q.size).reshape(q.shape) for name, value in found.items()}
 
@@ -181,6 +199,14 @@ class Together:
             else:
                 found.append(own)
         return flat, tuple(found)
+
+
+def _first_of(strokes: Strokes | None, variants: int) -> Real:
+    """Where the first stroke of each variant begins; nan where it has none."""
+    if strokes is None:
+        return np.full(variants, np.nan)
+    first = strokes.strokes[0]
+    return np.where(np.asarray(first.length) < 0, np.nan, first.start)
 
 
 def _of_cycle(linkage: Linkage) -> set[str]:

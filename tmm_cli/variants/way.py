@@ -1,13 +1,35 @@
-"""The way of the driver in many variants: a cycle of turns, or the stroke that each has."""
+"""The way of the driver in many variants: a cycle of turns, or from one end to the other that each has."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import Linkage, Request
 from tmm_cli.vectors import Real
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A linkage, the positions that its file asks for, and where its driver goes.
+
+    ends: from and to (rad or m); None: it turns on and on, and all comes round again.
+    """
+
+    linkage: Linkage
+    request: Request = field(default_factory=Request)
+    ends: tuple[Any, Any] | None = None
+
+    @property
+    def accelerated(self) -> bool:
+        """Whether its speed depends on where it started."""
+        return bool(self.linkage.driver.acceleration) and not self.linkage.others
+
+
+Make = Callable[[Sequence[Any]], Variant]
 
 
 @dataclass(frozen=True)
@@ -31,14 +53,22 @@ class Way:
     closed: bool
 
     @classmethod
-    def of(cls, linkage: Linkage, variants: int, turns: int) -> Way:
-        """turns: of a driver that has no stroke."""
+    def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> Way:
+        """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
         ones = np.ones((variants, 1))
-        stroke = linkage.driver.stroke
-        if stroke is None:
-            return cls(linkage.sketch.at * ones, 2 * np.pi * turns * ones, True)
-        low, high = (np.reshape(end, (-1, 1)) * ones for end in stroke)
+        if variant.ends is None:
+            sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
+            low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True)
+        low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
         return cls(low, high - low, False)
+
+    def with_sketch(self, at: float) -> Way:
+        """From the sketch round, or between the ends and the sketch: where variants are walked along."""
+        if self.closed:
+            return Way(np.full_like(self.low, at), self.span, True)
+        low, high = np.minimum(self.low, at), np.maximum(self.low + self.span, at)
+        return Way(low, high - low, False)
 
     def at(self, places: Places) -> Real:
         """Places of the driver, (variants, places)."""

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from tmm_cli.linkage import Linkage
 from tmm_cli.problem.arithmetic import Parser
 from tmm_cli.problem.errors import ProblemError, UnknownParameterError, nearest, quote
 from tmm_cli.problem.expressions import check_parameter, resolve_parameters
-from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.record import Problem, Synthesised
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block, reader
 from tmm_cli.problem.synthesis.bounded import Bounded
@@ -22,7 +21,7 @@ from tmm_cli.synthesis.record import Infeasible, sound
 from tmm_cli.words import say
 
 Parameters = dict[str, Quantity]
-Variant = Callable[[Parameters, UnitSystem], Linkage]
+Variant = Callable[[Parameters, UnitSystem], Problem]
 
 
 class OfTheFile(Exception):  # noqa: N818  it says whose the error is
@@ -37,7 +36,7 @@ def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: V
     """What the task is asked, in its own record. Raises ProblemError."""
     _, late, early, with_found = _parts(block, raw, units)
 
-    def linkage_of(found: Parameters, own: UnitSystem) -> Linkage:
+    def file_with(found: Parameters, own: UnitSystem) -> Problem:
         assert variant is not None
         try:
             return variant(with_found(found, own), own)
@@ -50,7 +49,7 @@ def asked(block: Block, raw: Mapping[str, object], units: UnitSystem, variant: V
         if search and variant is None:
             raise ProblemError("there is no linkage whose parameters could vary", allowed="links and a driver")
         sense = Sense(early, units) if search else Bounded(early, units)
-        return reader(block.task).asked(block, sense, *((linkage_of,) if search else ()))
+        return reader(block.task).asked(block, sense, *((file_with,) if search else ()))
     except Infeasible as error:
         raise _refused(error, block, units).at("synthesis") from None
     except OfTheFile as error:
@@ -80,7 +79,7 @@ def with_synthesis(
 ) -> tuple[Parameters, Synthesised]:  # fmt: skip
     """All parameters of the file, and what was found. Raises ProblemError.
 
-    variant: the file's linkage for other parameters, if it has one; known: what a search found already.
+    variant: the file with other parameters, if it has a linkage; known: what a search found already.
     """
     names, _, _, with_found = _parts(block, raw, units)
     if known is not None and getattr(reader(block.task), "SEARCH", False):

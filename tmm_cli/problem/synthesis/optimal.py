@@ -13,15 +13,18 @@ from tmm_cli.mobile import mobile
 from tmm_cli.problem.dimensions import KINDS
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.expressions import evaluate_quantity
+from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema import Name, Strict, Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.synthesis.build import OfTheFile
+from tmm_cli.problem.synthesis.driven import asked_over, driven, within
 from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
 from tmm_cli.problem.varied import VariedUnits
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal import Asked, Limit
 from tmm_cli.tape.varied import Varied
+from tmm_cli.variants.way import Make, Variant
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters
@@ -30,6 +33,9 @@ MOST_PLACES = 2_000_000_000  # positions of candidates: some minutes for a four-
 Of = Literal["length", "mass", "box", "pressure", "moment", "reaction", "margin", "stroke", "k", "speed", "path", "law"]
 NEEDS = {"reaction": "pair", "path": "point", "law": "link"}  # the key that names of what
 FULL = {"moment": "moment of force", "reaction": "force"}
+
+
+Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
 
 class Quality(Strict):
@@ -66,14 +72,17 @@ def _short(found: Any) -> Any:
 
 
 class Shape(Block):
-    """Parameters within bounds that make an objective least and keep constraints; the crank turns fully always."""
+    """Parameters within bounds that make an objective least and keep constraints; the driver goes its whole way."""
 
     task: Literal["optimal"]
-    vary: dict[Name, Annotated[list[Value], Field(min_length=2, max_length=2)]] = Field(
+    vary: dict[Name, Two] = Field(
         min_length=1, max_length=MOST, description="bounds by name of the parameter; bare numbers are lengths"
     )
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
+    over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
+        default=None, description="the driver's way: a cycle, its stroke, that of the file's positions, or [from, to]"
+    )
     positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
     population: int = Field(default=0, ge=0, le=10_000, description="in a generation; 0: 20 a parameter")
     generations: int = Field(default=0, ge=0, le=100_000, description="25 times the square of the number of parameters")
@@ -85,7 +94,7 @@ def parameters(shape: Shape) -> dict[str, str]:
     return dict.fromkeys(shape.vary, "length")
 
 
-def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity], UnitSystem], Linkage]) -> Asked:
+def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], UnitSystem], Problem]) -> Asked:
     """The task in SI. Raises ProblemError."""
     low, high, kinds = {}, {}, {}
     for name, (first, second) in shape.vary.items():
@@ -103,18 +112,24 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
     varied = VariedUnits(sense.units)
     names = [shape.names.get(name, name) for name in low]
 
-    def make(numbers: Sequence[Any]) -> Linkage:
+    def file(numbers: Sequence[Any]) -> Problem:
         units = varied if any(isinstance(x, Varied) for x in numbers) else sense.units
         dimensions = (KINDS[kind].dimension for kind in kinds.values())
-        return linkage_of({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
+        return file_with({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
-    middle = make([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)])
+    middles = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
+    over = asked_over(shape.over, file(middles).linkage.driver, sense)
+
+    def make(numbers: Sequence[Any]) -> Variant:
+        return driven(file(numbers), over)
+
+    middle = make(middles)
     _check_bounds(shape, make, low, high)
     limits = []
     for n, given in enumerate(shape.constraints):
         path: tuple[str | int, ...] = ("constraints", n)
         goal = _goal(given, middle, sense, path)
-        dimension = _dimension(goal, middle)
+        dimension = _dimension(goal, middle.linkage)
         sides = {
             key: sense.number(value, dimension, (*path, key))
             for key in ("least", "most", "equal") if (value := getattr(given, key)) is not None
@@ -129,7 +144,9 @@ def asked(shape: Shape, sense: Sense, linkage_of: Callable[[dict[str, Quantity],
         limits.append(Limit(goal, least, most, (*path, key)))
     objective = _goal(shape.objective, middle, sense, ("objective",))
     target = shape.objective.target
-    wanted = None if target is None else sense.number(target, _dimension(objective, middle), ("objective", "target"))
+    wanted = (
+        None if target is None else sense.number(target, _dimension(objective, middle.linkage), ("objective", "target"))
+    )
     return Asked(
         low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
         shape.generations, shape.seed, _bar(),
@@ -151,9 +168,7 @@ def _check_work(shape: Shape) -> None:
         )  # fmt: skip
 
 
-def _check_bounds(
-    shape: Shape, make: Callable[[Sequence[Any]], Linkage], low: dict[str, float], high: dict[str, float]
-) -> None:
+def _check_bounds(shape: Shape, make: Make, low: dict[str, float], high: dict[str, float]) -> None:
     """What the file refuses at a bound is said before the search. Raises ProblemError."""
     middle = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
     for n, ends in enumerate((low, high)):
@@ -181,7 +196,8 @@ def _dimension(goal: Goal, linkage: Linkage) -> Dimension:
     return KINDS[goal.kind(linkage, mobile(linkage).solved)].dimension
 
 
-def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int, ...]) -> Goal:
+def _goal(given: Quality, variant: Variant, sense: Sense, path: tuple[str | int, ...]) -> Goal:
+    linkage = variant.linkage
     own = {"pair", "point", "link", "links", "through", "values", "at", "relative", "norm"}
     takes = {"reaction": {"pair"}, "path": {"point", "through", "at", "norm"},
              "law": {"link", "values", "at", "relative", "norm"},
@@ -206,7 +222,7 @@ def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int,
     if given.of == "law":
         dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
-    places = [_place(v, linkage, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
+    places = [_place(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
     if given.of in ("path", "law"):
         key = "through" if given.of == "path" else "values"
         if not wanted:
@@ -221,17 +237,19 @@ def _goal(given: Quality, linkage: Linkage, sense: Sense, path: tuple[str | int,
     )
 
 
-def _place(value: Any, linkage: Linkage, sense: Sense, path: tuple[str | int, ...]) -> float:
-    """A place of the driver, within its stroke if it has one."""
-    driver = linkage.driver
-    dimension = ANGLE if driver.kind == "turn" else LENGTH
-    found = sense.number(value, dimension, path)
-    if driver.stroke is not None and not driver.stroke[0] <= found <= driver.stroke[1]:
-        low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in driver.stroke)
+def _place(value: Any, variant: Variant, sense: Sense, path: tuple[str | int, ...]) -> float:
+    """A place of the driver's way."""
+    turns = variant.linkage.driver.kind == "turn"
+    dimension = ANGLE if turns else LENGTH
+    found = within(float(sense.number(value, dimension, path)), variant.ends, turns=turns)
+    if found is None and variant.ends is not None:
+        low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in variant.ends)
+        of = "its stroke" if variant.ends == variant.linkage.driver.stroke else "its way"
         raise ProblemError(
             "the driver does not go there", path=path, found=quote(value),
-            allowed=f"a place of its stroke, {low} to {high} {sense.units.symbol(dimension)}",
+            allowed=f"a place of {of}, {low} to {high} {sense.units.symbol(dimension)}",
         )  # fmt: skip
+    assert found is not None
     return found
 
 
