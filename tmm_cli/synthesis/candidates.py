@@ -5,7 +5,7 @@ Coarsely from places all round the cycle, for the search; exactly from windows a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Final
 
@@ -18,13 +18,13 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.stack import numbers
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.readings import peaks_of
 from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.synthesis.usable import asked_goals, check_output, check_use
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.apart import Apart
 from tmm_cli.variants.sketch import alike, sketch_of
@@ -48,29 +48,33 @@ GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what 
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
+class NoneAssembled(Infeasible):
+    """No candidate that was tried can be assembled as it is sketched."""
+
+
 class Search:
     """A task ready for evaluation. Raises Infeasible."""
 
-    def __init__(self, asked: Asked) -> None:
+    def __init__(self, asked: Asked, first: Sequence[float] | None = None) -> None:
+        """first: numbers that can be assembled, if they are known."""
         self.asked = asked
         self.low, self.high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
         self.goals = (asked.objective, *(limit.goal for limit in self.limits))
-        self.first = self._first()
+        self.first = self._first() if first is None else list(first)
         self.variant = asked.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
-        self._check_use()
+        check_use(self)
+        check_output(self)
         self.program = self._program()
         self.coarse = self.program.without(CLOSELY)
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
         self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
-        for at, goal in ((("objective",), self.goals[0]), *((limit.at, limit.goal) for limit in asked.limits)):
+        for at, goal in asked_goals(self):
             if goal.of in CYCLIC and not self.closed:
                 raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
-            if goal.of == "speed" and not goal.slides(self.linkage, self.groups):
-                raise Infeasible(at, f"{W}.swings", f"{W}.slider")
         self.step = 1 / asked.positions
         loads = self.linkage.loads
         rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
@@ -93,16 +97,6 @@ class Search:
         except Refused:
             return own
         return None if alike(own, shown) else own
-
-    def _check_use(self) -> None:
-        """Every parameter changes something. Raises Infeasible."""
-        before = dict(numbers(self.linkage))
-        for k, name in enumerate(self.asked.low):
-            other = list(self.first)
-            other[k] = float(self.low[k] if abs(self.first[k] - self.low[k]) > abs(self.first[k] - self.high[k])
-                             else self.high[k])  # fmt: skip
-            if dict(numbers(self.asked.make(other))) == before:
-                raise Infeasible(("vary", name), f"{W}.unused", f"{W}.used")
 
     def _counts(self, goal: Goal) -> tuple[int, ...]:
         if goal.of == "box":
@@ -143,7 +137,7 @@ class Search:
             else:
                 return numbers
         assert refusal is not None
-        raise Infeasible("vary", f"{W}.no_assembly", f"{W}.other_sketch")
+        raise NoneAssembled("vary", f"{W}.no_assembly", f"{W}.other_sketch")
 
     def _outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -154,6 +148,11 @@ class Search:
     def numbers(self, x: Real) -> Real:
         """SI numbers of shares of the ranges."""
         found: Real = self.low + x * (self.high - self.low)
+        return found
+
+    def shares(self, numbers: Real) -> Real:
+        """Shares of the ranges at which numbers lie."""
+        found: Real = (numbers - self.low) / (self.high - self.low)
         return found
 
     def run(self, x: Real, places: Places, *, closely: bool = True) -> Mapping[str, Real]:
@@ -195,7 +194,7 @@ class Search:
             violation = sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True))
             lost = self.limits[0].missed(values[1]) * self.limits[0].scale
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
-            violation = np.where(np.isnan(violation), 1e6, violation)
+            violation = np.where(np.isfinite(violation), violation, 1e6)
             wanted = self.wanted(values[0])
             return np.where(np.isnan(wanted), np.inf, wanted), violation
 
@@ -293,7 +292,7 @@ class Search:
                 pieces = self.closely(x, narrow)
                 top = float(np.max(np.abs(self._pieces(pieces(x)[0])))) or 1.0
                 with np.errstate(all="ignore"):
-                    x = polish(lambda some: self._local(pieces(some), top), x)  # noqa: B023
+                    x = polish(lambda some: self._local(some, pieces(some), top), x)  # noqa: B023
             except np.linalg.LinAlgError:
                 return before
             if not narrow and float(np.max(np.abs(x - before))) < 1e-9:
@@ -308,7 +307,8 @@ class Search:
         squares = self.asked.objective.wanted and self.asked.objective.norm == "least squares"
         return objective**2 if squares else objective
 
-    def _local(self, found: list[Real], top: float) -> Local:
+    def _local(self, x: Real, found: list[Real], top: float) -> Local:
+        """What the polish needs of candidates x."""
         least, equal = [], []
         for limit, pieces in zip(self.limits, found[1:], strict=True):
             extreme = np.min if limit.goal.of in LEAST else np.max

@@ -150,7 +150,9 @@ class Goal:
             run = read("run")
             travel = np.max(run, axis=1) - np.min(run, axis=1)
             if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi
-                travel[past] = swept(run[past])
+                slope = read("slope")[past]
+                turns = np.all(slope > 0, axis=1) | np.all(slope < 0, axis=1)  # such an output has no strokes
+                travel[past] = np.where(turns & over.closed, np.nan, swept(run[past]))
             if self.of == "stroke":
                 return np.asarray(travel)
             found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * _mean_rate(read, over) / over.cycle

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.synthesis.candidates import Search, W
+from tmm_cli.synthesis.candidates import NoneAssembled, Search, W
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.record import Infeasible, Outcome
@@ -80,6 +80,8 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
         evolved = replace(evolved, stopped=True)
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
+        if evolved.violation[0] == 0.0:
+            raise Infeasible("objective", f"{W}.has_none", f"{W}.another")
         raise Infeasible("vary", f"{W}.never", f"{W}.wider")
     missed, _, x, values = min(found, key=lambda one: one[:2])
     return Best(x, search.numbers(x), values, missed, evolved)
@@ -89,11 +91,39 @@ def solve(asked: Asked) -> Outcome:
     """The task of one file. Raises Infeasible."""
     from tmm_cli.synthesis.optimal_told import told
 
-    search = Search(asked)
+    try:
+        search = Search(asked)
+    except NoneAssembled as refusal:
+        search = Search(asked, _within(asked, "vary", refusal.reason).tolist())
     found = best(search)
     if found.missed:
         found = _mended(search, found)
     return told(search, found)
+
+
+def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...], str]) -> Best:
+    """The best that is led to from what a search for the nearest bounds finds within the given ones.
+
+    Raises Infeasible, at a key and for a reason, with the bounds that it finds else.
+    """
+    again = _best_of(search, [search.shares(_within(search.asked, *refusal))], found.evolved)
+    if again.missed:
+        raise Infeasible(*refusal, f"{W}.wider")
+    return again
+
+
+def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real:
+    """Numbers within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
+    from tmm_cli.synthesis.wider import nearest
+
+    found = nearest(asked)
+    if found is None:
+        raise Infeasible(key, reason, f"{W}.other_sketch" if reason.endswith("no_assembly") else f"{W}.wider")
+    if found.beyond:
+        name, above, *_ = found.beyond[0]
+        words, values = found.told
+        raise Infeasible(("vary", name, int(above)) if key == "vary" else key, reason, f"{W}.{words}", values)
+    return found.numbers
 
 
 def _mended(search: Search, found: Best) -> Best:
@@ -103,9 +133,9 @@ def _mended(search: Search, found: Best) -> Best:
     """
     misses = [float(limit.missed(v)) for limit, v in zip(search.limits, found.values[1:], strict=True)]
     n = int(np.argmax(misses))
-    if n == 0:
-        raise Infeasible("vary", f"{W}.never", f"{W}.wider")
     limit = search.limits[n]
+    if n == 0 or np.isnan(found.values[n + 1]):
+        return _from(search, found, ("vary", f"{W}.never") if n == 0 else (limit.at, f"{W}.has_none"))
     bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
     kind = limit.goal.kind(search.linkage, search.groups)
@@ -114,7 +144,7 @@ def _mended(search: Search, found: Best) -> Best:
     except Infeasible:
         nearest = found
     if nearest.missed:  # the others contradict one another too
-        raise Infeasible(limit.at, f"{W}.unmet", f"{W}.others", {"value": (found.values[n + 1], kind)})
+        return _from(search, found, (limit.at, f"{W}.unmet"))
     if limit.missed(nearest.values[0]) <= KEPT:
         again = _best_of(search, [nearest.x], found.evolved)
         if not again.missed:

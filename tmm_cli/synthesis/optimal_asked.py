@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,10 +33,10 @@ class Limit:
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
 
     def missed(self, value: Any) -> Any:
-        """By how much, in shares of the scale; 0 where it is kept."""
+        """By how much, in shares of the scale; 0 where it is kept, inf where there is no such quantity."""
         low = 0.0 if self.least is None else self.least - value
         high = 0.0 if self.most is None else value - self.most
-        return np.maximum(np.maximum(low, high), 0.0) / self.scale
+        return np.nan_to_num(np.maximum(np.maximum(low, high), 0.0) / self.scale, nan=np.inf)
 
     def margin(self, value: float) -> float:
         """How far the value is from its nearer limit, in its unit."""
@@ -48,7 +48,8 @@ class Limit:
 class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
     order, with its way. target: the objective is to come near to this. positions: round the cycle, in the search.
-    population, generations: 0 for as many as the number of parameters wants.
+    accepts: whether the file takes such numbers. population, generations: 0 for as many as the number of parameters
+    wants.
     """
 
     low: dict[str, float]
@@ -62,4 +63,5 @@ class Asked:
     population: int = 0
     generations: int = 0
     seed: int = 1
+    accepts: Callable[[Sequence[float]], bool] = field(default=lambda numbers: True, compare=False)
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)

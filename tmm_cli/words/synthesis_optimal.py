@@ -78,6 +78,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.goes_to": "the driver goes to",
     "synthesis_optimal.no_cycle": "this belongs to a driver that turns on and on, and this one goes between two ends",
     "synthesis_optimal.a_crank": "another quantity, or a crank over its cycle",
+    "synthesis_optimal.no_output": "no link is the output, whose stroke this is",
+    "synthesis_optimal.an_output": "output: a link that slides or swings on the frame; or another quantity",
     "synthesis_optimal.swings": "the output swings: it has no mean speed in metres a second",
     "synthesis_optimal.slider": "an output that slides on the frame, or another quantity",
     "synthesis_optimal.no_assembly": "no linkage within these bounds can be assembled as it is sketched",
@@ -92,5 +94,9 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.wider": "other bounds",
     "synthesis_optimal.unmet": "no mechanism within the bounds was found that meets this and the other constraints",
     "synthesis_optimal.nearest": "with the others kept, the nearest is {value}",
-    "synthesis_optimal.others": "other bounds: the others cannot all be met either, and at best this comes to {value}",
+    "synthesis_optimal.another": "another quantity",
+    "synthesis_optimal.has_none": "no mechanism within the bounds was found that has this quantity",
 }
+for _count in range(1, 21):
+    _bounds = ", ".join(f"{{name{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
+    WORDS[f"synthesis_optimal.wider{_count}"] = f"wider bounds, the nearest: {_bounds}"

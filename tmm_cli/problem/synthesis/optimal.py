@@ -123,6 +123,13 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
     def make(numbers: Sequence[Any]) -> Variant:
         return driven(file(numbers), over)
 
+    def accepts(numbers: Sequence[float]) -> bool:
+        try:
+            make(numbers)
+        except (OfTheFile, ProblemError):
+            return False
+        return True
+
     middle = make(middles)
     _check_bounds(shape, make, low, high)
     limits = []
@@ -149,7 +156,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
     )
     return Asked(
         low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
-        shape.generations, shape.seed, _bar(),
+        shape.generations, shape.seed, accepts, _bar(),
     )  # fmt: skip
 
 

@@ -1,0 +1,68 @@
+"""Optimal synthesis within bounds that hold no mechanism: refused with the nearest bounds that hold one."""
+
+from __future__ import annotations
+
+import pytest
+
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+
+FOUR_BAR = """tmm: 1
+units: {{length: mm, angle: deg}}
+synthesis:
+  task: optimal
+  vary: {{l1: {l1}, l2: {l2}, l3: {l3}}}
+  objective: length
+  constraints: [{constraint}]
+points: {{O: [0, 0], D: [80, 0]}}
+links:
+  1: {{points: [O, A], length: l1}}
+  2: {{points: [A, B], length: l2}}
+  3: {{points: [D, B], length: l3}}
+driver: {{link: 1, speed: 60 rpm, turns: ccw}}
+sketch: {{at: 90 deg, B: [80, l3]}}
+output: 3
+"""
+
+
+def solved(constraint="", **bounds):
+    return build(read_text(FOUR_BAR.format(constraint=constraint, **bounds), "x.yaml")).synthesis.outcome
+
+
+def refused(constraint="", **bounds):
+    with pytest.raises(ProblemError) as caught:
+        solved(constraint, **bounds)
+    return caught.value
+
+
+def test_a_crank_that_cannot_turn_is_refused_with_the_nearest_bound():
+    """Grashof: l1 + 80 mm <= l2 + l3. By shares of the ranges l3 has the shortest way: to 65 + 80 - 70 = 75 mm."""
+    bounds = {"l1": "[65, 70]", "l2": "[60, 70]", "l3": "[50, 70]"}
+    error = refused(**bounds)
+    assert error.path == ("synthesis", "vary", "l3", 1)
+    assert error.message == "no mechanism within these bounds can go the whole way of its driver"
+    assert error.allowed == "wider bounds, the nearest: l3 to 75.0051 mm"
+    found = solved(**(bounds | {"l3": "[50, 75.0051]"}))
+    assert {v.name: round(float(v.value), 4) for v in found.found} == {"l1": 0.065, "l2": 0.07, "l3": 0.075}
+    refused(**(bounds | {"l3": "[50, 74.99]"}))
+
+
+def test_what_cannot_be_assembled_is_refused_with_the_nearest_bounds():
+    """The frame is 80 mm, and l2 + l3 must reach from D to A everywhere: l2 from 80 + 20 - 21 = 79 mm on."""
+    bounds = {"l1": "[20, 25]", "l2": "[30, 40]", "l3": "[20, 21]"}
+    error = refused(**bounds)
+    assert error.message == "no linkage within these bounds can be assembled as it is sketched"
+    assert error.allowed == "wider bounds, the nearest: l2 to 79.0391 mm"
+    solved(**(bounds | {"l2": "[30, 79.0391]"}))
+    refused(**(bounds | {"l2": "[30, 78.9]"}))
+
+
+def test_an_output_without_strokes_is_refused_with_bounds_that_give_it_some():
+    """With the frame the shortest link all links turn fully: a double crank."""
+    bounds = {"l1": "[90, 120]", "l2": "[60, 160]", "l3": "[85, 160]"}
+    error = refused("{of: stroke, least: 45 deg}", **bounds)
+    assert error.path == ("synthesis", "constraints", 0, "least")
+    assert error.message == "no mechanism within the bounds was found that has this quantity"
+    assert error.allowed == "wider bounds, the nearest: l1 from 79.9898 mm"
+    solved("{of: stroke, least: 45 deg}", **(bounds | {"l1": "[79.9898, 120]"}))

@@ -1,0 +1,173 @@
+"""The nearest bounds of an optimal synthesis that hold a mechanism which goes its way, where the given ones hold none.
+
+The same search over wider bounds, in which what lies beyond the given ones is made least.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.synthesis.candidates import Search
+from tmm_cli.synthesis.evolution import evolve
+from tmm_cli.synthesis.goals import Goal
+from tmm_cli.synthesis.optimal_asked import Asked
+from tmm_cli.synthesis.polish import Local
+from tmm_cli.synthesis.record import Infeasible, Shown
+from tmm_cli.vectors import Real
+
+TIMES = (3.0, 1.5, 1.1)  # as wide: of the larger bound, as far as the file takes it
+GENERATIONS = 120
+BEYOND = 1e-9  # shares of the range: what is less is within
+ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
+KEPT = 1e-7
+
+
+class Wider(Search):
+    """A task over other bounds, whose objective is by how much a candidate lies beyond those of `asked`.
+
+    In shares of the given ranges, summed up; sides: of each number whether it may lie below, within or above (-1, 0,
+    1), or anywhere (nan).
+    """
+
+    def __init__(self, asked: Asked, low: Real, high: Real, sides: Real) -> None:
+        self.own_low, self.own_high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
+        self.sides = sides
+        names = list(asked.low)
+        wide = replace(
+            asked, low=dict(zip(names, low.tolist(), strict=True)), high=dict(zip(names, high.tolist(), strict=True)),
+            objective=Goal("length"), target=None,
+        )  # fmt: skip
+        super().__init__(wide)
+
+    def beyond(self, x: Real) -> Real:
+        """(variants, n)"""
+        numbers, span = self.numbers(x), self.own_high - self.own_low
+        below, above = (self.own_low - numbers) / span, (numbers - self.own_high) / span
+        either = np.maximum(np.maximum(below, above), 0.0)
+        found: Real = np.where(
+            np.isnan(self.sides), either, np.where(self.sides > 0, above, np.where(self.sides < 0, below, 0))
+        )
+        return found
+
+    def wanted(self, value: Real) -> Real:
+        return value
+
+    def _evaluate(self, x: Real) -> tuple[Real, Real]:
+        return self.beyond(x).sum(axis=1), super()._evaluate(x)[1]
+
+    def exactly(self, x: Real) -> list[float]:
+        return [float(self.beyond(x[None]).sum()), *super().exactly(x)[1:]]
+
+    def _local(self, x: Real, found: list[Real], top: float) -> Local:
+        return replace(super()._local(x, found, top), pieces=self.beyond(np.atleast_2d(x)).sum(axis=1, keepdims=True))
+
+    def missed(self, values: list[float]) -> float:
+        """By how much the constraints are."""
+        return float(sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True)))
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind."""
+
+    numbers: Real
+    beyond: tuple[tuple[str, bool, float, str], ...]
+
+    @property
+    def told(self) -> tuple[str, dict[str, Shown]]:
+        """The end of the key of words that say so, and their values."""
+        values: dict[str, Shown] = {}
+        for n, (name, above, value, kind) in enumerate(self.beyond, 1):
+            values |= {
+                f"name{n}": (name, "word"), f"side{n}": ("to" if above else "from", "word"),
+                f"value{n}": (value, kind, "least" if above else "most"),
+            }  # fmt: skip
+        return f"wider{len(self.beyond)}", values
+
+
+def nearest(asked: Asked) -> Nearest | None:
+    """The nearest mechanism that goes its way and keeps the constraints, else one that goes its way; None: none found.
+
+    Near is what lies beyond the bounds by the least sum of shares of their ranges.
+    """
+    for limits in dict.fromkeys((asked.limits, ())):
+        found = _nearest(replace(asked, limits=limits))
+        if found is not None:
+            return found
+    return None
+
+
+def _nearest(asked: Asked) -> Nearest | None:
+    low, high = _widest(asked)
+    anywhere = np.full(len(low), np.nan)
+    try:
+        search = Wider(asked, low, high, anywhere)
+    except Infeasible:
+        return None
+    equal = any(limit.equal for limit in search.limits)
+    generations = min(search.generations, GENERATIONS)
+    evolved = evolve(
+        search.evaluate, len(low), population=search.population, generations=generations, seed=asked.seed,
+        shrinking=generations // 2 if equal else 0,
+    )  # fmt: skip
+    if not evolved.violation[0] < 1.0:
+        return None
+    numbers = search.numbers(evolved.population[0])
+    for _ in range(2):
+        numbers = _drawn(asked, search, numbers)
+    x = search.shares(numbers)
+    if not search.missed(search.exactly(x)) <= KEPT:
+        return None
+    span = search.own_high - search.own_low
+    beyond = []
+    for n, name in enumerate(asked.low):
+        for above, past in ((False, search.own_low[n] - numbers[n]), (True, numbers[n] - search.own_high[n])):
+            if past > BEYOND * span[n]:
+                value = float(numbers[n] + (ROOM if above else -ROOM) * past)
+                beyond.append((name, above, value, asked.kinds[name]))
+    return Nearest(numbers, tuple(beyond))
+
+
+def _drawn(asked: Asked, wide: Wider, numbers: Real) -> Real:
+    """As near as the polish leads from some numbers: those that lie within their bounds stay there."""
+    span = wide.own_high - wide.own_low
+    sides = np.where(
+        numbers > wide.own_high + BEYOND * span, 1.0, np.where(numbers < wide.own_low - BEYOND * span, -1.0, 0.0)
+    )
+    low = np.where(sides < 0, wide.low, np.where(sides > 0, wide.own_high, wide.own_low))
+    high = np.where(sides > 0, wide.high, np.where(sides < 0, wide.own_low, wide.own_high))
+    search = Wider(asked, low, high, sides)
+    start = np.clip(search.shares(numbers), 0.0, 1.0)
+    best, least = numbers, float(wide.beyond(wide.shares(numbers)[None]).sum())
+    for x in (start, search.polished(start)):
+        values: Any = search.exactly(x)
+        if search.missed(values) <= KEPT and values[0] <= least:
+            best, least = search.numbers(x), values[0]
+    return best
+
+
+def _widest(asked: Asked) -> tuple[Real, Real]:
+    """As wide bounds as the file takes: of lengths and the like that are above zero they stay so."""
+    low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
+    middle = (low + high) / 2
+    ends: tuple[Real, Real] = (low.copy(), high.copy())
+    for n in range(len(low)):
+        size = max(abs(low[n]), abs(high[n]))
+        for side, end in enumerate(ends):
+            for times in TIMES:
+                far = (
+                    high[n] + (times - 1) * size
+                    if side
+                    else low[n] / times
+                    if low[n] > 0
+                    else low[n] - (times - 1) * size
+                )
+                numbers = middle.copy()
+                numbers[n] = far
+                if asked.accepts(numbers.tolist()):
+                    end[n] = far
+                    break
+    return ends
