@@ -71,11 +71,11 @@ class Goal:
 
     def kind(self, linkage: Linkage, groups: Any) -> str:
         """Its dimension by name."""
-        slides = self.slides(linkage, groups)
+        slides, turns = self.slides(linkage, groups), linkage.driver.kind == "turn"
         own = {
-            "mass": "mass", "pressure": "angle", "moment": "moment of force", "reaction": "force", "margin": "number",
-            "crank": "number", "k": "number", "speed": "speed", "stroke": "length" if slides else "angle",
-            "law": "length" if slides else "angle",
+            "mass": "mass", "pressure": "angle", "moment": "moment of force" if turns else "force", "reaction": "force",
+            "margin": "number", "crank": "number", "k": "number", "speed": "speed",
+            "stroke": "length" if slides else "angle", "law": "length" if slides else "angle",
         }  # fmt: skip
         return own.get(self.of, "length")
 

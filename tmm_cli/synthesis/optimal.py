@@ -82,7 +82,7 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
     if not found:
         if evolved.violation[0] == 0.0:
             raise Infeasible("objective", f"{W}.has_none", f"{W}.another")
-        raise Infeasible("vary", f"{W}.never", f"{W}.wider")
+        raise Infeasible("vary", f"{W}.never", _other(f"{W}.never", search.closed))
     missed, _, x, values = min(found, key=lambda one: one[:2])
     return Best(x, search.numbers(x), values, missed, evolved)
 
@@ -108,8 +108,14 @@ def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...
     """
     again = _best_of(search, [search.shares(_within(search.asked, *refusal))], found.evolved)
     if again.missed:
-        raise Infeasible(*refusal, f"{W}.wider")
+        raise Infeasible(*refusal, _other(refusal[1], search.closed))
     return again
+
+
+def _other(reason: str, closed: bool) -> str:
+    """Words where no bounds that would do were found."""
+    own = {f"{W}.no_assembly": f"{W}.other_sketch", f"{W}.never": f"{W}.over" if closed else f"{W}.wider"}
+    return own.get(reason, f"{W}.wider")
 
 
 def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real:
@@ -118,7 +124,9 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
 
     found = nearest(asked)
     if found is None:
-        raise Infeasible(key, reason, f"{W}.other_sketch" if reason.endswith("no_assembly") else f"{W}.wider")
+        low, high = list(asked.low.values()), list(asked.high.values())
+        closed = asked.make([(a + b) / 2 for a, b in zip(low, high, strict=True)]).ends is None
+        raise Infeasible(key, reason, _other(reason, closed))
     if found.beyond:
         name, above, *_ = found.beyond[0]
         words, values = found.told

@@ -46,14 +46,8 @@ def told(search: Search, found: Best) -> Outcome:
             demands.append(_demand(search, n, limit.least or 0.0, kinds[n], ends, asked=True))
         else:
             demands.append(_demand(search, n, found.values[n], kinds[n], ends, asked=False))
-    listings, drawings = (
-        [_constraints(search, found, kinds)],
-        [
-            diagram(
-                found.evolved.history, partial(_in_its_unit, search), found.values[0], _words(search.goals[0]), kinds[0]
-            )
-        ],
-    )
+    listings, of = [_constraints(search, found, kinds)], _words(search, search.goals[0])
+    drawings = [diagram(found.evolved.history, partial(_in_its_unit, search), found.values[0], of, kinds[0])]
     for n, goal in enumerate(search.goals):
         if goal.wanted:
             listing, drawn = reached(search, found.x, n)
@@ -74,7 +68,7 @@ def told(search: Search, found: Best) -> Outcome:
 def _demand(search: Search, n: int, value: float, kind: str, ends: Ends, *, asked: bool) -> Demand:
     goal = search.goals[n]
     at = 1e-6 if kind in ("length", "angle") and goal.of not in PLAIN else 0.0
-    return Demand(f"{W}.{_words(goal)}", value, kind, partial(measure, goal, ends=ends), asked=asked, at=at)
+    return Demand(f"{W}.{_words(search, goal)}", value, kind, partial(measure, goal, ends=ends), asked=asked, at=at)
 
 
 def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:
@@ -83,7 +77,7 @@ def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:
     side = "target" if target is not None else "largest" if goal.of in LEAST else "smallest"
     best, state = found.values[0], f"{W}.objective"
     rows: list[tuple[Any, ...]] = [
-        (f"{W}.{_words(goal)}", _of(goal), f"{W}.{side}", target, best, None, kinds[0], state)
+        (f"{W}.{_words(search, goal)}", _of(goal), f"{W}.{side}", target, best, None, kinds[0], state)
     ]
     for n, limit in enumerate(search.limits[1:], 2):
         value = found.values[n]
@@ -94,7 +88,7 @@ def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:
             margin = None if limit.equal else value - bound if word == "least" else bound - value
             active = margin is not None and margin <= ACTIVE * limit.scale
             state = "equal" if limit.equal else "active" if active else "free"
-            rows.append((f"{W}.{_words(limit.goal)}", _of(limit.goal), f"{W}.{word}", bound, value,
+            rows.append((f"{W}.{_words(search, limit.goal)}", _of(limit.goal), f"{W}.{word}", bound, value,
                          0.0 if active else margin, kinds[n], f"{W}.{state}"))  # fmt: skip
     kinds_of = ("word", "name", "word", "mixed", "mixed", "mixed", "unit", "word")
     headers = ("quantity", "of", "limit", "bound", "value", "margin", "unit", "state")
@@ -102,8 +96,10 @@ def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:
     return Listing("constraints", f"{W}.constraints", columns, tuple(rows))
 
 
-def _words(goal: Goal) -> str:
-    """Whose deviations are counted in two ways says in which."""
+def _words(search: Search, goal: Goal) -> str:
+    """Whose deviations are counted in two ways says in which; a driver that slides is balanced by a force."""
+    if goal.of == "moment" and search.linkage.driver.kind == "slide":
+        return "moment_slide"
     return f"{goal.of}_largest" if goal.wanted and goal.norm == "largest" else goal.of
 
 

@@ -6,6 +6,7 @@ QUANTITIES: dict[str, str] = {
     "box": "box of the moving points, width + height",
     "pressure": "largest pressure angle",
     "moment": "largest balancing moment",
+    "moment_slide": "largest balancing force",
     "reaction": "largest reaction in the pair",
     "margin": "least distance from a dead position",
     "stroke": "stroke of the output",
@@ -91,7 +92,9 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
-    "synthesis_optimal.wider": "other bounds",
+    "synthesis_optimal.wider": "other bounds; none were found that are up to three times as wide",
+    "synthesis_optimal.over": "other bounds; or, where the crank is not to turn fully, over: [from, to] or "
+    "over: positions",
     "synthesis_optimal.unmet": "no mechanism within the bounds was found that meets this and the other constraints",
     "synthesis_optimal.nearest": "with the others kept, the nearest is {value}",
     "synthesis_optimal.another": "another quantity",
