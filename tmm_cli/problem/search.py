@@ -14,7 +14,7 @@ from tmm_cli.synthesis.optimal import Asked
 def search_of(tree: Tree) -> Asked:
     """The task of a file with an optimal synthesis. Raises ProblemError."""
     shape = schema.File.model_validate(tree.data)
-    builder = _Builder(shape.model_copy(update={"synthesis": None}), tree, extended=False)
+    builder = _Builder(shape.model_copy(update={"synthesis": None, "parameters": {}}), tree, extended=False)
     try:
         found = asked(shape.synthesis, shape.parameters, UnitSystem(shape.units), builder.variant)
     except ProblemError as error:

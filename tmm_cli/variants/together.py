@@ -36,6 +36,7 @@ from tmm_cli.variants.way import Make, Places, Variant, Way
 from tmm_cli.vectors import Real, Vector
 
 Program = Callable[[Real, Places], Mapping[str, Real]]
+OTHER, SAME = 1e-4, 1e-12  # relative: other numbers, and what leaves a number as it was
 SINGLE = (".table", "acceleration")  # numbers that every variant has alike
 
 
@@ -85,10 +86,11 @@ class Together:
         self.ordinary = ordinary = self.variant.linkage
         self.structure = mobile(ordinary)
         self.kernels = assemble(ordinary, self.structure)
-        for path, number in numbers(make([Varied(x, x) for x in first])):
-            single = any(part in path for part in SINGLE) or path in _of_cycle(ordinary)
-            if isinstance(number, Varied) and single:
-                raise DependsOnData(path)
+        alone = {path for path in self._varying() if any(part in path for part in SINGLE)}
+        if not self.variant.ends:
+            alone |= self._varying() & {f"linkage.{path}" for path in _of_cycle(ordinary)}
+        if alone:
+            raise DependsOnData(min(alone))
         self.turns = 1 if self.variant.ends else Mechanism(ordinary, self.structure).way.turns
         at = np.array([ordinary.sketch.at])
         poses = move(ordinary, self.kernels, at, Law(float(at[0]), 1.0, 0.0, 1), 0).poses
@@ -105,6 +107,13 @@ class Together:
         start_of(self.variant, 0.0)
         if self.by_strokes and self.variant.ends and ordinary.driver.kind == "turn" and not ordinary.driver.stroke:
             raise Iterated  # whether it has strokes hangs on whether its crank turns fully
+
+    def _varying(self) -> set[str]:
+        """Paths of the numbers that vary; one that is written with what varies may be the same for all."""
+        written = {path for path, x in numbers(self.make([Varied(x, x) for x in self.first])) if isinstance(x, Varied)}
+        steps = OTHER * np.sqrt(np.arange(2.0, len(self.first) + 2)) * np.where(self.first, self.first, 1.0)
+        before, after = (dict(numbers(self.make(x.tolist()))) for x in (self.first, self.first + steps))
+        return {path for path in written if abs(before[path] - after[path]) > SAME * abs(before[path])}
 
     def varied(self, columns: Real) -> Variant:
         """A variant of arrays (variants,), for numbers (variants, n)."""
