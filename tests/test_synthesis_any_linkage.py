@@ -94,7 +94,7 @@ OPTIMAL = {
         "{of: stroke, least: 30 deg}",
     ),
     "cam": ("cam-lever", (("rise: 20", "rise: h"), ("rise: -20", "rise: -h")), "{h: [10 deg, 20 deg]}",
-            "{of: stroke, target: 30}", ""),
+            "{of: stroke, target: 30}", "{of: k, most: 2}"),  # it rests between its strokes
     "speed": (
         "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"), (", acceleration: 20 rad/s.2", "")),
         "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.2 m/s}", "",

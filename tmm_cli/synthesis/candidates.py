@@ -6,7 +6,7 @@ Coarsely from places all round the cycle, for the search; exactly from windows a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +18,7 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
+from tmm_cli.synthesis.dwells import ratio
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
@@ -262,24 +263,27 @@ class Search:
             for n, goal in enumerate(self.goals):
                 if self.overs[n].rough and goal.of in FORCES:
                     values[n] = self._highest(x, n)
+                if goal.of == "k":
+                    resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])
+                    values[n] = values[n] if resting is None else resting
         return [float(value) for value in values]
+
+    def _along(self, x: Real, n: int, name: str, shares: Real) -> Real:
+        """An output of a goal for one candidate at shares of its way."""
+        found: Real = self.run(np.stack([x, x]), Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
+        return found
 
     def _highest(self, x: Real, n: int) -> float:
         """The largest value of a quantity that may jump: closer and closer about its highest places."""
 
-        def values(shares: Real) -> Real:
-            found = self.run(np.stack([x, x]), Places(shares, np.zeros(0)))
-            first: Real = _reader(found, n, slice(0, len(shares)))("y0")[0]
-            return first
-
         scan, closed = self.over(SCAN)[self.along(n, SCAN)], self.overs[n].closed
-        y = values(scan)
+        y = self._along(x, n, "y0", scan)
         best, step = float(np.nanmax(y)), scan[1] - scan[0]
         middle = scan[peaks_of(y, RIVALS, closed)]
         for _ in range(ZOOMS):
             shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
             shares = shares if closed else np.clip(shares, 0.0, 1.0)
-            there = values(shares.ravel()).reshape(shares.shape)
+            there = self._along(x, n, "y0", shares.ravel()).reshape(shares.shape)
             middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
             best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
         return best

@@ -68,11 +68,16 @@ def sums(parts: list[list[Real]]) -> Real:
 
 
 def forward_share(slope: Real) -> Real:
-    """Share of the cycle in which a curve rises, from its slope at equal steps."""
+    """Share of the time it moves in which a curve rises, from its slope at equal steps; in a dwell that is zero."""
     after = np.roll(slope, -1, axis=1)
     up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
     with np.errstate(all="ignore"):
-        found: Real = np.mean(up / (up + down), axis=1)
+        share = up / (up + down)
+        rests = up + down == 0
+        if not np.any(rests):
+            found: Real = np.mean(share, axis=1)
+        else:
+            found = np.sum(np.where(rests, 0.0, share), axis=1) / np.sum(~rests, axis=1)
     return found
 
 
