@@ -113,7 +113,7 @@ def test_a_second_run_is_the_same_to_the_byte(shaper, tmp_path):
 
 
 def test_a_run_takes_away_what_an_earlier_one_left_and_nothing_else(tmp_path):
-    text = SHAPER.read_text(encoding="utf-8")
+    text = (ROOT / "problems" / "crank-slider-offset.yaml").read_text(encoding="utf-8")
     problem = tmp_path / "mine.yaml"
     problem.write_text(text, encoding="utf-8")
     assert tmm("run", problem, "-o", tmp_path / "out").returncode == 0
