@@ -60,7 +60,7 @@ def _endless(asked: Asked) -> bool:
 
 def _sound(asked: Asked, scan: int) -> tuple[bool, bool]:
     """Whether there is a four-bar without defects, and whether its links are of sensible length."""
-    found = through(asked, scan)
+    found = through(asked)
     at = chosen(asked, found)
     if not 0 <= at < len(found) or quality(found[at], asked).defect:
         return False, False
