@@ -17,7 +17,7 @@ from tmm_cli.synthesis.parallelogram import parallelogram
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
 LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
-DEAD: Final = 1 - 1e-12  # cosine of a transmission angle that is none: 1e-6 rad
+DEAD: Final = 4e-15  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
 SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 
@@ -62,8 +62,8 @@ class Quality:
 
 @dataclass(frozen=True)
 class Many:
-    """Tasks alike but for their angles (rad; (tasks, pairs), span: (tasks, 2), zeros: (tasks,), None: to find) and their
-    lengths: row . (p, q, s) = value is the condition of two lengths given with two pairs, (tasks, 3) and (tasks,).
+    """Tasks alike but for their angles (rad; (tasks, pairs), span (tasks, 2), zeros (tasks,) or None: to find) and for
+    the ratio of two lengths, with two pairs: row . (p, q, s) = value, (tasks, 3) and (tasks,).
     """
 
     phi: Any
@@ -104,6 +104,7 @@ def qualities(found: Bars, asked: Many) -> Quality:
         on_frame = np.pi * (np.ceil(ends[:, :1] / np.pi) + np.arange(3))
         places = np.concatenate([ends, np.where(on_frame <= ends[:, 1:], on_frame, ends[:, :1])], axis=1)
         cosines = (l2 * l2 + l3 * l3 - (1 + l1 * l1 - 2 * l1 * np.cos(places))) / (2 * l2 * l3)
+        terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
         k = np.argmax(np.abs(cosines), axis=1)[:, None]
         sharpest = np.take_along_axis(np.abs(cosines), k, axis=1)[:, 0]
         b, c = found[:, None].pins(asked.phi, asked.psi)
@@ -113,7 +114,7 @@ def qualities(found: Bars, asked: Many) -> Quality:
         for given, zero in ((asked.phi0, found.phi0), (asked.psi0, found.psi0)):
             if given is not None:
                 turned |= np.cos(np.asarray(given - zero, dtype=float)) < 0
-    defect = np.where(branch, "branch", np.where(sharpest >= DEAD, "locks", ""))
+    defect = np.where(branch, "branch", np.where(1 - sharpest <= DEAD * terms[:, 0], "locks", ""))
     turns = four_bar(FourBar(l1[:, 0], l2[:, 0], l3[:, 0], np.ones(len(k)))).turns[:, 0]
     worst = np.take_along_axis(places, k, axis=1)[:, 0]
     return Quality(np.arccos(np.minimum(1.0, sharpest)), worst, defect, turns, turned)
@@ -149,8 +150,8 @@ def _of_two(asked: Many) -> Bars:
     phi, psi = asked.phi + phi0, asked.psi + psi0
     values = freudenstein.two(phi, psi, asked.row, asked.value)
     found = freudenstein.bars(np.concatenate([values, np.zeros((len(phi), 2))], -1), phi, psi)
-    given = (np.broadcast_to(zero, (len(phi), 1))[:, 0] for zero in (phi0, psi0))
-    return replace(found, **{name: getattr(found, name) + zero for name, zero in zip(("phi0", "psi0"), given, strict=True)})
+    given_phi, given_psi = (np.broadcast_to(zero, (len(phi), 1))[:, 0] for zero in (phi0, psi0))
+    return replace(found, phi0=found.phi0 + given_phi, psi0=found.psi0 + given_psi)
 
 
 def through(asked: Asked) -> list[Bars]:
