@@ -285,8 +285,8 @@ REFUSED = {
         "  found:   [70, 100]\n  allowed: input angles that only grow, or only fall; pair 2 has 80 deg",
     "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100":
         "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other assembly\n"
-        "  found:   [120, 100]\n  allowed: the last output angle 82.728 deg (69 deg for a least transmission angle of 4 deg); "
-        "or defects: keep",
+        "  found:   [120, 100]\n  allowed: the last output angle 82.728 deg (69 deg for a least transmission angle of "
+        "4 deg); or defects: keep",
     "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100":
         "synthesis.pairs[3]: no four-bar passes through these pairs\n"
         "  found:   [150, 80]\n  allowed: the last output angle 22.3152 deg",

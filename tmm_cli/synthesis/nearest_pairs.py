@@ -16,8 +16,8 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 
 W: Final = "synthesis_four_bar_by_angles"
 FIRST: Final = (0.1, 0.4)  # of all changes, which are tried before the others
-PARTS: Final = 24  # into which the way to the nearest change is divided,
-ROUNDS: Final = 6  # so often
+PARTS: Final = 8  # into which the way to the nearest change is divided,
+ROUNDS: Final = 9  # so often
 INWARDS: Final = 2e-6  # rad, or a share of a length, from where there is one first;
 INWARDS_ALL: Final = 1e-4  # of a change of all output angles, each of which is rounded
 ROUNDED: Final = 2e-5  # of a number: by so much it may be rounded when it is told
@@ -87,7 +87,7 @@ def _nearest(change: Change) -> Iterator[float]:
                 inwards = INWARDS if change.all is None else INWARDS_ALL
                 near = _edge(change, move, move - sign * change.step) + sign * inwards
                 rounded = near + sign * ROUNDED * (abs(change.value(near)) if change.kind == "angle" else 1.0)
-                if np.all(fit(change, [near, (near + rounded) / 2, rounded]).sensible):
+                if np.all(fit(change, [near, (near + rounded) / 2, rounded], closely=True).sensible):
                     yield near
             inside[sign] = here
 
@@ -96,7 +96,7 @@ def _edge(change: Change, inside: float, outside: float) -> float:
     """Where what is good inside begins."""
     for _ in range(ROUNDS):
         places = np.linspace(outside, inside, PARTS + 1)
-        good = fit(change, places[1:-1]).sensible
+        good = fit(change, places[1:-1], closely=True).sensible
         last = int(np.flatnonzero([True, *~good])[-1])
         outside, inside = places[last], places[last + 1]
     return float(inside)
@@ -112,7 +112,7 @@ def _told(change: Change, near: float) -> tuple[str, dict[str, Shown]]:
     words = "nearest"
     if change.kind == "length":
         words = "nearest_more" if sign > 0 else "nearest_less"
-    long = bool(fit(change, [near - sign * (INWARDS + BEYOND)]).good[0])
+    long = bool(fit(change, [near - sign * (INWARDS + BEYOND)], closely=True).good[0])
     usable = _usable(change, near)
     if usable is not None:
         values |= {"usable": (usable[0], change.kind), "transmission": (usable[1], "angle")}
@@ -130,7 +130,7 @@ def _usable(change: Change, near: float) -> tuple[float, float] | None:
         values = np.array([float(f"{x:.3g}") for x in limit * np.exp(sign * change.step * np.arange(1, TRIED))])
     moves = change.move(values)
     moves = moves[np.abs(moves) <= change.step * change.count]
-    found, own = fit(change, moves), float(fit(change, [near]).least[0])
+    found, own = fit(change, moves), float(fit(change, [near], closely=True).least[0])
     if not np.any(found.sensible):
         return None
     enough = min(USABLE, NEARLY * float(np.max(found.least[found.sensible])))

@@ -10,19 +10,18 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.freudenstein import Bars
-from tmm_cli.synthesis.pairs import LONGEST, Asked, many, qualities, quality, real, solutions
+from tmm_cli.synthesis.pairs import RATIOS, Asked, many, qualities, quality, real, solutions
 from tmm_cli.synthesis.parallelogram import parallelogram
 
 STEP: Final = np.radians(0.25)  # by which an angle is changed for the nearest task,
 WIDEST: Final = np.radians(60)  # and how far;
-COARSE: Final = np.radians(1)  # so with two pairs, for of
-FEW: Final = 60  # four-bars through each the best is sought then
+COARSE: Final = np.radians(1)  # so with two pairs, where one of so many
+FEW: Final = 14  # of the four-bars through each is looked at then
 SHARE: Final = 0.02  # by which a length, or all output angles, are changed, and
 TIMES: Final = 100.0  # how far;
 FACTOR: Final = 5.0  # so the steps of all output angles
 WHEELS: Final = (0.25, 0.5, 0.75, 1.25, 1.5, 2.0, 3.0, -0.25, -0.5, -0.75, -1.0, -1.5, -2.0)  # ratios of steps
 LINKS: Final = 50.0  # the longest link over the shortest of a four-bar that is worth while
-RATIOS: Final = np.geomspace(1 / LONGEST, LONGEST, FEW // 2)
 
 
 @dataclass(frozen=True)
@@ -60,21 +59,21 @@ class Fit:
     least: Any
 
 
-def fit(change: Change, moves: Any) -> Fit:
-    """What the changes are worth."""
+def fit(change: Change, moves: Any, closely: bool = False) -> Fit:
+    """What the changes are worth; closely: with all four-bars looked at among which the task itself seeks the best."""
     tasks = [change.task(float(move)) for move in moves]
     here = [k for k, task in enumerate(tasks) if task is not None]
     found = Fit(*(np.zeros(len(tasks), dtype=kind) for kind in (bool, bool, float)))
     if here:
-        own = _fit([task for task in tasks if task is not None])
+        own = _fit([task for task in tasks if task is not None], closely)
         for name, values in vars(own).items():
             getattr(found, name)[here] = values
     return found
 
 
-def _fit(tasks: list[Asked]) -> Fit:
+def _fit(tasks: list[Asked], closely: bool) -> Fit:
     given = many(tasks)
-    found = solutions(given, np.concatenate([-RATIOS[::-1], RATIOS]))
+    found = solutions(given, RATIOS if closely else RATIOS[::FEW])
     count, roots = found.l1.shape
     flat = Bars(*(np.asarray(value).ravel() for value in vars(found).values()))
     mark = qualities(flat, given[np.repeat(np.arange(count), roots)])
@@ -174,6 +173,6 @@ def fewer_points(asked: Asked) -> int | None:
             if zeros[name] is None and not (count == 4 and any(zero is not None for zero in zeros.values())):
                 zeros[name] = 0.0
         fewer = replace(asked, phi=tuple(phi), psi=tuple(psi), **zeros)
-        if _fit([fewer]).sensible[0]:
+        if _fit([fewer], True).sensible[0]:
             return count
     return None

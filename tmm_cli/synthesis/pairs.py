@@ -17,6 +17,8 @@ from tmm_cli.synthesis.parallelogram import parallelogram
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
 LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
+_POSITIVE: Final = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
+RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # their l4/l1, negative for a crank the other way
 DEAD: Final = 4e-15  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
 SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
@@ -178,12 +180,10 @@ def _best_of_two(asked: Asked) -> list[Bars]:
         mark = qualities(found, one[np.zeros(len(ratios), dtype=int)])
         return np.where(real(found), np.where(mark.defect != "", 4.0, 2.0 * mark.reversed) - mark.least, 9.0)
 
-    tried = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
-    tried = np.concatenate([-tried[::-1], tried])
-    values = badness(tried)
+    values = badness(RATIOS)
     k = int(np.argmin(values))
-    best = tried[k]
-    low, high = (tried[min(max(k + step, 0), len(tried) - 1)] for step in (-1, 1))
+    best = RATIOS[k]
+    low, high = (RATIOS[min(max(k + step, 0), len(RATIOS) - 1)] for step in (-1, 1))
     if low * high > 0:
         place, value = least(badness, low, high)
         best = place if value <= values[k] else best
