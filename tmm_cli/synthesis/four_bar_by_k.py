@@ -15,7 +15,7 @@ from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bo
 from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing
 from tmm_cli.synthesis.four_bar_level import level_places, nearest_sound
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 
 __all__ = ["PARAMETERS", "Asked", "Found", "arcs", "at", "bound", "choose", "places", "solve"]
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
@@ -177,10 +177,8 @@ def _within(asked: Asked, *ends: float) -> dict[str, Shown]:
 
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
-    for name in ("l1", "l2", "l3", "l4"):
-        value = getattr(asked, name)
-        if value is not None and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+    if not asked.l3 > 0:  # of the others the range is told that there is
+        raise Infeasible("l3", f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
     if not asked.k >= 1:
         _refuse_small(asked)
     psi1, widest_swing = float(asked.psi1), np.pi - 2 * ARC
@@ -188,6 +186,7 @@ def refuse(asked: Asked) -> None:
         ends = {"low": (psi1 - widest_swing, "angle", "least"), "high": (psi1 + widest_swing, "angle", "most")}
         raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (psi1, "angle"), **ends})
     theta, half = float(asked.theta), float(asked.swing) / 2
+    _refuse_sense(asked, theta, half)
     if theta > np.pi / 2 + half - ARC:
         way = 1 if asked.psi2 > asked.psi1 else -1
         swing = psi1 + way * (2 * theta - np.pi + 2 * ARC)
@@ -197,24 +196,35 @@ def refuse(asked: Asked) -> None:
         }
         words = "k_most_alone" if theta > np.pi - 2 * ARC else "k_most" if way > 0 else "k_most_down"
         raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", values)
-    if not arcs(asked):  # only the arc beyond C1C2 gives this sense
-        most = np.pi / 2 - half - ARC
-        values = {"k": (float(k_of(most)), "number", "most")}
-        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most" if most > 0 else f"{W}.sense_other", values)
     if theta == 0 and asked.choose == "best":
         raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
 
 
+def _refuse_sense(asked: Asked, theta: float, half: float) -> None:
+    """Only the arc beyond C1C2 gives a crank that turns against the rocker in the slow stroke, up to some k."""
+    way, most, other = 1 if asked.psi2 > asked.psi1 else -1, np.pi / 2 - half - ARC, np.pi / 2 + half - ARC
+    if asked.sense != -way or theta <= most:
+        return
+    values: dict[str, Shown] = {
+        "k": (float(k_of(most)), "number", "most"),
+        "other": (float(k_of(other)), "number", "most"),
+    }
+    words = ("k_most_alone" if theta > other else "sense_most") if most > 0 else (
+        "sense_both" if theta > other else "sense_other")  # fmt: skip
+    raise Infeasible("turns", f"{W}.sense", f"{W}.{words}", values)
+
+
 def _refuse_small(asked: Asked) -> None:
     """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
+    above = "_above" if asked.choose == "best" else ""
     if not asked.k > 0:
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero")
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero{above}")
     try:
         refuse(replace(asked, k=1 / asked.k))
     except Infeasible as error:
         if "k" not in error.values:
             raise
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range", {"k": error.values["k"]}) from None
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range{above}", {"k": error.values["k"]}) from None
     raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / asked.k, "number", "most")})
 
 

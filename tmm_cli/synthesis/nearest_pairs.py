@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import Final
 
@@ -50,6 +50,18 @@ def refuse_found(asked: Asked, found: list[Bars]) -> None:
         raise Infeasible("pairs", f"{W}.{reason}", f"{W}.all_{len(asked.psi)}{alone}", values)
     last: tuple[str | int, ...] = ("output",) if asked.function else ("pairs", len(asked.psi) - 1)
     raise Infeasible(last, f"{W}.{reason}", f"{W}.other{alone}")
+
+
+def refuse_inputs(asked: Asked, which: Sequence[int], error: Infeasible) -> None:
+    """The input does not go on one way, less than a turn: raises the error, with the nearest of these input angles (of
+    a function: of its ends) with which it does, and a sound four-bar passes.
+    """
+    inputs = [change for change in numbers(asked, np.pi) if "input" in change.words and change.key[1] in which]
+    near = [found for change in inputs if (found := _first([change])) is not None]
+    if not near:
+        raise error
+    words, values = _told(*min(near, key=lambda one: abs(one[1])))
+    raise Infeasible(error.path, error.reason, f"{W}.{words}_alone", values | error.values)
 
 
 def _first(changes: Iterable[Change]) -> tuple[Change, float] | None:

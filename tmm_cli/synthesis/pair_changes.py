@@ -79,7 +79,8 @@ def _fit(tasks: list[Asked], closely: bool) -> Fit:
     mark = qualities(flat, given[np.repeat(np.arange(count), roots)])
     with_crank = tasks[0].choose == "crank"
     worth = 4.0 * (with_crank & mark.crank) + 2.0 * ~mark.reversed + mark.least / np.pi  # as `chosen` orders them
-    worth = np.where(real(flat) & (mark.defect == ""), worth, -1.0).reshape(count, roots)
+    fair = real(flat) & ((mark.defect == "") | tasks[0].keep)
+    worth = np.where(fair, worth + 8.0 * (mark.defect == ""), -1.0).reshape(count, roots)
     best = np.arange(count), np.argmax(worth, axis=1)
     good, least, taken = worth[best] >= 0, mark.least.reshape(count, roots)[best], found[best]
     links = np.stack([np.ones(count), *(np.asarray(x, dtype=float) for x in (taken.l1, taken.l2, taken.l3))])
@@ -87,7 +88,8 @@ def _fit(tasks: list[Asked], closely: bool) -> Fit:
     for k, task in enumerate(tasks):
         if (any_one := parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
             own = quality(any_one, task)
-            good[k], sensible[k], least[k] = not own.defect, not own.defect, own.least
+            good[k] = sensible[k] = task.keep or not own.defect
+            least[k] = own.least
     return Fit(good, sensible, least)
 
 
@@ -122,8 +124,8 @@ def _moved(asked: Asked, name: str, which: int, move: float) -> Asked | None:
         return replace(asked, function=function, phi=tuple(phi), psi=tuple(psi))
     row = changed(getattr(asked, name))
     if name == "phi":
-        steps = np.diff(np.asarray(row, dtype=float)) * np.sign(float(asked.phi[1] - asked.phi[0]))
-        if not (np.all(steps > 0) and np.sum(steps) < 2 * np.pi):
+        steps = np.diff(np.asarray(row, dtype=float))
+        if not (np.all(steps > 0) or np.all(steps < 0)) or abs(np.sum(steps)) >= 2 * np.pi:
             return None
     return replace(asked, **{name: row})
 

@@ -54,6 +54,7 @@ WORDS: dict[str, str] = {
     f"{_W}.one_turn": "less than a turn from the first to the last input angle",
     f"{_W}.positive": "there is no such link",
     f"{_W}.more_than_zero": "more than zero",
+    f"{_W}.at_least": "{least} or more",
     f"{_W}.none": "no four-bar passes through these pairs",
     f"{_W}.all_branch": "branch defect: every four-bar through these pairs has some of them on its other assembly",
     f"{_W}.all_locks": "order defect: the input of every four-bar through these pairs locks on the way",
@@ -69,7 +70,8 @@ WORDS: dict[str, str] = {
     f"{_W}.reversed": "a zero angle is half a turn from the given one: in the given sense there is no such link",
     f"{_W}.its_branch": "branch defect: this solution has some pairs on its other assembly",
     f"{_W}.its_locks": "order defect: the input of this solution locks on the way",
-    f"{_W}.another": "another number; or choose: transmission; or defects: keep",
+    f"{_W}.another": "{numbers}; or choose: transmission; or defects: keep",
+    f"{_W}.keep": "defects: keep; every other solution has a defect too",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
 }
