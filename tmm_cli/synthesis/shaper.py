@@ -8,7 +8,7 @@ D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -21,6 +21,8 @@ from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Show
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 W: Final = "synthesis_shaper"
+SHORT: Final = 1e-3  # rad: a swing that leaves room for all that can be asked; a share of one so near to half a turn
+HALVINGS: Final = 60
 
 
 @dataclass(frozen=True)
@@ -84,8 +86,7 @@ def refuse(asked: Asked) -> None:
         raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if 0 < asked.k < 1 else f"{W}.k_more", values)
     half = float(theta_of(asked.k)) / 2
     if not np.pi - 2 * half > slotted_lever.STRAIGHT:
-        values = {"k": (float(k_of(np.pi - slotted_lever.STRAIGHT)), "number", "below")}
-        raise Infeasible("k", f"{W}.straight", f"{W}.k_most", values)
+        raise Infeasible("k", f"{W}.straight", f"{W}.k_most", {"k": (_largest_k(asked), "number", "below")})
     most, share = 1 / (1 + np.sin(half)), np.sin(half / 2) ** 2 / np.cos(half)
     if not asked.stroke > 0:
         _refuse_stroke(asked, 2 * float(np.sin(half)), most, share)
@@ -111,6 +112,25 @@ def refuse(asked: Asked) -> None:
             raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", values)
         name = "rod" if asked.rod_ratio is None else "rod_ratio"
         raise Infeasible(names[name], f"{W}.turns_back", f"{W}.rod_least", {"least": short[name]})
+
+
+def _largest_k(asked: Asked) -> float:
+    """Up to which k the other numbers make a shaper; a lesser k leaves more room for all of them."""
+
+    def good(theta: float) -> bool:
+        try:
+            refuse(replace(asked, k=k_of(theta)))
+        except Infeasible:
+            return False
+        return True
+
+    low, high = SHORT, np.pi - slotted_lever.STRAIGHT
+    if good(np.pi - slotted_lever.STRAIGHT * (1 + SHORT)) or not good(low):
+        return float(k_of(high))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if good(middle) else (low, middle)
+    return float(k_of(low))
 
 
 def _refuse_stroke(asked: Asked, chord: float, most: float, share: float) -> None:
