@@ -151,11 +151,11 @@ def angles_of_forms(forms: Any) -> Any:
     even = np.broadcast_to(np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1], (len(forms), 24))
     scan = np.sort(np.concatenate([extremes, even], axis=-1)).astype(EXACT)
     ends = np.concatenate([scan, scan[:, :1] + EXACT(PI)], axis=-1)
-    values = _value(forms[:, None], ends)
+    values = _value(forms.T[:, :, None], ends)
     values[:, -1] = -values[:, 0]  # half a turn on, a form of odd degree is what it was, of the other sign
     below = np.signbit(values)
     rows, here = np.nonzero((below[:, 1:] != below[:, :-1]) & whole[:, None])
-    low, high, below, own = ends[rows, here], ends[rows, here + 1], below[rows, here], forms[rows]
+    low, high, below, own = ends[rows, here], ends[rows, here + 1], below[rows, here], forms[rows].T
     for _ in range(70):
         middle = (low + high) / 2
         same = np.signbit(_value(own, middle)) == below
@@ -169,7 +169,7 @@ def angles_of_forms(forms: Any) -> Any:
 
 def _value(form: Any, angle: Any) -> Any:
     c, s = np.cos(angle), np.sin(angle)
-    f0, f1, f2, f3 = np.moveaxis(form, -1, 0)
+    f0, f1, f2, f3 = form
     return ((f0 * s + f1 * c) * s + f2 * c * c) * s + f3 * c * c * c
 
 

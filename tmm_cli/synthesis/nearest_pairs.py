@@ -16,8 +16,8 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 
 W: Final = "synthesis_four_bar_by_angles"
 FIRST: Final = (0.1, 0.4)  # of all changes, which are tried before the others
-PARTS: Final = 8  # into which the way to the nearest change is divided,
-ROUNDS: Final = 9  # so often
+PARTS: Final = (8, 24)  # into which the way to the nearest change is divided again and again, with two pairs, with more
+SHARP: Final = 0.01  # of INWARDS: how near to the nearest change that leads
 INWARDS: Final = 2e-6  # rad, or a share of a length, from where there is one first;
 INWARDS_ALL: Final = 1e-4  # of a change of all output angles, each of which is rounded
 ROUNDED: Final = 2e-5  # of a number: by so much it may be rounded when it is told
@@ -96,18 +96,22 @@ def _nearest(change: Change) -> Iterator[float]:
         for move, here in zip(moves.tolist(), fit(change, moves).sensible.tolist(), strict=True):
             sign = float(np.sign(move))
             if here and not inside[sign]:
-                inwards = INWARDS if change.all is None else INWARDS_ALL
-                near = _edge(change, move, move - sign * change.step) + sign * inwards
+                near = _edge(change, move, move - sign * change.step) + sign * _inwards(change)
                 rounded = near + sign * ROUNDED * (abs(change.value(near)) if change.kind == "angle" else 1.0)
                 if np.all(fit(change, [near, (near + rounded) / 2, rounded], closely=True).sensible):
                     yield near
             inside[sign] = here
 
 
+def _inwards(change: Change) -> float:
+    return INWARDS if change.all is None else INWARDS_ALL
+
+
 def _edge(change: Change, inside: float, outside: float) -> float:
     """Where what is good inside begins."""
-    for _ in range(ROUNDS):
-        places = np.linspace(outside, inside, PARTS + 1)
+    parts = PARTS[change.pairs > 2]
+    for _ in range(int(np.ceil(np.log(change.step / (SHARP * _inwards(change))) / np.log(parts)))):
+        places = np.linspace(outside, inside, parts + 1)
         good = fit(change, places[1:-1], closely=True).sensible
         last = int(np.flatnonzero([True, *~good])[-1])
         outside, inside = places[last], places[last + 1]

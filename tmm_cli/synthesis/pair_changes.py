@@ -28,7 +28,7 @@ LINKS: Final = 50.0  # the longest link over the shortest of a four-bar that is 
 class Change:
     """Of the number at `key` of the block. given: in SI, rad; task: what is asked with the change (of lengths: of the
     logarithm), None where it cannot be; step, count: which changes are tried on either side; all: of a change of all
-    output angles, what they are then.
+    output angles, what they are then; pairs: how many there are.
     """
 
     key: tuple[str | int, ...]
@@ -39,6 +39,7 @@ class Change:
     step: float = STEP
     count: int = round(WIDEST / STEP)
     all: Callable[[float], tuple[float, ...]] | None = None
+    pairs: int = 2
 
     def value(self, move: Any) -> Any:
         """The number that a change makes."""
@@ -96,7 +97,7 @@ def _fit(tasks: list[Asked], closely: bool) -> Fit:
 def numbers(asked: Asked, widest: float = WIDEST) -> Iterator[Change]:
     """Changes of single angles: of the last output, of the others, of inputs, of zero angles that are given."""
     step = COARSE if len(asked.phi) == 2 else STEP
-    size: dict[str, Any] = {"step": step, "count": round(widest / step)}
+    size: dict[str, Any] = {"step": step, "count": round(widest / step), "pairs": len(asked.phi)}
     for name, key in (("psi", "output"), ("phi", "input")):
         ends = getattr(asked.function, name) if asked.function else getattr(asked, name)
         for which in range(len(ends))[::-1]:
@@ -157,7 +158,7 @@ def together(asked: Asked) -> Iterator[Change]:
         def task(move: float) -> Asked | None:
             return replace(asked, psi=angles(move)) if 0 < move < most else None
 
-        return Change(("pairs",), "all", "number", 0.0, task, SHARE, round(most / SHARE), angles)
+        return Change(("pairs",), "all", "number", 0.0, task, SHARE, round(most / SHARE), angles, len(psi))
 
     yield change(np.full_like(psi, psi[0]), 1.0)
     yield change(2 * psi - psi[0], FACTOR - 1)
