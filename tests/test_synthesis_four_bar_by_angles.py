@@ -305,7 +305,10 @@ REFUSED = {
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100":
-        "synthesis.x: the function has no values there, or the same at both ends\n",
+        "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0",
+    "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100":
+        "synthesis.x: the function has no values there, or the same at both ends\n"
+        "  allowed: two ends at which the function differs",
     "l4: 100": "synthesis: these keys do not determine a four-bar\n  found:   none\n"
         "  allowed: pairs; or function (or table), x, input, output",
 }  # fmt: skip
