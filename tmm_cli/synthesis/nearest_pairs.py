@@ -36,6 +36,7 @@ def refuse_found(asked: Asked, found: list[Bars]) -> None:
     else:
         reason = "endless" if _endless(asked) else "none"
     alone = "" if found else "_alone"
+    last: tuple[str | int, ...] = ("output",) if asked.function else ("pairs", len(asked.psi) - 1)
     changes = [length(asked)] if len(asked.lengths) == 2 else []
     near = _first(chain(changes, numbers(asked)))
     if near is None and asked.function and (count := fewer_points(asked)):
@@ -45,10 +46,12 @@ def refuse_found(asked: Asked, found: list[Bars]) -> None:
     if near is not None:
         change, move = near
         words, values = _told(change, move)
-        raise Infeasible(change.key[: 1 if asked.function else 2], f"{W}.{reason}", f"{W}.{words}{alone}", values)
+        key = (
+            last if len(change.key) == 1 and change.kind == "angle" else change.key[: len(last)]
+        )  # a zero is not given
+        raise Infeasible(key, f"{W}.{reason}", f"{W}.{words}{alone}", values)
     if not asked.function and (values := _together(asked)):
         raise Infeasible("pairs", f"{W}.{reason}", f"{W}.all_{len(asked.psi)}{alone}", values)
-    last: tuple[str | int, ...] = ("output",) if asked.function else ("pairs", len(asked.psi) - 1)
     raise Infeasible(last, f"{W}.{reason}", f"{W}.other{alone}")
 
 
@@ -71,7 +74,8 @@ def _first(changes: Iterable[Change]) -> tuple[Change, float] | None:
 
 def _together(asked: Asked) -> dict[str, Shown]:
     """All output angles, by the change of them all that moves none of them far; {}: there is none."""
-    found = [change.all(near) for change in together(asked) if change.all for near in list(_nearest(change))[:1]]
+    near = [(change, next(_nearest(change), None)) for change in together(asked)]
+    found = [change.all(move) for change, move in near if change.all is not None and move is not None]
     if not found:
         return {}
     moves = [max(abs(a - float(b)) for a, b in zip(psi, asked.psi, strict=True)) for psi in found]
@@ -141,7 +145,7 @@ def _usable(change: Change, near: float) -> tuple[float, float] | None:
     """
     sign, limit = float(np.sign(near)), change.value(near)
     if change.kind == "angle":
-        values = DEGREE * (np.ceil(sign * limit / DEGREE) * sign + sign * np.arange(TRIED))
+        values = DEGREE * sign * (np.ceil(sign * limit / DEGREE) + np.arange(TRIED)) + 0.0  # none of them is -0
     else:
         values = np.array([float(f"{x:.3g}") for x in limit * np.exp(sign * change.step * np.arange(1, TRIED))])
     moves = change.move(values)
