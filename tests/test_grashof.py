@@ -181,7 +181,7 @@ REFUSED = {
         "synthesis.l1: the links do not close: l1 is as long as the others together, or longer\n  found:   10\n"
         "  allowed: l1 8.99999 mm or less",
     "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}":
-        "synthesis.l2: there is no such link\n  found:   0\n  allowed: more than zero",
+        "synthesis.l2: there is no such link\n  found:   0\n  allowed: 3.00001 mm or more",
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}":
         "synthesis.driver: the driver is hinged to the frame\n  found:   'l3' opposite the frame l1\n"
         "  allowed: l2 or l4",

@@ -282,10 +282,12 @@ def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
 REFUSED = {
     "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100":
         "synthesis.pairs[2]: the input turns back: pair 3 cannot be reached after pair 2 in order\n"
-        "  found:   [70, 100]\n  allowed: input angles that only grow, or only fall; pair 2 has 80 deg",
+        "  found:   [70, 100]\n  allowed: input angle 2: 64.9651 deg (63 deg for a least transmission "
+        "angle of 34 deg)",
     "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100":
         "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other assembly\n"
-        "  found:   [120, 100]\n  allowed: the last output angle 82.728 deg; or defects: keep",
+        "  found:   [120, 100]\n  allowed: the last output angle 82.728 deg (69 deg for a least transmission angle of "
+        "4 deg); or defects: keep",
     "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100":
         "synthesis.pairs[3]: no four-bar passes through these pairs\n"
         "  found:   [150, 80]\n  allowed: the last output angle 22.3152 deg",
@@ -297,13 +299,16 @@ REFUSED = {
         "synthesis.choose: there is no solution of this number\n  found:   2\n  allowed: 1 to 1",
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2":
         "synthesis.choose: branch defect: this solution has some pairs on its other assembly\n"
-        "  found:   2\n  allowed: another number; or choose: transmission; or defects: keep",
+        "  found:   2\n  allowed: 1; or choose: transmission; or defects: keep",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
-        "synthesis.l4: there is no such link\n  found:   -100\n  allowed: more than zero",
+        "synthesis.l4: there is no such link\n  found:   -100\n  allowed: 0.001 mm or more",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100":
-        "synthesis.x: the function has no values there, or the same at both ends\n",
+        "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0",
+    "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100":
+        "synthesis.x: the function has no values there, or the same at both ends\n"
+        "  allowed: two ends at which the function differs",
     "l4: 100": "synthesis: these keys do not determine a four-bar\n  found:   none\n"
         "  allowed: pairs; or function (or table), x, input, output",
 }  # fmt: skip

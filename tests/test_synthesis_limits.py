@@ -110,6 +110,52 @@ CASES = {  # a task that cannot be, and where the limit of each key stands in th
         ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)), {"rod_ratio": ALONE_MORE}),
     "ram turns back, pressure": (
         ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)), {"pressure": ALONE}),
+    "pressure angle of no k": (slider(k=between(1.1, 1.5), pressure=between(95, 150)), {"pressure": LOW}),
+    "pressure angle of a right angle": (slider(nu=between(0, 1), pressure=between(95, 150)), {"pressure": HIGH}),
+    "no stroke": (lambda r: {"task": "crank-slider", "stroke": -r.uniform(0, 9), "ratio": 4, "nu": 0.5},
+                  {"stroke": ALONE_MORE}),
+    "no stroke, speed": (
+        lambda r: {"task": "crank-slider", "speed": -r.uniform(0, 9), "crank_speed": 9, "ratio": 4, "nu": 0.5},
+        {"speed": r"^([^ ,]+ m/s) or more"}),
+    "no rocker": (lambda r: rocker(k=between(1.1, 2))(r) | {"l3": -r.uniform(0, 9)}, {"l3": ALONE_MORE}),
+    "no crank": (rocker(k=between(1.1, 2), l1=between(-9, 0)), {"l1": LOW}),
+    "crank of k = 1": (lambda r: rocker(k=between(1, 1))(r) | {"l3": 300, "l1": r.uniform(60, 80)},
+                       {"k": MORE.format("k")}),
+    "k too large, frame": (
+        lambda r: rocker(k=between(7, 9), psi1=between(40, 40), psi2=between(100, 110))(r) | {"l3": 300, "l4": 340},
+        {"k": K}),
+    "k too large, supports level": (
+        rocker(k=between(7, 9), psi1=between(20, 25), psi2=between(60, 80), choose=lambda r: "supports level"),
+        {"k": K}),
+    "sense, k too large": (rocker(k=between(30, 40), turns=lambda r: "cw"), {"k": K}),
+    "no lever": (lever(OC=between(1, 9), CB=between(-9, 0)), {"CB": ALONE_MORE}),
+    "swing of half a turn": (
+        lambda r: {"task": "slotted-lever", "CB": 500, "OC": 90, "swing": r.uniform(181, 300)},
+        {"swing": r"([^ ]+ deg) or less"}),
+    "no frame": (ram(k=between(1.1, 4), OC=between(-9, 0), DE=between(5e3, 9e3)), {"OC": ALONE_MORE}),
+    "no rod": (ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), DE=between(-9, 0)), {"DE": ALONE_MORE}),
+    "no rod, ratio": (
+        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(-9, 0)), {"rod_ratio": ALONE_MORE}),
+    "no ram's stroke": (
+        lambda r: ram(k=between(1.1, 4), OC=between(20, 90), DE=between(5e3, 9e3))(r) | {"stroke": -r.uniform(0, 9)},
+        {"stroke": ALONE_MORE}),
+    "no ram's stroke, crank": (
+        lambda r: ram(k=between(1.1, 4), OA=between(20, 90), DE=between(5e3, 9e3))(r) | {"stroke": -r.uniform(0, 9)},
+        {"stroke": ALONE_MORE}),
+    "shaper's swing of half a turn": (
+        ram(k=between(7e6, 9e6), frame_ratio=between(0.1, 0.3), rod_ratio=between(5e5, 9e5)), {"k": ALONE}),
+    "shaper's swing of half a turn, rod": (
+        ram(k=between(7e6, 9e6), OC=between(9, 20), DE=between(50, 900)), {"k": ALONE}),
+    "shaper's swing of half a turn, pressure": (
+        ram(k=between(7e6, 9e6), OC=between(9, 20), pressure=between(20, 60)), {"k": ALONE}),
+    "pressure angle of a ram": (
+        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), pressure=between(95, 150)), {"pressure": HIGH}),
+    "no link": (
+        lambda r: {"task": "grashof", "l1": -r.uniform(0, 9), "l2": 10, "l3": 12, "l4": r.uniform(30, 40)},
+        {"l1": ALONE_MORE}),
+    "no link's size": (
+        lambda r: {"task": "grashof", "l1": -r.uniform(0, 9), "l2": 20, "l3": 22, "l4": r.uniform(30, 40)},
+        {"l1": ALONE_MORE}),
     "links do not close": (
         lambda r: {"task": "grashof", "l1": r.uniform(31, 90), **{f"l{k}": r.uniform(1, 10) for k in (2, 3, 4)}},
         {"l1": LESS.format("l1")}),

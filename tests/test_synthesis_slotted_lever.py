@@ -239,10 +239,10 @@ REFUSED_LEVERS = {
     ),
     "CB: 500, swing: 190 deg, OC: 200": (
         ".swing: the lever of a crank that turns fully swings by less than 180 deg"
-        "\n  found:   '190 deg'\n  allowed: more than zero and less than 180 deg"
+        "\n  found:   '190 deg'\n  allowed: more than zero, 179.999 deg or less"
     ),
-    "CB: 500, k: 1.3, OC: -2": (".OC: there is no such link\n  found:   -2\n  allowed: more than zero"),
-    "CB: 500, k: 1.3, OA: -2": (".OA: there is no such link\n  found:   -2\n  allowed: more than zero"),
+    "CB: 500, k: 1.3, OC: -2": (".OC: there is no such link\n  found:   -2\n  allowed: 0.001 mm or more"),
+    "CB: 500, k: 1.3, OA: -2": (".OA: there is no such link\n  found:   -2\n  allowed: 0.001 mm or more"),
     "CB: 500, k: 1.3, OC: 200, OA: 20": (
         ": these keys do not determine a slotted lever\n  found:   OC, OA\n  allowed: OC; or OA; or within"
     ),
@@ -256,7 +256,7 @@ REFUSED_LEVERS = {
     ),
     "CB: 500, k: 1.5, within: [300, 200]": (
         ".within: these are no bounds of a distance"
-        "\n  found:   [300, 200]\n  allowed: two lengths above zero, the smaller one first"
+        "\n  found:   [300, 200]\n  allowed: [200 mm, 300 mm]: two lengths above zero, the smaller one first"
     ),
     "CB: 500, B1: [1, 2], k: 1.5, OC: 200": (
         ": these keys do not determine a slotted lever\n  found:   B1, CB\n  allowed: B1 and B2; or CB"
@@ -277,7 +277,7 @@ REFUSED_SHAPERS = {
         "\n  found:   1\n  allowed: more than 1"
     ),
     "stroke: -400, k: 1.5, OC: 350, DE: 200": (
-        ".stroke: there is no such motion\n  found:   -400\n  allowed: more than zero"
+        ".stroke: there is no such motion\n  found:   -400\n  allowed: 283.157 mm or more"
     ),
     "stroke: 400, k: 1.5, OC: 500, DE: 200": (
         ".OC: the stone would pass the hinge D of the rod\n  found:   500\n  allowed: 494.426 mm or less"
@@ -285,7 +285,7 @@ REFUSED_SHAPERS = {
     "stroke: 400, k: 1.5, OA: 155, DE: 200": (
         ".OA: the stone would pass the hinge D of the rod\n  found:   155\n  allowed: 152.786 mm or less"
     ),
-    "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: there is no such motion\n  found:   0\n  allowed: more than zero"),
+    "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: there is no such motion\n  found:   0\n  allowed: 0.001 mm or more"),
     "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
         ".frame_ratio: the stone would pass the hinge D of the rod\n  found:   0.8\n  allowed: 0.763931 or less"
     ),
@@ -303,7 +303,7 @@ REFUSED_SHAPERS = {
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 100 deg": (
         ".pressure: a largest pressure angle is more than zero and less than a right angle"
-        "\n  found:   '100 deg'\n  allowed: more than zero and less than 90 deg; 30 deg is usual for a sliding link"
+        "\n  found:   '100 deg'\n  allowed: 5.72958e-05 deg to 44.9999 deg; 30 deg is usual for a sliding link"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3": (
         ": these keys do not determine a shaper\n  found:   none of them\n  allowed: one of DE, rod_ratio, pressure"

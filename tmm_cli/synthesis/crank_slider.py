@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
@@ -193,10 +193,10 @@ def _refuse_offset(e: float, height: float, theta: float) -> None:
 
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
-    for name in ("stroke", "speed", "crank_speed"):
+    for name, kind in (("stroke", "length"), ("speed", "speed"), ("crank_speed", "angular speed")):
         value = getattr(asked, name)
         if value is not None and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+            raise Infeasible(name, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, kind)})
     length, nu, k, limit = asked.ratio, asked.nu, asked.k, asked.pressure
     if k is not None and not k >= 1:
         _refuse_small(asked)
@@ -220,7 +220,9 @@ def refuse(asked: Asked) -> None:
         possible = longest > 1 + 1e-5  # or it would be printed as what is refused
         raise Infeasible("k", f"{W}.k_above", f"{W}.k_most" if possible else f"{W}.k_most_alone", values)
     if limit is not None and not 0 < limit < np.pi / 2:
-        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")
+        low = SMALLEST if theta is None or theta >= np.pi / 2 else max(SMALLEST, float(least_pressure(theta)))
+        values = {"low": (low, "angle", "least"), "high": (np.pi / 2, "angle", "below")}
+        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed", values)
     if limit is not None and theta is not None:
         if not theta < np.pi / 2:
             most = float(largest_k(limit))
@@ -243,7 +245,7 @@ def _refuse_small(asked: Asked) -> None:
                 raise
             given, words = {"k": error.values["k"]}, words.replace("least", "range")
     else:
-        words = "zero"
+        words = words.replace("least", "zero")
     raise Infeasible("k", f"{W}.k_below", f"{W}.k_{words}", given)
 
 

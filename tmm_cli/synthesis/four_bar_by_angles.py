@@ -17,10 +17,10 @@ from tmm_cli.synthesis.freudenstein import Bars
 from tmm_cli.synthesis.functions import ANGLES
 from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.nearest_pairs import refuse_found
+from tmm_cli.synthesis.nearest_pairs import refuse_found, refuse_inputs
 from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, real, through
 from tmm_cli.synthesis.parallelogram import parallelogram
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.synthesis.structural_error import errors, extremes
 from tmm_cli.vectors import settled
 
@@ -34,19 +34,22 @@ FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sens
 
 
 def refuse(asked: Asked) -> None:
-    """Raises Infeasible for pairs that no four-bar passes, or none in order."""
+    """Raises Infeasible for lengths that are none and inputs that turn back, or round."""
+    for name, value in asked.lengths.items():
+        if not value > 0:
+            words = "at_least" if len(asked.lengths) == 1 else "more_than_zero"
+            raise Infeasible(name, f"{W}.positive", f"{W}.{words}", {"least": (SMALLEST, "length")})
     steps = np.diff(asked.phi)
     if not asked.function and not (np.all(steps > 0) or np.all(steps < 0)):
         sense = np.sign(steps[0]) or 1.0
         bad = int(np.argmax(steps * sense <= 0)) + 1
-        raise Infeasible(("pairs", bad), f"{W}.order", f"{W}.in_order", {
+        error = Infeasible(("pairs", bad), f"{W}.order", f"{W}.in_order", {
             "this": (str(bad + 1), "word"), "last": (str(bad), "word"), "phi": (asked.phi[bad - 1], "angle"),
         })  # fmt: skip
+        refuse_inputs(asked, (bad, bad - 1), error)
     if abs(asked.span[1] - asked.span[0]) >= 2 * np.pi:
-        raise Infeasible("input" if asked.function else "pairs", f"{W}.turn", f"{W}.one_turn")
-    for name, value in asked.lengths.items():
-        if not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+        error = Infeasible("input" if asked.function else "pairs", f"{W}.turn", f"{W}.one_turn")
+        refuse_inputs(asked, (1, 0) if asked.function else (len(asked.phi) - 1, 0), error)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -60,7 +63,9 @@ def solve(asked: Asked) -> Outcome:
         raise Infeasible("choose", f"{W}.number", f"{W}.numbers", {"count": (str(len(found)), "word")})
     one, mark = found[at], quality(found[at], asked)
     if mark.defect and not asked.keep:
-        raise Infeasible("choose", f"{W}.its_{mark.defect}", f"{W}.another")
+        fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
+        words = "another" if fair else "keep"
+        raise Infeasible("choose", f"{W}.its_{mark.defect}", f"{W}.{words}", {"numbers": (fair, "word")})
     name, size = next(iter(asked.lengths)), _size(asked, one)
     phi, psi = one.phi0 + asked.phi[0], one.psi0 + asked.psi[0]
     lengths = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}

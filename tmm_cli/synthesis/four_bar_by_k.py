@@ -14,8 +14,9 @@ from tmm_cli.synthesis.crank_slider import k_of
 from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bound, places, whole, widest
 from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing
 from tmm_cli.synthesis.four_bar_level import level_places, nearest_sound
+from tmm_cli.synthesis.four_bar_nearest import nearest_k, not_level
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 
 __all__ = ["PARAMETERS", "Asked", "Found", "arcs", "at", "bound", "choose", "places", "solve"]
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
@@ -24,8 +25,7 @@ STEP: Final = 1e-14  # the least step of a derivative, relative
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
 INSIDE: Final = 4e-5  # of a range of lengths: how far from its ends a length is told
-SCAN: Final = 100  # values of theta that are tried for level supports
-LEVEL: Final = 1e-6  # rad of theta, from where a pivot is level first: an end of an arc
+CHOSEN: Final = ("level", "l1", "l2", "l4")  # ways to choose A that not every arc offers
 
 
 def _pressure(found: Found, _: Asked) -> Any:
@@ -107,9 +107,14 @@ def choose(asked: Asked) -> Found:
 
     It is looked for with D in the origin: a support that is far away takes no digits.
     """
-    near = None if asked.near is None else asked.near - asked.support
-    found = _from_support(replace(asked, support=0 * asked.support, near=near), asked.support)
+    found = _from_support(_centred(asked), asked.support)
     return replace(found, a=asked.support + found.a)
+
+
+def _centred(asked: Asked) -> Asked:
+    """The same with D in the origin."""
+    near = None if asked.near is None else asked.near - asked.support
+    return replace(asked, support=0 * asked.support, near=near)
 
 
 def _from_support(asked: Asked, support: Any) -> Found:
@@ -150,10 +155,13 @@ def _dead_end(asked: Asked, support: Any) -> None:
 def _not_there(asked: Asked) -> None:
     """No pivot of the arcs is what was asked for: says what there is."""
     if asked.choose == "level":
-        raise _not_level(asked)
+        raise not_level(asked, EQUATIONS["level"])
     h, name = float(asked.l3 * np.sin(asked.swing / 2)), asked.choose
     if name == "l1" and asked.k == 1:
-        raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", {"l1": (h, "length")})
+        values = {"l1": (h, "length")}
+        if (k := nearest_k(asked, EQUATIONS["l1"])) is not None:
+            raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_above", values | {"k": k})
+        raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", values)
     if name in ("l1", "l2"):
         last = [float(getattr(at(asked, places(asked, side)[-1], side), name)) for side in arcs(asked)]
         words = "l4_range_line" if asked.k == 1 else "l4_range"
@@ -177,10 +185,8 @@ def _within(asked: Asked, *ends: float) -> dict[str, Shown]:
 
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
-    for name in ("l1", "l2", "l3", "l4"):
-        value = getattr(asked, name)
-        if value is not None and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+    if not asked.l3 > 0:  # of the others the range is told that there is
+        raise Infeasible("l3", f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
     if not asked.k >= 1:
         _refuse_small(asked)
     psi1, widest_swing = float(asked.psi1), np.pi - 2 * ARC
@@ -188,6 +194,7 @@ def refuse(asked: Asked) -> None:
         ends = {"low": (psi1 - widest_swing, "angle", "least"), "high": (psi1 + widest_swing, "angle", "most")}
         raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (psi1, "angle"), **ends})
     theta, half = float(asked.theta), float(asked.swing) / 2
+    _refuse_sense(asked, theta, half)
     if theta > np.pi / 2 + half - ARC:
         way = 1 if asked.psi2 > asked.psi1 else -1
         swing = psi1 + way * (2 * theta - np.pi + 2 * ARC)
@@ -195,61 +202,42 @@ def refuse(asked: Asked) -> None:
             "k": (float(k_of(np.pi / 2 + half - ARC)), "number", "most"),
             "psi2": (swing, "angle", "least" if way > 0 else "most"),
         }
+        if asked.choose in CHOSEN:
+            k = nearest_k(_centred(asked), EQUATIONS[asked.choose])
+            words = "k_most_other" if k is None else "k_most_alone"
+            raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", {"k": k or values["k"]})
         words = "k_most_alone" if theta > np.pi - 2 * ARC else "k_most" if way > 0 else "k_most_down"
         raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", values)
-    if not arcs(asked):  # only the arc beyond C1C2 gives this sense
-        most = np.pi / 2 - half - ARC
-        values = {"k": (float(k_of(most)), "number", "most")}
-        raise Infeasible("turns", f"{W}.sense", f"{W}.sense_most" if most > 0 else f"{W}.sense_other", values)
     if theta == 0 and asked.choose == "best":
         raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
 
 
+def _refuse_sense(asked: Asked, theta: float, half: float) -> None:
+    """Only the arc beyond C1C2 gives a crank that turns against the rocker in the slow stroke, up to some k."""
+    way, most, other = 1 if asked.psi2 > asked.psi1 else -1, np.pi / 2 - half - ARC, np.pi / 2 + half - ARC
+    if asked.sense != -way or theta <= most:
+        return
+    values: dict[str, Shown] = {
+        "k": (float(k_of(most)), "number", "most"),
+        "other": (float(k_of(other)), "number", "most"),
+    }
+    words = ("k_most_alone" if theta > other else "sense_most") if most > 0 else (
+        "sense_both" if theta > other else "sense_other")  # fmt: skip
+    raise Infeasible("turns", f"{W}.sense", f"{W}.{words}", values)
+
+
 def _refuse_small(asked: Asked) -> None:
     """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
+    above = "_above" if asked.choose == "best" else ""
     if not asked.k > 0:
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero")
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero{above}")
     try:
         refuse(replace(asked, k=1 / asked.k))
     except Infeasible as error:
         if "k" not in error.values:
             raise
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range", {"k": error.values["k"]}) from None
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range{above}", {"k": error.values["k"]}) from None
     raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / asked.k, "number", "most")})
-
-
-def _not_level(asked: Asked) -> Infeasible:
-    """No pivot is as high as D: how near they come, and the nearest k for which one is."""
-
-    def gap(k: float) -> float:
-        """The offset from D that is nearest to none; 0 where a pivot is level."""
-        tried = replace(asked, k=k)
-        offsets = [np.imag(at(tried, places(tried, side), side).a - asked.support) for side in arcs(tried)]
-        if any(np.min(row) <= 0 <= np.max(row) for row in offsets):
-            return 0.0
-        every = np.concatenate([*offsets, [np.inf]])
-        return float(every[np.argmin(np.abs(every))])
-
-    offset = gap(float(asked.k))
-    values: dict[str, Shown] = {"offset": (abs(offset), "length")}
-    words = "level_higher" if offset > 0 else "level_lower"
-    theta = float(asked.theta)
-    least, most = 1e-3, np.pi / 2 + float(asked.swing) / 2 - 2 * ARC
-    shares = np.linspace(0, 1, SCAN)[1:]
-    tried = sorted(
-        [*(theta + (most - theta) * shares), *(theta + (least - theta) * shares)], key=lambda x: abs(x - theta)
-    )
-    good = next((x for x in tried if gap(float(k_of(x))) == 0), None)
-    if good is None:
-        return Infeasible("choose", f"{W}.level_none", f"{W}.{words}", values)
-    inside, outside = good, theta
-    for _ in range(30):
-        middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if gap(float(k_of(middle))) == 0 else (inside, middle)
-    up = good > theta
-    inside += (1 if up else -1) * LEVEL
-    values["k"] = (float(k_of(inside)), "number", "least" if up else "most")
-    return Infeasible("choose", f"{W}.level_none", f"{W}.{words}_{'more' if up else 'less'}", values)
 
 
 def solve(asked: Asked) -> Outcome:

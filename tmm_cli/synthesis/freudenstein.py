@@ -124,57 +124,70 @@ def five(phi: Any, psi: Any) -> tuple[Any, Any]:
     columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
     span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
     a, b, turn = (span[:, k] + 1j * span[:, k + 1] for k in (0, 2, 5))  # (tasks, 2) over both vectors
-    phi0, psi0 = np.full((len(a), 3), EXACT(np.nan)), np.full((len(a), 3), EXACT(np.nan))
-    for k in range(len(a)):
-        cubic = np.convolve(np.convolve(b[k], a[k].conj()), turn[k]).imag
-        for j, angle in enumerate(angles_of_form(cubic[::-1])):
-            both = np.array([np.cos(angle), np.sin(angle)])
-            side, delta = (a[k] * both).sum(), (turn[k] * both).sum()
-            if abs(delta) > ENDLESS * abs(side):  # else l1 is nothing beside the frame
-                psi0[k, j] = -np.angle(side)
-                phi0[k, j] = psi0[k, j] + np.angle(delta)
-    return phi0, psi0
+    (b0, b1), (a0, a1), (t0, t1) = b.T, a.conj().T, turn.T
+    form = [b1 * a1 * t1, b0 * a1 * t1 + b1 * a0 * t1 + b1 * a1 * t0, b0 * a0 * t1 + b0 * a1 * t0 + b1 * a0 * t0]
+    angles = angles_of_forms(np.stack([*form, b0 * a0 * t0], axis=-1).imag)
+    with np.errstate(all="ignore"):
+        cosines, sines = np.cos(angles), np.sin(angles)
+        side, delta = (x[:, :1] * cosines + x[:, 1:] * sines for x in (a, turn))
+        endless = np.abs(delta) <= ENDLESS * np.abs(side)  # l1 is nothing beside the frame
+        psi0 = np.where(endless, np.nan, -np.angle(side))
+        return psi0 + np.angle(delta), psi0
 
 
-def angles_of_form(form: Any) -> list[Any]:
-    """Angles (rad, in a half turn) where a form f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine and sine vanishes.
+def angles_of_forms(forms: Any) -> Any:
+    """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
+    and sine vanish; nan where there is no more.
 
     Between the angles where it is extreme (its slope is a form too) it has one sign change or none: no root is lost
     because two are near each other, and none is made of two complex ones.
     """
-    if not np.all(np.isfinite(form)) or not np.any(form):
-        return []
-    half = EXACT(PI)
+    forms = np.asarray(forms, dtype=EXACT)
+    size = np.max(np.abs(forms), axis=-1, keepdims=True)
+    whole = np.isfinite(size[:, 0]) & (size[:, 0] > 0)
+    forms = np.where(whole[:, None], forms, 1.0) / np.where(whole[:, None], size, 1.0)
+    extremes = np.stack([np.angle(_roots(row)) / 2 for row in np.asarray(forms, dtype=float) @ WAVES]) if len(
+        forms) else np.zeros((0, 3))  # fmt: skip
+    even = np.broadcast_to(np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1], (len(forms), 24))
+    scan = np.sort(np.concatenate([extremes, even], axis=-1)).astype(EXACT)
+    ends = np.concatenate([scan, scan[:, :1] + EXACT(PI)], axis=-1)
+    values = _value(forms.T[:, :, None], ends)
+    values[:, -1] = -values[:, 0]  # half a turn on, a form of odd degree is what it was, of the other sign
+    below = np.signbit(values)
+    rows, here = np.nonzero((below[:, 1:] != below[:, :-1]) & whole[:, None])
+    low, high, below, own = ends[rows, here], ends[rows, here + 1], below[rows, here], forms[rows].T
+    for _ in range(70):
+        middle = (low + high) / 2
+        same = np.signbit(_value(own, middle)) == below
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    found = np.full((len(forms), 3), EXACT(np.nan))
+    number = np.arange(len(rows)) - np.searchsorted(rows, rows)
+    kept = number < 3
+    found[rows[kept], number[kept]] = ((low + high) / 2)[kept]
+    return found
 
-    def value(angle: Any) -> Any:
-        c, s = np.cos(angle), np.sin(angle)
-        return ((form[0] * s + form[1] * c) * s + form[2] * c * c) * s + form[3] * c * c * c
 
-    f0, f1, f2, f3 = (float(f) for f in form / np.max(np.abs(form)))
-    # over z = e^(2 i angle) the form times e^(3 i angle) is a cubic, and so is its slope
-    powers = [np.array([1, 1]), np.array([-1j, 1j])]  # 2 cos, 2 sin: coefficients of e^(i angle), e^(-i angle)
+def _value(form: Any, angle: Any) -> Any:
+    c, s = np.cos(angle), np.sin(angle)
+    f0, f1, f2, f3 = form
+    return ((f0 * s + f1 * c) * s + f2 * c * c) * s + f3 * c * c * c
 
-    def product(*which: int) -> Any:
-        one = np.array([1.0 + 0j])
-        for k in which:
-            one = np.convolve(one, powers[k])
-        return one
 
-    waves = f0 * product(1, 1, 1) + f1 * product(1, 1, 0) + f2 * product(1, 0, 0) + f3 * product(0, 0, 0)
-    slope = waves * np.array([3j, 1j, -1j, -3j])
-    extremes = np.angle(np.roots(slope)) / 2
-    scan = np.sort(np.concatenate([extremes, np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1]])).astype(EXACT)
-    ends = np.append(scan, scan[0] + half)
-    values = value(ends)
-    values[-1] = -values[0]  # half a turn on, a form of odd degree is what it was, of the other sign
-    found = []
-    for k in np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1])):
-        low, high, below = ends[k], ends[k + 1], np.signbit(values[k])
-        for _ in range(70):
-            middle = (low + high) / 2
-            low, high = (middle, high) if np.signbit(value(middle)) == below else (low, middle)
-        found.append((low + high) / 2)
-    return found[:3]
+def _roots(polynomial: Any) -> Any:
+    """Three roots of a cubic; 1 where it has fewer."""
+    found = np.roots(polynomial)
+    return np.concatenate([found, np.ones(3 - len(found))])
+
+
+def _slopes() -> Any:
+    """Over z = e^(2 i angle) a form times e^(3 i angle) is a cubic, and so is its slope: that of each of the four."""
+    sine, cosine, rows = np.array([-1j, 1j]), np.array([1, 1]), []  # 2 sin, 2 cos: of e^(i angle), e^(-i angle)
+    for one in ((sine, sine, sine), (sine, sine, cosine), (sine, cosine, cosine), (cosine, cosine, cosine)):
+        rows.append(np.convolve(np.convolve(one[0], one[1]), one[2]) * np.array([3j, 1j, -1j, -3j]))
+    return np.array(rows)
+
+
+WAVES: Final = _slopes()
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
@@ -212,14 +225,14 @@ def bars(values: Any, phi: Any, psi: Any) -> Bars:
         return Bars(l1, np.abs(c - b), l3, phi0, psi0)
 
 
-def solutions(phi: Any, psi: Any, phi0: float | None = 0.0, psi0: float | None = 0.0) -> Bars:
+def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
     """All real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where there is no more root.
 
-    A zero angle of None is to be found: none for 3 pairs, one for 4, both for 5.
+    A zero angle (one, or one a task) of None is to be found: none for 3 pairs, one for 4, both for 5.
     """
     phi, psi = np.atleast_2d(np.asarray(phi, EXACT)), np.atleast_2d(np.asarray(psi, EXACT))
     free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
-    given_phi, given_psi = phi0 or 0.0, psi0 or 0.0
+    given_phi, given_psi = (np.asarray(0.0 if zero is None else zero, EXACT)[..., None] for zero in (phi0, psi0))
     if not free:
         one, other = np.zeros((len(phi), 1)), np.zeros((len(phi), 1))
     elif len(free) == 1:
@@ -228,7 +241,7 @@ def solutions(phi: Any, psi: Any, phi0: float | None = 0.0, psi0: float | None =
         one, other = five(phi, psi)
     found = []
     for k in range(one.shape[1]):
-        a, b = one[:, k] + EXACT(given_phi), other[:, k] + EXACT(given_psi)
+        a, b = one[:, k] + given_phi[..., 0], other[:, k] + given_psi[..., 0]
         linear = of_zeros(phi + a[:, None], psi + b[:, None])
         values = np.concatenate([linear, a[:, None], b[:, None]], axis=-1)
         values = polished(values, phi, psi, free) if free else values

@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 
 PARAMETERS: Final[dict[str, str]] = {}
 W: Final = "synthesis_grashof"
@@ -139,7 +139,7 @@ def solve(asked: FourBar | CrankSlider | SlottedLever) -> Outcome:
     lengths = {name: value for name, value in vars(asked).items() if name not in ("frame", "driver")}
     for name, value in lengths.items():
         if name != "e" and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+            raise Infeasible(name, f"{W}.positive", *_closing(asked, lengths, name))
     given = tuple(Value(name, value, "length", f"{W}.{name}") for name, value in lengths.items())
     if isinstance(asked, FourBar):
         return _four_bar(asked, given)
@@ -153,6 +153,18 @@ def solve(asked: FourBar | CrankSlider | SlottedLever) -> Outcome:
         Value("", found.margin, "length", f"{W}.{which}_margin"),
     )
     return Outcome(given, values, f"{W}.source_{which}", () if name == "change" else (_turning(crank),))
+
+
+def _closing(
+    asked: FourBar | CrankSlider | SlottedLever, lengths: dict[str, Any], name: str
+) -> tuple[str, dict[str, Shown]]:
+    """Words of the least length of a link that is none: with it the links of a four-bar close."""
+    rest = sorted(float(value) for other, value in lengths.items() if other != name)
+    gap = rest[-1] - sum(rest[:-1]) if isinstance(asked, FourBar) else 0.0
+    if isinstance(asked, FourBar) and not rest[0] > 0:
+        return f"{W}.more_than_zero", {}
+    open_end = gap >= SMALLEST  # where the links would lie in one line
+    return f"{W}.at_least", {"least": (max(gap, SMALLEST), "length", *(("above",) if open_end else ()))}
 
 
 def _four_bar(asked: FourBar, given: tuple[Value, ...]) -> Outcome:

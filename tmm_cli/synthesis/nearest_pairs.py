@@ -2,51 +2,85 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, Final
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+from typing import Final
 
 import numpy as np
 
 from tmm_cli.synthesis import freudenstein
 from tmm_cli.synthesis.freudenstein import Bars
-from tmm_cli.synthesis.pairs import LONG, SCAN, Asked, chosen, quality, through
+from tmm_cli.synthesis.pair_changes import LINKS, WIDEST, Change, fewer_points, fit, length, numbers, together
+from tmm_cli.synthesis.pairs import LONG, Asked, quality
 from tmm_cli.synthesis.record import Infeasible, Shown
 
 W: Final = "synthesis_four_bar_by_angles"
-STEP: Final = np.radians(0.25)  # by which the last output angle is changed for the nearest task,
-WIDEST: Final = np.radians(60)  # and how far
-FEW: Final = 60  # four-bars through two pairs that are compared then, at coarser steps
-COARSE: Final = np.radians(1)
-SHARE: Final = 0.02  # by which a second length is changed with two pairs, and
-TIMES: Final = 100.0  # how far
-LINKS: Final = 50.0  # the longest link over the shortest of a four-bar that is worth while
-INWARDS: Final = 2e-6  # rad, or a share of a length, from where there is one first
+FIRST: Final = (0.1, 0.4)  # of all changes, which are tried before the others
+PARTS: Final = (8, 24)  # into which the way to the nearest change is divided again and again, with two pairs, with more
+SHARP: Final = 0.01  # of INWARDS: how near to the nearest change that leads
+INWARDS: Final = 2e-6  # rad, or a share of a length, from where there is one first;
+INWARDS_ALL: Final = 1e-4  # of a change of all output angles, each of which is rounded
+ROUNDED: Final = 2e-5  # of a number: by so much it may be rounded when it is told
+BEYOND: Final = 1e-7  # a change so much less is refused, or its links are too long
+USABLE: Final = np.radians(30)  # a transmission angle that will do: at a limit the four-bar is all but dead
+NEARLY: Final = 0.9  # of the best transmission angle there is: what is told where none will do
+TRIED: Final = 120  # changes farther inside that are looked at for that
+DEGREE: Final = np.radians(1)
 
 
 def refuse_found(asked: Asked, found: list[Bars]) -> None:
-    """None of what was found is any good: raises Infeasible, with the nearest last output angle or second length."""
-    key: tuple[str | int, ...] = ("output",) if asked.function else ("pairs", len(asked.psi) - 1)
+    """None of what was found is any good: raises Infeasible, with the nearest single number that helps."""
     defects = {quality(one, asked).defect for one in found}
     if found:
-        words = "all_both" if len(defects) > 1 else "all_branch" if defects == {"branch"} else "all_locks"
+        reason = "all_both" if len(defects) > 1 else "all_branch" if defects == {"branch"} else "all_locks"
     else:
-        words = "endless" if _endless(asked) else "none"
-    suffix = "" if found else "_alone"
-    if len(asked.lengths) == 2:
-        found_length = _nearest_length(asked)
-        if found_length is not None:
-            name, values = found_length
-            side = "more" if values["length"][2] == "least" else "less"
-            raise Infeasible(name, f"{W}.{words}", f"{W}.nearest_{side}{suffix}", values)
-    last = len(asked.psi) - 1
-    for which in (last, *range(0 if asked.function or len(asked.psi) < 3 else last)[::-1]):
-        near = _nearest_angle(asked, which)
-        if near is not None:
-            told = {"psi": near[0], "links": (f"{LINKS:g}", "word"), "which": (str(which + 1), "word")}
-            bound, of = "_long" if near[1] else "", "" if which == last else "_of"
-            raise Infeasible((*key[:-1], which) if of else key, f"{W}.{words}", f"{W}.nearest{bound}{of}{suffix}", told)
-    raise Infeasible(key, f"{W}.{words}", f"{W}.other{suffix}")
+        reason = "endless" if _endless(asked) else "none"
+    alone = "" if found else "_alone"
+    last: tuple[str | int, ...] = ("output",) if asked.function else ("pairs", len(asked.psi) - 1)
+    changes = [length(asked)] if len(asked.lengths) == 2 else []
+    near = _first(chain(changes, numbers(asked)))
+    if near is None and asked.function and (count := fewer_points(asked)):
+        raise Infeasible("output", f"{W}.{reason}", f"{W}.points_fewer{alone}", {"count": (str(count), "word")})
+    if near is None and asked.function:
+        near = _first(numbers(asked, 2 * WIDEST))
+    if near is not None:
+        change, move = near
+        words, values = _told(change, move)
+        key = (
+            last if len(change.key) == 1 and change.kind == "angle" else change.key[: len(last)]
+        )  # a zero is not given
+        raise Infeasible(key, f"{W}.{reason}", f"{W}.{words}{alone}", values)
+    if not asked.function and (values := _together(asked)):
+        raise Infeasible("pairs", f"{W}.{reason}", f"{W}.all_{len(asked.psi)}{alone}", values)
+    raise Infeasible(last, f"{W}.{reason}", f"{W}.other{alone}")
+
+
+def refuse_inputs(asked: Asked, which: Sequence[int], error: Infeasible) -> None:
+    """The input does not go on one way, less than a turn: raises the error, with the nearest of these input angles (of
+    a function: of its ends) with which it does, and a sound four-bar passes.
+    """
+    inputs = [change for change in numbers(asked, np.pi) if "input" in change.words and change.key[1] in which]
+    near = [found for change in inputs if (found := _first([change])) is not None]
+    if not near:
+        raise error
+    words, values = _told(*min(near, key=lambda one: abs(one[1])))
+    raise Infeasible(error.path, error.reason, f"{W}.{words}_alone", values | error.values)
+
+
+def _first(changes: Iterable[Change]) -> tuple[Change, float] | None:
+    """The first number that helps, and its least change."""
+    return next(((change, move) for change in changes for move in _nearest(change)), None)
+
+
+def _together(asked: Asked) -> dict[str, Shown]:
+    """All output angles, by the change of them all that moves none of them far; {}: there is none."""
+    near = [(change, next(_nearest(change), None)) for change in together(asked)]
+    found = [change.all(move) for change, move in near if change.all is not None and move is not None]
+    if not found:
+        return {}
+    moves = [max(abs(a - float(b)) for a, b in zip(psi, asked.psi, strict=True)) for psi in found]
+    best = int(np.argmin(moves))
+    return {f"psi{k + 1}": (psi, "angle") for k, psi in enumerate(found[best])} | {"most": (moves[best], "angle")}
 
 
 def _endless(asked: Asked) -> bool:
@@ -58,67 +92,68 @@ def _endless(asked: Asked) -> bool:
     return bool(np.any(np.isfinite(lengths) & (lengths >= LONG)))
 
 
-def _sound(asked: Asked, scan: int) -> tuple[bool, bool]:
-    """Whether there is a four-bar without defects, and whether its links are of sensible length."""
-    found = through(asked, scan)
-    at = chosen(asked, found)
-    if not 0 <= at < len(found) or quality(found[at], asked).defect:
-        return False, False
-    links = [1.0, *(float(x) for x in (found[at].l1, found[at].l2, found[at].l3))]
-    return True, max(links) <= LINKS * min(links)
+def _nearest(change: Change) -> Iterator[float]:
+    """Changes from which on there is a sound four-bar, the nearest first; it stays sound as the number is rounded."""
+    sizes, inside = change.step * np.arange(1, change.count + 1), {1.0: False, -1.0: False}
+    for some in np.split(sizes, [round(share * change.count) for share in FIRST]):
+        moves = np.stack([some, -some], axis=-1).ravel()
+        for move, here in zip(moves.tolist(), fit(change, moves).sensible.tolist(), strict=True):
+            sign = float(np.sign(move))
+            if here and not inside[sign]:
+                near = _edge(change, move, move - sign * change.step) + sign * _inwards(change)
+                rounded = near + sign * ROUNDED * (abs(change.value(near)) if change.kind == "angle" else 1.0)
+                if np.all(fit(change, [near, (near + rounded) / 2, rounded], closely=True).sensible):
+                    yield near
+            inside[sign] = here
 
 
-def _edge(good: Callable[[float], bool], inside: float, outside: float) -> float:
+def _inwards(change: Change) -> float:
+    return INWARDS if change.all is None else INWARDS_ALL
+
+
+def _edge(change: Change, inside: float, outside: float) -> float:
     """Where what is good inside begins."""
-    for _ in range(40):
-        middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if good(middle) else (inside, middle)
-    return inside
+    parts = PARTS[change.pairs > 2]
+    for _ in range(int(np.ceil(np.log(change.step / (SHARP * _inwards(change))) / np.log(parts)))):
+        places = np.linspace(outside, inside, parts + 1)
+        good = fit(change, places[1:-1], closely=True).sensible
+        last = int(np.flatnonzero([True, *~good])[-1])
+        outside, inside = places[last], places[last + 1]
+    return float(inside)
 
 
-def _nearest_angle(asked: Asked, which: int) -> tuple[Shown, bool] | None:
-    """The nearest output angle of a pair (of a function: its end) with which there is a four-bar without defects, and
-    whether the length of its links is what bounds it; None: there is none within 60 deg."""
-    two = len(asked.phi) < 3
-    scan, step = (FEW, COARSE) if two else (SCAN, STEP)
-
-    def ends(change: float) -> Asked:
-        if asked.function:
-            function = replace(asked.function, psi=(asked.function.psi[0], asked.function.psi[1] + change))
-            phi, psi = function.precision(len(asked.phi))
-            return replace(asked, function=function, phi=tuple(phi), psi=tuple(psi))
-        return replace(asked, psi=(*asked.psi[:which], asked.psi[which] + change, *asked.psi[which + 1 :]))
-
-    def good(change: float) -> bool:
-        return all(_sound(ends(change), scan))
-
-    for size in step * np.arange(1, round(WIDEST / step) + 1):
-        for change in (size, -size):
-            if good(change):
-                sign = float(np.sign(change))
-                inside = _edge(good, change, change - sign * step)
-                long = _sound(ends(inside - sign * 1e-7), scan)[0]
-                last = asked.function.psi[1] if asked.function else asked.psi[which]
-                end = float(last + inside + sign * INWARDS)
-                return (end, "angle", "least" if sign > 0 else "most"), long
-    return None
+def _told(change: Change, near: float) -> tuple[str, dict[str, Shown]]:
+    """The key of the words of a change, and its numbers."""
+    sign = float(np.sign(near))
+    values: dict[str, Shown] = {
+        "value": (change.value(near), change.kind, "least" if sign > 0 else "most"), "links": (f"{LINKS:g}", "word"),
+        "what": (f"{W}.what_{change.words}", "said"),
+    }  # fmt: skip
+    words = "nearest"
+    if change.kind == "length":
+        words = "nearest_more" if sign > 0 else "nearest_less"
+    long = bool(fit(change, [near - sign * (INWARDS + BEYOND)], closely=True).good[0])
+    usable = _usable(change, near)
+    if usable is not None:
+        values |= {"usable": (usable[0], change.kind), "transmission": (usable[1], "angle")}
+    return words + ("_long" if long else "") + ("_usable" if usable else ""), values
 
 
-def _nearest_length(asked: Asked) -> tuple[str, dict[str, Shown]] | None:
-    """With two pairs and two lengths: the nearest second one (m) for which there is a four-bar without defects."""
-    name = list(asked.lengths)[-1]
-    given = float(asked.lengths[name])
-
-    def good(share: float) -> bool:
-        changed = replace(asked, lengths=asked.lengths | {name: given * float(np.exp(share))})
-        return all(_sound(changed, SCAN))
-
-    for size in np.arange(SHARE, np.log(TIMES), SHARE):
-        for change in (size, -size):
-            if good(change):
-                sign = float(np.sign(change))
-                inside = _edge(good, change, change - sign * SHARE) + sign * INWARDS
-                value: Any = given * float(np.exp(inside))
-                side = "least" if sign > 0 else "most"
-                return name, {"length": (value, "length", side), "name": (name, "word")}
-    return None
+def _usable(change: Change, near: float) -> tuple[float, float] | None:
+    """A plain number beyond the limit with a transmission angle that will do, or nearly the best one, and that angle
+    (rad) in whole degrees; None where the limit itself is as good.
+    """
+    sign, limit = float(np.sign(near)), change.value(near)
+    if change.kind == "angle":
+        values = DEGREE * sign * (np.ceil(sign * limit / DEGREE) + np.arange(TRIED)) + 0.0  # none of them is -0
+    else:
+        values = np.array([float(f"{x:.3g}") for x in limit * np.exp(sign * change.step * np.arange(1, TRIED))])
+    moves = change.move(values)
+    moves = moves[np.abs(moves) <= change.step * change.count]
+    found, own = fit(change, moves), float(fit(change, [near], closely=True).least[0])
+    if not np.any(found.sensible):
+        return None
+    enough = min(USABLE, NEARLY * float(np.max(found.least[found.sensible])))
+    k = int(np.argmax(found.sensible & (found.least >= enough)))
+    told = DEGREE * np.floor(found.least[k] / DEGREE)
+    return (float(values[k]), float(told)) if told > own + DEGREE / 2 and own < USABLE else None

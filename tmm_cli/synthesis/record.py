@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tmm_cli.synthesis.construction import Construction, Diagram
 
 Shown = tuple[Any, ...]  # of a refusal: value, kind, and perhaps which side of it is allowed
+SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
 

@@ -8,19 +8,21 @@ D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.synthesis import slotted_lever
 from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
-from tmm_cli.synthesis.crank_slider import theta_of
+from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 W: Final = "synthesis_shaper"
+SHORT: Final = 1e-3  # rad: a swing that leaves room for all that can be asked; a share of one so near to half a turn
+HALVINGS: Final = 60
 
 
 @dataclass(frozen=True)
@@ -76,16 +78,27 @@ def refuse(asked: Asked) -> None:
     }  # fmt: skip
     for name, key in names.items():
         value = getattr(asked, name)
-        if value is not None and not value > 0:
-            raise Infeasible(key, f"{W}.positive", f"{W}.more_than_zero")
+        if value is not None and not value > 0 and name not in ("rod", "rod_ratio", "stroke"):
+            kind = "number" if name == "frame_ratio" else "length"
+            raise Infeasible(key, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, kind)})
     if not asked.k > 1:
-        values = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number", "most")}
+        values: dict[str, Shown] = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number", "most")}
         raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if 0 < asked.k < 1 else f"{W}.k_more", values)
+    half = float(theta_of(asked.k)) / 2
+    if not np.pi - 2 * half > slotted_lever.STRAIGHT:
+        raise Infeasible("k", f"{W}.straight", f"{W}.k_most", {"k": (_largest_k(asked), "number", "below")})
+    most, share = 1 / (1 + np.sin(half)), np.sin(half / 2) ** 2 / np.cos(half)
+    if not asked.stroke > 0:
+        _refuse_stroke(asked, 2 * float(np.sin(half)), most, share)
     if asked.pressure is not None and not 0 < asked.pressure < np.pi / 2:
-        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed")
+        values = {"low": (SMALLEST, "angle"), "high": (np.pi / 2 - half, "angle", "below")}
+        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed", values)
     f = find(asked)
-    lever, half = float(f.lever), float(f.theta) / 2
-    most = 1 / (1 + np.sin(half))
+    lever = float(f.lever)
+    short: dict[str, Shown] = {"rod": (lever * share, "length", "above"), "rod_ratio": (share, "number", "above")}
+    for name, limit in short.items():
+        if getattr(asked, name) is not None and not getattr(asked, name) > 0:
+            raise Infeasible(names[name], f"{W}.positive", f"{W}.rod_least", {"least": limit})
     if not f.frame < lever * most:
         limits: dict[str, Shown] = {
             "frame": (lever * most, "length", "below"), "frame_ratio": (most, "number", "below"),
@@ -97,10 +110,38 @@ def refuse(asked: Asked) -> None:
         if asked.pressure is not None:
             values = {"most": (np.pi / 2 - half, "angle", "below")}
             raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", values)
-        share = np.sin(half / 2) ** 2 / np.cos(half)
-        by_ratio = asked.rod is None
-        limit: Shown = (share, "number", "above") if by_ratio else (lever * share, "length", "above")
-        raise Infeasible("rod_ratio" if by_ratio else "DE", f"{W}.turns_back", f"{W}.rod_least", {"least": limit})
+        name = "rod" if asked.rod_ratio is None else "rod_ratio"
+        raise Infeasible(names[name], f"{W}.turns_back", f"{W}.rod_least", {"least": short[name]})
+
+
+def _largest_k(asked: Asked) -> float:
+    """Up to which k the other numbers make a shaper; a lesser k leaves more room for all of them."""
+
+    def good(theta: float) -> bool:
+        try:
+            refuse(replace(asked, k=k_of(theta)))
+        except Infeasible:
+            return False
+        return True
+
+    low, high = SHORT, np.pi - slotted_lever.STRAIGHT
+    if good(np.pi - slotted_lever.STRAIGHT * (1 + SHORT)) or not good(low):
+        return float(k_of(high))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if good(middle) else (low, middle)
+    return float(k_of(low))
+
+
+def _refuse_stroke(asked: Asked, chord: float, most: float, share: float) -> None:
+    """No stroke: the least that the frame or the crank leaves, if the rod is long enough for it. chord: H/CD; most:
+    OC/CD; share: the least DE/CD.
+    """
+    frame = float(asked.crank) / (chord / 2) if asked.crank is not None else float(asked.frame or 0.0)
+    least = max(SMALLEST, frame / most * chord)
+    fits = asked.rod is None or asked.rod * chord > least * share
+    values: dict[str, Shown] = {"least": (least, "length", *(("above",) if frame else ()))}
+    raise Infeasible("stroke", f"{W}.positive", f"{W}.at_least" if fits else f"{W}.more_than_zero", values)
 
 
 def solve(asked: Asked) -> Outcome:

@@ -8,7 +8,7 @@ distance from C, so the longest OC that leaves the stone on CB gives the least f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
 
@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box
 from tmm_cli.synthesis.crank_slider import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Shown, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Shown, Value
 from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
@@ -106,17 +106,20 @@ def refuse(asked: Asked) -> None:
         values = {"k": (float(k_of(np.pi - STRAIGHT)), "number", "below")}
         raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
     if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
-        raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed")
+        values = {"most": (np.pi - STRAIGHT, "angle", "below")}
+        raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed", values)
     for name, value in (("CB", asked.length), ("OC", asked.frame), ("OA", asked.crank)):
         if value is not None and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.more_than_zero")
+            raise Infeasible(name, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
     if asked.length is None and abs(asked.b2 - asked.b1) == 0:
         raise Infeasible("B2", f"{W}.same", f"{W}.other_place")
     if asked.within is not None:
         low, high = asked.within
+        longest = float(find(replace(asked, within=(1.0, 1.0))).longest)
         if not 0 < low <= high:
-            raise Infeasible("within", f"{W}.bounds", f"{W}.bounds_order")
-        longest = float(find(asked).longest)
+            first, last = max(SMALLEST, min(low, high, longest)), max(SMALLEST, low, high)
+            values = {"first": (first, "length", "most"), "last": (last, "length", "least")}
+            raise Infeasible("within", f"{W}.bounds", f"{W}.bounds_order", values)
         if low > longest:
             raise Infeasible("within", f"{W}.too_long", f"{W}.longest_most", {"longest": (longest, "length", "most")})
 

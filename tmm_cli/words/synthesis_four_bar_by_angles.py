@@ -54,38 +54,46 @@ WORDS: dict[str, str] = {
     f"{_W}.one_turn": "less than a turn from the first to the last input angle",
     f"{_W}.positive": "there is no such link",
     f"{_W}.more_than_zero": "more than zero",
+    f"{_W}.at_least": "{least} or more",
     f"{_W}.none": "no four-bar passes through these pairs",
     f"{_W}.all_branch": "branch defect: every four-bar through these pairs has some of them on its other assembly",
     f"{_W}.all_locks": "order defect: the input of every four-bar through these pairs locks on the way",
     f"{_W}.all_both": "every four-bar through these pairs has a branch defect, or its input locks on the way",
-    f"{_W}.nearest": "the last output angle {psi}; or defects: keep",
-    f"{_W}.other": "other angles, or defects: keep; no output angle alone within 60 deg of the given one helps",
+    f"{_W}.other": "other angles, or defects: keep; no angle alone within 60 deg of the given one helps",
     f"{_W}.endless": "the links of the four-bars through these pairs are infinitely long beside the frame",
-    f"{_W}.nearest_long": "the last output angle {psi}, with no link {links} times as long as another; "
-    "or defects: keep",
-    f"{_W}.nearest_long_alone": "the last output angle {psi}, with no link {links} times as long as another",
-    f"{_W}.nearest_more": "{name} {length} or more; or defects: keep",
-    f"{_W}.nearest_more_alone": "{name} {length} or more",
-    f"{_W}.nearest_less": "{name} {length} or less; or defects: keep",
-    f"{_W}.nearest_less_alone": "{name} {length} or less",
     f"{_W}.short_sound": "none",
     f"{_W}.short_branch": "branch",
     f"{_W}.short_locks": "order",
-    f"{_W}.nearest_alone": "the last output angle {psi}",
-    f"{_W}.other_alone": "other angles; no output angle alone within 60 deg of the given one helps",
+    f"{_W}.other_alone": "other angles; no angle alone within 60 deg of the given one helps",
     f"{_W}.parallelogram": "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its "
     "transmission angle is that of DC with AD; l1/l4 is free, 1/2 is taken",
     f"{_W}.reversed": "a zero angle is half a turn from the given one: in the given sense there is no such link",
     f"{_W}.its_branch": "branch defect: this solution has some pairs on its other assembly",
     f"{_W}.its_locks": "order defect: the input of this solution locks on the way",
-    f"{_W}.another": "another number; or choose: transmission; or defects: keep",
+    f"{_W}.another": "{numbers}; or choose: transmission; or defects: keep",
+    f"{_W}.keep": "defects: keep; every other solution has a defect too",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
 }
 WORDS |= {f"{_W}.column_{key}": text for key, text in _COLUMNS.items()}
-for _bound in ("", "_long"):
-    for _left in ("", "_alone"):
-        _last = WORDS[f"{_W}.nearest{_bound}{_left}"]
-        WORDS[f"{_W}.nearest{_bound}_of{_left}"] = _last.replace("the last output angle", "output angle {which}:")
+_NEAREST = {
+    "nearest": "{what} {value}", "nearest_more": "{what} {value} or more", "nearest_less": "{what} {value} or less",
+}  # fmt: skip
+_LONG = {"": "", "_long": ", with no link {links} times as long as another"}
+_USABLE = {"": "", "_usable": " ({usable} for a least transmission angle of {transmission})"}
+for _key, _text in _NEAREST.items():
+    for _bound, _why in _LONG.items():
+        for _plain, _number in _USABLE.items():
+            for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
+                WORDS[f"{_W}.{_key}{_bound}{_plain}{_left}"] = f"{_text}{_number}{_why}{_or}"
+for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
+    WORDS[f"{_W}.points_fewer{_left}"] = f"points: {{count}}{_or}"
+    for _count in range(2, 6):
+        _all = ", ".join(f"{{psi{k}}}" for k in range(1, _count + 1))
+        WORDS[f"{_W}.all_{_count}{_left}"] = f"output angles {_all}, each changed by {{most}} or less{_or}"
+WORDS |= {f"{_W}.what_{key}": key for key in ("l1", "l3", "l4", "phi0", "psi0")}
+for _key in ("input", "output"):
+    WORDS |= {f"{_W}.what_{_which}_{_key}": f"the {_which} {_key} angle" for _which in ("first", "last")}
+    WORDS |= {f"{_W}.what_{_key}_{k}": f"{_key} angle {k}:" for k in range(1, 6)}
 WORDS |= {f"{_W}.input{k}": f"input angle {k}" for k in range(1, 6)}
 WORDS |= {f"{_W}.pair{k}": f"output angle {k}" for k in range(1, 6)}

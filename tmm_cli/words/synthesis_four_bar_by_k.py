@@ -54,11 +54,13 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.line": "with k = 1 the circle is the line C1C2: A is any place of it beyond C1",
     "synthesis_four_bar_by_k.chosen": "chosen",
     "synthesis_four_bar_by_k.positive": "there is no such link",
-    "synthesis_four_bar_by_k.more_than_zero": "more than zero",
+    "synthesis_four_bar_by_k.at_least": "{least} or more",
     "synthesis_four_bar_by_k.k_below": "k is the time of the working stroke over that of the idle one, the shorter",
     "synthesis_four_bar_by_k.k_least": "more than 1; {k} for the same strokes",
     "synthesis_four_bar_by_k.k_range": "1 to {k}",
-    "synthesis_four_bar_by_k.k_zero": "more than 1",
+    "synthesis_four_bar_by_k.k_zero": "1 or more",
+    "synthesis_four_bar_by_k.k_zero_above": "more than 1",
+    "synthesis_four_bar_by_k.k_range_above": "more than 1, to {k}",
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
     "synthesis_four_bar_by_k.swing_range": "psi2 from {low} to {high}, other than psi1 = {psi1}",
     "synthesis_four_bar_by_k.k_above": "k is too large for this swing: on the whole circle the rocker would pass its "
@@ -66,9 +68,11 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.k_most": "k {k} or less, or psi2 {psi2} or more",
     "synthesis_four_bar_by_k.k_most_down": "k {k} or less, or psi2 {psi2} or less",
     "synthesis_four_bar_by_k.k_most_alone": "k {k} or less",
+    "synthesis_four_bar_by_k.k_most_other": "k {k} or less with another choice of A",
     "synthesis_four_bar_by_k.sense": "with this sense of the crank the slow stroke leads from psi2 to psi1",
     "synthesis_four_bar_by_k.sense_most": "the other sense, or k {k} or less",
     "synthesis_four_bar_by_k.sense_other": "the other sense",
+    "synthesis_four_bar_by_k.sense_both": "the other sense with k {other} or less",
     "synthesis_four_bar_by_k.best_none": "with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the "
     "farther A is",
     "synthesis_four_bar_by_k.best_others": "k more than 1; or l2, l4, near or choose: supports level, the pressure "
@@ -81,6 +85,7 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.l1_none": "no pivot of the admissible arcs gives such a crank",
     "synthesis_four_bar_by_k.l2_none": "no pivot of the admissible arcs gives such a coupler",
     "synthesis_four_bar_by_k.l1_same": "with k = 1 every crank is half of C1C2",
+    "synthesis_four_bar_by_k.l1_above": "k {k} or more; or l2, l4, near or supports level; the crank is {l1}",
     "synthesis_four_bar_by_k.l1_others": "l2, l4, near or supports level; the crank is {l1}",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "{low} to {high}",
@@ -91,6 +96,8 @@ for _where in ("higher", "lower"):
     _key = f"synthesis_four_bar_by_k.level_{_where}"
     WORDS |= {
         _key: f"best transmission, l4 or near; at best A is {{offset}} {_where} than D",
+        f"{_key}_turned": f"psi1 {{psi1}} and psi2 {{psi2}}, both turned by {{turn}}; or best transmission, l4 or "
+        f"near; now A is at best {{offset}} {_where} than D",
         f"{_key}_more": f"k {{k}} or more; now A is at best {{offset}} {_where} than D",
         f"{_key}_less": f"k {{k}} or less; now A is at best {{offset}} {_where} than D",
     }

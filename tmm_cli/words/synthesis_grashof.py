@@ -47,6 +47,7 @@ WORDS: dict[str, str] = {
     "synthesis_grashof.lever_margin": "|OC - OA| - e",
     "synthesis_grashof.positive": "there is no such link",
     "synthesis_grashof.more_than_zero": "more than zero",
+    "synthesis_grashof.at_least": "{least} or more",
     "synthesis_grashof.open": "the links do not close: {link} is as long as the others together, or longer",
     "synthesis_grashof.closing": "{link} {most} or less",
     "synthesis_grashof.source": "F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification "

@@ -7,9 +7,10 @@ from typing import Any, Final
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.units import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED, Dimension
+from tmm_cli.synthesis.record import SMALLEST
 
 MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
-LEAST: Final = 1e-6  # SI, rad, of what has a size: coordinates, offsets and angles may be as near to zero as they like
+# what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
 # a large k is refused by its task, with the largest that can be
 SIZES: Final = {NUMBER: ("k", "ratio", "frame_ratio", "rod_ratio"), ANGLE: ("pressure",)}
 PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
@@ -25,7 +26,7 @@ class Bounded(Sense):
         if most is None or (path and path[0] in PLAIN):
             return found
         sized = isinstance(key, str) and key != "e" and (want not in SIZES or key in SIZES[want])
-        least = LEAST if sized else 0.0
+        least = SMALLEST if sized else 0.0
         if (abs(found) <= most or key == "k") and (found == 0 or abs(found) >= least):
             return found
         low, high = (f"{self.units.from_si(bound, want):.6g}" for bound in (least, most))

@@ -16,6 +16,10 @@ from tmm_cli.problem.units import ANGLE, LENGTH, NUMBER
 from tmm_cli.synthesis.functions import ANGLES, FUNCTIONS, Function
 from tmm_cli.synthesis.pairs import Asked
 
+DOMAINS = {
+    "log10(x)": "x more than 0", "ln(x)": "x more than 0", "sqrt(x)": "x of 0 or more", "x^1.5": "x of 0 or more",
+    "1/x": "x on one side of 0",
+}  # fmt: skip
 LENGTHS = ("l1", "l2", "l3", "l4")
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
@@ -141,6 +145,8 @@ def _sound(function: Function) -> None:
         key = "x" if function.x[0] == function.x[1] else "input"
         raise ProblemError("this range is empty", path=(key,), allowed="two different ends")
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
+        other = "two ends at which the function differs"
         raise ProblemError(
-            "the function has no values there, or the same at both ends", path=("x",), allowed="another range"
-        )
+            "the function has no values there, or the same at both ends", path=("x",),
+            allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
+        )  # fmt: skip
