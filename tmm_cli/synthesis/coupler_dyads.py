@@ -24,7 +24,7 @@ FAR, NEAR = 100.0, 10.0  # reach of a given turn, over that size: beyond it is r
 SURE: Final = 1e-6  # rad: with less than that of transmission it is not sure that a four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 QUICK: Final = Effort(60, 16, 8, (), 96, 5, 10)  # finds a sound four-bar in most tasks that have one, in 0.02 s
-THOROUGH: Final = Effort(120, 40, 16, ((4, 8, 6), (1, 14, 8)), 256, 9, 24)
+THOROUGH: Final = Effort(120, 40, 12, ((4, 6, 5), (1, 10, 8)), 256, 9, 24)
 EFFORTS: Final = (None, THOROUGH, QUICK)  # another layout of the curves may find a strip that one passes over
 SIDES: Final = {"left": 1.0, "right": -1.0}
 

@@ -12,7 +12,6 @@ from tmm_cli.synthesis.burmester import Dyads, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import (
     QUICK,
     SIDES,
-    THOROUGH,
     TURNS,
     Asked,
     Side,
@@ -26,6 +25,7 @@ from tmm_cli.synthesis.coupler_dyads import (
 )  # fmt: skip
 from tmm_cli.synthesis.coupler_points import by_points, pair, sound
 from tmm_cli.synthesis.nearest_positions import LESS, limit, soluble
+from tmm_cli.synthesis.nearest_turns import by_both_turns
 from tmm_cli.synthesis.record import Infeasible, Shown
 
 GRID: Final = np.radians(0.1)  # of turns that are tried
@@ -33,12 +33,7 @@ COARSE: Final = np.radians(0.5)  # the same, where the other link is free
 INWARDS: Final = 1e-6  # rad, or a share of a length, from where there is a sound four-bar first
 SHARE: Final = 0.02  # by which a length is changed, and
 TIMES: Final = 20.0  # how far
-PAIRS: Final = 6  # of links that are drawn nearer to what was asked, by
-ROUNDS: Final = 28  # tables of turns round the best, each half as wide as the one before
-TABLE: Final = np.linspace(-2, 2, 9)
 SWAPPED: Final = ("sides", "length", "point", "turn", "turns", "turns_no_box")  # words that name DC as driver too
-DEAD: Final = 1e-5  # rad of transmission: so much is left by turns that are told
-ROUNDED: Final = 1e-5  # what six digits may add to a value
 
 
 def refuse_turn(asked: Asked, name: str, given: Mapping[str, Dyads]) -> None:
@@ -56,7 +51,7 @@ def refuse_turn(asked: Asked, name: str, given: Mapping[str, Dyads]) -> None:
         told = _turn(asked, name, others[0] if others else None) if others or len(given) == 1 else None
     if told is not None:
         raise Infeasible(key, reason, f"{W}.nearest_turn", values | {"turn": told})
-    words, told_values = _by_both_turns(asked)
+    words, told_values = by_both_turns(asked)
     raise Infeasible(key, reason, f"{W}.{words}", values | told_values)
 
 
@@ -109,7 +104,7 @@ def _turn(asked: Asked, name: str, other: Dyads | None) -> Shown | None:
         return replace(asked, sides={**asked.sides, name: replace(side, turn=turn)})
 
     told = _nearest(good, side.turn, COARSE)
-    if told is None or not soluble(with_turn(told[0]), QUICK, THOROUGH):
+    if told is None or not soluble(with_turn(told[0])):
         return told
     given, turn = float(side.turn), float(told[0])
     sign = float(np.sign(turn - given))
@@ -130,80 +125,9 @@ def _by_turns(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Sh
             if told is not None:
                 found.append((abs(told[0] - float(asked.sides[name].turn)), name, told))
     if not found:
-        return _by_both_turns(asked)
+        return by_both_turns(asked)
     _, name, told = min(found, key=lambda row: row[0])
     return "turn", {"turn": told, "name": (f"{name}_turn", "word")}
-
-
-def _by_both_turns(asked: Asked) -> tuple[str, dict[str, Shown]]:
-    """Four positions: the pair of links on Burmester's curves without defects that is nearest to what was asked."""
-    grid = -np.pi + 2 * np.pi * (np.arange(TURNS) + 0.5) / TURNS
-    turns, branches = np.tile(grid, 2), np.repeat([0, 1], TURNS)
-    halves = [by_turn(asked.poses, grid, branch) for branch in (0, 1)]
-    links = Dyads(*(np.concatenate([getattr(x, key) for x in halves]) for key in ("pivot", "pin")))
-    good = sound(asked, links[:, None], links[None, :]) & fair(asked, links[:, None], links[None, :])
-    if not np.any(good):
-        return "other_positions", {}
-    away = [_away(asked, name, turns, branches, links) for name in ("AB", "DC")]
-    cost = np.where(good, away[0][:, None] + away[1][None, :], np.inf)
-    found = []
-    for at in np.argsort(cost, axis=None)[:PAIRS]:
-        i, j = np.unravel_index(int(at), cost.shape)
-        if good[i, j]:
-            found.append(_drawn_in(asked, (turns[i], turns[j]), (int(branches[i]), int(branches[j]))))
-    _, (one, other), (first, second) = min(found, key=lambda row: row[0])
-    return "turns", {
-        "one": one, "first": (str(first + 1), "word"), "other": other, "second": (str(second + 1), "word")
-    }  # fmt: skip
-
-
-def _away(asked: Asked, name: str, turns: Any, branches: Any, links: Dyads) -> Any:
-    """How far links are from what was asked of one: rad, or a share of the size of the task for a wanted pivot."""
-    side = asked.sides.get(name, Side())
-    if side.turn is not None:
-        return np.abs(np.angle(np.exp(1j * (turns - float(side.turn))))) + COARSE * (branches != side.branch)
-    if side.near is not None:
-        return np.abs(np.asarray(links.pivot, complex) - complex(side.near)) / asked.size
-    return np.zeros(np.shape(turns))
-
-
-def _drawn_in(
-    asked: Asked, turns: tuple[float, float], branches: tuple[int, int]
-) -> tuple[float, list[Shown], tuple[int, int]]:
-    """How far a sound pair of links is from what was asked, and its turns, once it is as near as it can be: tables of
-    turns round the best so far."""
-    step, cost = 2 * np.pi / TURNS / 2, np.inf
-
-    def pairs(one: Any, other: Any) -> tuple[Any, Any]:
-        links = [by_turn(asked.poses, turn, branch) for turn, branch in zip((one, other), branches, strict=True)]
-        away = [
-            _away(asked, name, turn, branch, link)
-            for name, turn, branch, link in zip(("AB", "DC"), (one, other), branches, links, strict=True)
-        ]
-        here = links[0][:, None], links[1][None, :]
-        return sound(asked, *here, least=DEAD), away[0][:, None] + away[1][None, :]
-
-    best = np.array(turns, float)
-    for _ in range(ROUNDS):
-        ways = [at + step * TABLE for at in best]
-        good, away = pairs(*ways)
-        away = np.where(good, away, np.inf)
-        i, j = np.unravel_index(int(np.argmin(away)), away.shape)
-        if away[i, j] < np.inf:
-            best, cost = np.array([ways[0][i], ways[1][j]]), float(away[i, j])
-        step /= 2
-    sides = [asked.sides.get(name, Side()).turn for name in ("AB", "DC")]
-    ways = [0.0 if turn is None else float(np.angle(np.exp(1j * (at - float(turn))))) for at, turn in zip(
-        best, sides, strict=True)]  # fmt: skip
-    signs = np.sign(ways)
-    inwards = next((x for x in INWARDS * np.array([1.0, 4.0, 16.0]) if pairs(
-        *((best + x * signs)[:, None]))[0][0, 0]), 0.0)  # fmt: skip
-    best = best + inwards * signs
-    rounded = [at + ROUNDED * abs(at) * np.array([0.0, 1.0 if sign > 0 else -1.0]) for at, sign in zip(
-        best, signs, strict=True)]  # fmt: skip
-    whole = bool(np.all(pairs(*rounded)[0]))
-    ends = ["exact" if not whole or sign == 0 else "least" if sign > 0 else "most" for sign in signs]
-    return cost, [(float(at), "angle", end) for at, end in zip(best, ends, strict=True)], branches
 
 
 def _by_lengths(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Shown]]:

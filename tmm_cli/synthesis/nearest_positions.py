@@ -32,10 +32,11 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 FARTHEST: Final = 0.3  # change of a position: rad, or a share of the size of the task
 NEAREST: Final = 0.03  # of that: the least change that is tried first
 LEVELS: Final = 9  # changes that are tried;
-BETWEEN: Final = 3  # and then between the last that does not help and the first that does
+BETWEEN: Final = 2  # and then between the last that does not help and the first that does
 ROUGH: Final = 60  # of that gap: how finely changes are compared
 FINE: Final = 44  # the same where a try is cheap
-STRIDE: Final = 4.0  # from a step towards the limit to the next
+LONGER: Final = ((THOROUGH, 9), (None, 3))  # searches, and how many of them follow a limit
+STRIDE: Final = 6.0  # from a step towards the limit to the next
 LESS: Final = 1e-4  # a change that is less by this share is surely refused
 INWARDS: Final = 1e-6  # rad, or a share of the size, from where there is a four-bar first
 ROUNDED: Final = 1e-5  # what six digits may add to a value
@@ -45,20 +46,20 @@ PARTS: Final = {"x": 1.0, "y": 1j, "angle": 0.0}
 Change = tuple[int, str, float]  # number of the position, what of it, and the sense
 
 
-def guiding(asked: Asked, *efforts: Effort) -> tuple[Dyads, Dyads] | None:
+def guiding(asked: Asked, *efforts: Effort | None) -> tuple[Dyads, Dyads] | None:
     """Dyads AB and DC if the task is solved; with short searches a four-bar may be missed, never invented."""
     with np.errstate(all="ignore"):
         given = _given(asked)
         if given is None or len(given) == 2:
             return None if given is None or not _accepted(asked, *given.values()) else (given["AB"], given["DC"])
         for loose in (False, True)[: 1 + asked.keep]:
-            found = searched(asked, given, loose, efforts or EFFORTS)
+            found = searched(asked, given, loose, efforts or EFFORTS[::-1])
             if found is not None and found[2] > SURE:
                 return found[:2]
     return None
 
 
-def soluble(asked: Asked, *efforts: Effort) -> bool:
+def soluble(asked: Asked, *efforts: Effort | None) -> bool:
     """Whether there are such dyads."""
     return guiding(asked, *efforts) is not None
 
@@ -97,11 +98,23 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
         return error
     keep = "_or_keep" if error.reason.startswith(f"{W}.has_") else ""
     values = _position(asked, solves)
-    if values is None:
-        words = words if asked.within is None else "no_box"
-        far: dict[str, Shown] = {"share": (f"{FARTHEST:g}", "word"), "turn": (FARTHEST, "angle")}
-        return Infeasible(error.path, error.reason, f"{W}.{words}_far{keep}", error.values | far)
-    return Infeasible(error.path, error.reason, f"{W}.position{keep}", error.values | values)
+    if values is not None:
+        return Infeasible(error.path, error.reason, f"{W}.position{keep}", error.values | values)
+    if len(asked.places) == 4 and asked.sides and not still(asked.poses):
+        free = replace(asked, sides={})
+        left = {"left": (", ".join(_keys(asked)), "word")}
+        if solves(free):
+            return Infeasible(error.path, error.reason, f"{W}.left_out{keep}", error.values | left)
+        if (values := _position(free, solves)) is not None:
+            return Infeasible(error.path, error.reason, f"{W}.left_out_position{keep}", error.values | values | left)
+    words = words if asked.within is None else "no_box"
+    far: dict[str, Shown] = {"share": (f"{FARTHEST:g}", "word"), "turn": (FARTHEST, "angle")}
+    return Infeasible(error.path, error.reason, f"{W}.{words}_far{keep}", error.values | far)
+
+
+def _keys(asked: Asked) -> list[str]:
+    """Keys of a file that tell which links are wanted."""
+    return [f"{name[0]}_near" if side.near is not None else f"{name}_turn" for name, side in asked.sides.items()]
 
 
 def edge(good: Callable[[float], bool], inside: float, outside: float, width: float) -> float:
@@ -113,13 +126,21 @@ def edge(good: Callable[[float], bool], inside: float, outside: float, width: fl
 
 
 def limit(asked_by: Callable[[float], Asked], inside: float, outside: float, less: float) -> float:
-    """The same of a change of the task, but for `less`; near it short searches miss what is there."""
+    """The same of a change of a task that is not solved as it is, but for `less`; near it short searches miss what is
+    there, and long ones are costly: there are few of those."""
     found = edge(lambda change: soluble(asked_by(change), QUICK), inside, outside, less / 4)
-    step = less * float(np.sign(outside - inside))
-    while abs(step) < abs(found - outside) and soluble(asked_by(found + step), THOROUGH, QUICK):
-        found, step = found + step, STRIDE * step
-    nearer = found + step if abs(step) < abs(found - outside) else outside
-    return edge(lambda change: soluble(asked_by(change), THOROUGH, QUICK), found, nearer, less)
+    sign = float(np.sign(outside - inside))
+    for effort, tries in LONGER:
+        step, nearer = less * sign, None
+        for _ in range(tries):
+            there = found + step if nearer is None else (found + nearer) / 2
+            if soluble(asked_by(there), effort):
+                found, step = there, STRIDE * step
+            else:
+                nearer = there
+            if nearer is not None and abs(nearer - found) <= less:
+                break
+    return found
 
 
 def _changed(asked: Asked, change: Change, size: float) -> Asked:
