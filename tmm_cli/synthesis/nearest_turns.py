@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -18,9 +19,9 @@ ROUNDS: Final = 28  # tables of turns round the best, each half as wide as the o
 TABLE: Final = np.linspace(-2, 2, 9)
 LINE: Final = np.linspace(0, 1, 129)  # then turns of one link on the way to what was asked
 HALVINGS: Final = 40
-DEAD: Final = 1e-5  # rad of transmission: so much is left
-INWARDS: Final = (1e-6, 4e-6, 1.6e-5, 0.0)  # rad, from where there is a sound four-bar first
-ROUNDED: Final = 1e-5  # what six digits may add to a value
+DEAD: Final = 2e-7  # rad of transmission, more than rounding makes of none
+LINES: Final = 40  # rounds of them at most, until
+SETTLED: Final = 1e-8  # rad: they no longer move
 
 
 def by_both_turns(asked: Asked) -> tuple[str, dict[str, Shown]]:
@@ -38,10 +39,12 @@ def by_both_turns(asked: Asked) -> tuple[str, dict[str, Shown]]:
     found = []
     for at in np.argsort(cost, axis=None)[: min(PAIRS, int(good.sum()))]:
         i, j = np.unravel_index(int(at), cost.shape)
-        found.append(_drawn_in(asked, (turns[i], turns[j]), (int(branches[i]), int(branches[j]))))
-    _, (one, other), (first, second) = min(found, key=lambda row: row[0])
+        found.append(_Pair(asked, (int(branches[i]), int(branches[j]))).by_tables(turns[i], turns[j]))
+    _, pair, one, other = min(found, key=lambda row: row[0])
+    one, other = pair.by_lines(one, other)
     return "turns", {
-        "one": one, "first": (str(first + 1), "word"), "other": other, "second": (str(second + 1), "word")
+        "one": (one, "angle", "exact"), "first": (str(pair.branches[0] + 1), "word"),
+        "other": (other, "angle", "exact"), "second": (str(pair.branches[1] + 1), "word"),
     }  # fmt: skip
 
 
@@ -60,45 +63,48 @@ def _away(asked: Asked, name: str, turns: Any, branches: Any, links: Dyads) -> A
     return np.zeros(np.shape(turns))
 
 
-def _drawn_in(
-    asked: Asked, turns: tuple[float, float], branches: tuple[int, int]
-) -> tuple[float, list[Shown], tuple[int, int]]:
-    """How far a pair of links is from what was asked once it is as near as it can be, and its turns; its branches."""
+@dataclass(frozen=True)
+class _Pair:
+    """Pairs of links on these branches."""
 
-    def tried(one: Any, other: Any) -> tuple[Any, Any]:
-        """Whether pairs are sound, and how far they are from what was asked."""
-        both = [by_turn(asked.poses, turn, branch) for turn, branch in zip((one, other), branches, strict=True)]
+    asked: Asked
+    branches: tuple[int, int]
+
+    def tried(self, one: Any, other: Any) -> tuple[Any, Any]:
+        """Whether pairs of these turns (rad) are sound, and how far they are from what was asked."""
+        turns = np.asarray(one), np.asarray(other)
+        links = [by_turn(self.asked.poses, turn, branch) for turn, branch in zip(turns, self.branches, strict=True)]
         away = [
-            _away(asked, name, turn, branch, links)
-            for name, turn, branch, links in zip(("AB", "DC"), (one, other), branches, both, strict=True)
+            _away(self.asked, name, turn, branch, link)
+            for name, turn, branch, link in zip(("AB", "DC"), turns, self.branches, links, strict=True)
         ]
-        return sound(asked, both[0], both[1], least=DEAD), away[0] + away[1]
+        return sound(self.asked, links[0], links[1], least=DEAD), away[0] + away[1]
 
-    def good(one: Any, other: Any) -> Any:
-        return tried(np.asarray(one), np.asarray(other))[0]
+    def by_tables(self, one: float, other: float) -> tuple[float, _Pair, float, float]:
+        """A sound pair that is nearer than one that is given, if there is one round it; first how far it is."""
+        step, least = np.pi / TURNS, np.inf
+        for _ in range(ROUNDS):
+            rows, columns = one + step * TABLE[:, None], other + step * TABLE[None, :]
+            here, away = self.tried(rows, columns)
+            away = np.where(here, away, np.inf)
+            i, j = np.unravel_index(int(np.argmin(away)), away.shape)
+            if here[i, j]:
+                one, other, least = float(rows[i, 0]), float(columns[0, j]), float(away[i, j])
+            step /= 2
+        return least, self, one, other
 
-    (one, other), step = turns, 2 * np.pi / TURNS / 2
-    for _ in range(ROUNDS):
-        rows, columns = one + step * TABLE[:, None], other + step * TABLE[None, :]
-        here, away = tried(rows, columns)
-        i, j = np.unravel_index(int(np.argmin(np.where(here, away, np.inf))), here.shape)
-        if here[i, j]:
-            one, other = float(rows[i, 0]), float(columns[0, j])
-        step /= 2
-    given = [asked.sides.get(name, Side()).turn for name in ("AB", "DC")]
-    if good(one, other):
-        for _ in range(2):  # a table stops where the way round a corner is too narrow for it
-            one = _along(lambda at, fixed=other: good(at, fixed), one, given[0])  # type: ignore[misc]
-            other = _along(lambda at, fixed=one: good(fixed, at), other, given[1])  # type: ignore[misc]
-    cost = float(tried(np.asarray(one), np.asarray(other))[1])
-    signs = [0.0 if turn is None else float(np.sign(_turned(at, turn))) for at, turn in zip(
-        (one, other), given, strict=True)]  # fmt: skip
-    inwards = next((x for x in INWARDS if good(one + x * signs[0], other + x * signs[1])), 0.0)
-    one, other = one + inwards * signs[0], other + inwards * signs[1]
-    more = [ROUNDED * abs(at) * sign for at, sign in zip((one, other), signs, strict=True)]
-    whole = all(good(one + i * more[0], other + j * more[1]) for i in (0, 1) for j in (0, 1))
-    ends = ["exact" if not whole or not sign else "least" if sign > 0 else "most" for sign in signs]
-    return cost, [(float(at), "angle", end) for at, end in zip((one, other), ends, strict=True)], branches
+    def by_lines(self, one: float, other: float) -> tuple[float, float]:
+        """The same pair drawn on along one turn and the other by turns: a table stops in a narrow corner."""
+        if not self.tried(one, other)[0]:
+            return one, other
+        given = [self.asked.sides.get(name, Side()).turn for name in ("AB", "DC")]
+        for _ in range(LINES):
+            before = one, other
+            one = _along(lambda at, fixed=other: self.tried(at, fixed)[0], one, given[0])  # type: ignore[misc]
+            other = _along(lambda at, fixed=one: self.tried(fixed, at)[0], other, given[1])  # type: ignore[misc]
+            if max(abs(one - before[0]), abs(other - before[1])) < SETTLED:
+                break
+        return one, other
 
 
 def _along(good: Callable[[Any], Any], turn: float, given: Any) -> float:
