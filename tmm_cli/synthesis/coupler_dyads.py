@@ -259,14 +259,10 @@ def fair(asked: Asked, one: Dyads, other: Dyads) -> Any:
 
 
 def _refuse_empty(asked: Asked) -> None:
-    """No link is to be had: because of the box, with the pivot that is nearest to it, or at all."""
+    """No link is to be had: because of the box, or at all."""
     if asked.within is not None:
         grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
         plain = Asked(asked.places, asked.angles, asked.sides, asked.keep)
-        found = [rows(plain, {}, grid, (0.0, branch), "AB")[0] for branch in (0, 1)]
-        pivots = np.asarray(np.concatenate([x.pivot for x in found]), complex)
-        if len(pivots):
-            place = complex(pivots[int(np.argmin(asked.outside(pivots)))])
-            values = {"x": (place.real, "length"), "y": (place.imag, "length")}
-            raise Infeasible("pivots_within", f"{W}.none_within", f"{W}.wider", values)
+        if any(rows(plain, {}, grid, (0.0, branch), "AB")[1] for branch in (0, 1)):
+            raise Infeasible("pivots_within", f"{W}.none_within", f"{W}.wider")
     raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")

@@ -79,7 +79,7 @@ WORDS: dict[str, str] = {
     f"{_W}.none_within": "no pivot of a link of sensible length lies in this box",
     f"{_W}.box_grown": "[[{one_x}, {one_y}], [{other_x}, {other_y}]]: the box with its sides moved outwards by {by}; "
     "the pivots of the best four-bar anywhere are [{Ax}, {Ay}] and [{Dx}, {Dy}]",
-    f"{_W}.wider": "a box that holds a pivot, such as [{x}, {y}]",
+    f"{_W}.wider": "a wider box",
     f"{_W}.curve": "Burmester's curves: pivots on the frame and their pins",
     f"{_W}.column_branch": "branch",
     f"{_W}.column_turn": "turn from 1 to 2",
