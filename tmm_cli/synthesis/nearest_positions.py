@@ -218,7 +218,7 @@ def _box(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
     """The least growth of the box on all sides with which the task is solved, and the pivots of the best four-bar
     anywhere; None: no box helps."""
     assert asked.within is not None
-    pair = guiding(replace(asked, within=None))
+    pair = guiding(replace(asked, within=None), *EFFORTS)
     if pair is None:
         return None
     found = [complex(one.pivot) for one in pair]
