@@ -293,7 +293,7 @@ REFUSED = {
         "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: AB 36.0556 mm or more",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]":
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
-        "  found:   [0, 0]\n  allowed: another B, or a slider instead of the link",
+        "  found:   [0, 0]\n  allowed: B [-1.5437 mm, 3.51333 mm], whose link reaches 50 times the size",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis: these keys do not determine AB with 3 positions\n  found:   AB, B\n  allowed: B; or A",
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
@@ -306,7 +306,7 @@ REFUSED = {
         "  found:   a list of 2\n  allowed: AB_side: left, DC_side: left; or DC as the driver; or defects: keep",
     f"positions: {FOUR}, AB_turn: -60":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 4\n  allowed: AB_turn 1.05197 deg; or defects: keep",
+        "  found:   a list of 4\n  allowed: AB_turn 0.001397 deg; or defects: keep",
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
         "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n  allowed: two points",
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
@@ -405,10 +405,12 @@ def test_free_pivots_lie_in_the_box_and_the_best_of_it_is_no_better_than_the_bes
         assert found["transmission"] <= free["transmission"] * (1 + 1e-4)
 
 
-def test_a_box_without_a_pivot_is_refused_with_pivots_that_a_box_may_hold():
+def test_a_box_without_a_pivot_is_refused_with_a_larger_one_and_with_pivots_that_a_box_may_hold():
     with pytest.raises(ProblemError) as caught:
         problem(f"positions: {FOUR}, pivots_within: [[1000, 1000], [1010, 1010]]")
-    ax, ay, dx, dy = (float(number) for number in re.findall(r"(\S+) mm", caught.value.allowed.replace("[", "")))
+    box, _, best = caught.value.allowed.partition(": the box")
+    problem(f"positions: {FOUR}, pivots_within: {box}")
+    ax, ay, dx, dy = (float(number) for number in re.findall(r"\[?(-?[\d.]+) mm[],]", best))
     low, high = [min(ax, dx) - 10, min(ay, dy) - 10], [max(ax, dx) + 10, max(ay, dy) + 10]
     problem(f"positions: {FOUR}, pivots_within: [{low}, {high}]")
     with pytest.raises(ProblemError, match="a box is for pivots that are free"):

@@ -122,17 +122,23 @@ def _circle(poses: Poses, equal: list[int], odd: int) -> Circle:
     return Circle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
 
 
-def parts(found: Curve, good: Callable[[Dyads], Any], size: float, count: int) -> list[Part]:
-    """The parts where dyads are good, with about `count` places in all; their ends are exact."""
+def scanned(found: Curve, size: float, first: int = FIRST, rounds: int = ROUNDS) -> list[Any]:
+    """Parameters all round every loop, nearer to each other where dyads of a sensible place change fast."""
+    return [] if isinstance(found, One) else [_scanned(found, loop, size, first, rounds) for loop in range(len(found))]
+
+
+def parts(
+    found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int, halvings: int = HALVINGS
+) -> list[Part]:
+    """The parts where dyads are good, with about `count` places in all; their ends are exact but for few halvings."""
     if isinstance(found, One):
         return [Part(0, np.zeros(1))]
     rows = []
-    for loop in range(len(found)):
-        t = _scanned(found, loop, size)
+    for loop, t in enumerate(scans):
         here = good(found.at(loop, t))
         starts, ends = (np.flatnonzero(x) for x in (here[1:] & ~here[:-1], here[:-1] & ~here[1:]))
-        low = _edges(found, loop, good, t[starts + 1], t[starts])
-        high = _edges(found, loop, good, t[ends], t[ends + 1])
+        inside, outside = np.concatenate([t[starts + 1], t[ends]]), np.concatenate([t[starts], t[ends + 1]])
+        low, high = np.split(_edges(found, loop, good, inside, outside, halvings), [len(starts)])
         low = np.concatenate([t[:1] if here[0] else t[:0], low])
         high = np.concatenate([high, t[-1:] if here[-1] else t[:0]])
         for a, b in zip(low, high, strict=True):
@@ -150,10 +156,9 @@ def parts(found: Curve, good: Callable[[Dyads], Any], size: float, count: int) -
     return made
 
 
-def _scanned(found: Curve, loop: int, size: float) -> Any:
-    """Parameters all round a loop, nearer to each other where dyads of a sensible place change fast."""
-    t = FULL * np.linspace(0, 1, FIRST + 1, dtype=EXACT)
-    for _ in range(ROUNDS):
+def _scanned(found: Curve, loop: int, size: float, first: int, rounds: int) -> Any:
+    t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
+    for _ in range(rounds):
         dyads = found.at(loop, t)
         near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size  # type: ignore[union-attr]
         wide = (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART)
@@ -170,8 +175,8 @@ def _gaps(dyads: Dyads, size: float) -> Any:
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
 
 
-def _edges(found: Curve, loop: int, good: Callable[[Dyads], Any], inside: Any, outside: Any) -> Any:
-    for _ in range(HALVINGS):
+def _edges(found: Curve, loop: int, good: Callable[[Dyads], Any], inside: Any, outside: Any, halvings: int) -> Any:
+    for _ in range(halvings):
         middle = (inside + outside) / 2
         here = good(found.at(loop, middle))
         inside, outside = np.where(here, middle, inside), np.where(here, outside, middle)

@@ -16,13 +16,26 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.burmester import Dyads, Poses
-from tmm_cli.synthesis.burmester_curve import Curve, One, Part, curve, parts
+from tmm_cli.synthesis.burmester_curve import FIRST, HALVINGS, ROUNDS, Curve, One, Part, curve, parts, scanned
 
 COUNT: Final = 400  # places on a curve, about
 STARTS: Final = 160
 COARSE: Final = 24  # rounds of all starts
 OUTER, INNER = 9, 17  # places of AB, and of DC for each of them, that are compared in a round of the last search
 LAST: Final = ((10, 10, 8), (2, 20, 12))  # how many are searched on, for how many rounds, and rounds within a round
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How thorough a search is: one that finds a sound four-bar shows that there is one, however short it was."""
+
+    count: int
+    starts: int
+    coarse: int = COARSE
+    last: tuple[tuple[int, int, int], ...] = LAST
+    first: int = FIRST
+    rounds: int = ROUNDS
+    halvings: int = HALVINGS
 
 
 @dataclass(frozen=True)
@@ -54,16 +67,23 @@ class Rows:
 
 
 def best(
-    poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False
-) -> tuple[Dyads, Dyads, float] | None:
+    poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False,
+    effort: Effort | None = None,
+) -> tuple[Dyads, Dyads, float] | None:  # fmt: skip
     """Dyads AB and DC and how good they are: the least transmission angle (rad), or less than zero where there is a
     defect, or the coupler or frame is not sensible. None where no link is sensible. loose: branches are not asked for.
     """
-    order = None if loose else poses
-    rows = [_rows(poses, size, limits, given.get(name), order if name == "AB" else None) for name in ("AB", "DC")]
-    if rows[0] is None and not loose:
-        rows[0] = _rows(poses, size, limits, given.get("AB"), None)
-    one, other = rows
+    effort = effort or Effort(COUNT, STARTS)
+    whole = curve(poses)
+    scans = scanned(whole, size, effort.first, effort.rounds)
+
+    def rows(name: str, order: Poses | None) -> Rows | None:
+        found = One(given[name]) if name in given else whole
+        return _rows(poses, found, scans, size, limits, order, effort)
+
+    one, other = rows("AB", None if loose else poses), rows("DC", None)
+    if one is None and not loose:
+        one = rows("AB", None)
     if one is None or other is None:
         return None
 
@@ -71,15 +91,17 @@ def best(
         return scored(poses, one.at(x), other.at(y), limits, loose)
 
     table = score(np.arange(len(one.t))[:, None], np.arange(len(other.t))[None, :])
-    x, y = _starts(table, one, other)
-    x, y, value = _climbed(score, x, y, one, other)
-    for last in LAST:
+    x, y = _starts(table, one, other, effort.starts)
+    x, y, value = _climbed(score, x, y, one, other, effort.coarse)
+    for last in effort.last:
         x, y, value = _finished(score, (x, y, value), one, other, last)
     at = int(np.argmax(value))
     return one.at(x[at : at + 1])[0], other.at(y[at : at + 1])[0], float(value[at])
 
 
-def _rows(poses: Poses, size: float, limits: Limits, given: Dyads | None, order: Poses | None) -> Rows | None:
+def _rows(
+    poses: Poses, found: Curve, scans: list[Any], size: float, limits: Limits, order: Poses | None, effort: Effort
+) -> Rows | None:
     def good(dyads: Dyads) -> Any:
         with np.errstate(all="ignore"):
             b = poses.on_frame(dyads.pin)
@@ -93,8 +115,7 @@ def _rows(poses: Poses, size: float, limits: Limits, given: Dyads | None, order:
             turn = steps.sum(-1)
             return sound & ((turn < 2 * np.pi) | (turn > 2 * np.pi * (steps.shape[-1] - 1)))
 
-    found = One(given) if given is not None else curve(poses)
-    made: list[Part] = parts(found, good, size, COUNT)
+    made: list[Part] = parts(found, scans, good, size, effort.count, effort.halvings)
     if not made:
         return None
     counts = [len(part.t) for part in made]
@@ -142,7 +163,7 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
     return np.where(np.isfinite(value), value, -99.0)
 
 
-def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
+def _starts(table: Any, one: Rows, other: Rows, count: int) -> tuple[Any, Any]:
     """Places (numbers) of pairs that are not worse than their neighbours on the same parts, the best first."""
     top = np.ones(table.shape, bool)
     for axis, rows in ((0, one), (1, other)):
@@ -153,16 +174,16 @@ def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
         peak[:-1] &= ~same | (values[:-1] >= values[1:])
         peak[1:] &= ~same | (values[1:] >= values[:-1])
     x, y = np.nonzero(top)
-    order = np.argsort(-table[x, y], kind="stable")[:STARTS]
+    order = np.argsort(-table[x, y], kind="stable")[:count]
     return x[order].astype(float), y[order].astype(float)
 
 
-def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
+def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows, rounds: int) -> tuple[Any, Any, Any]:
     """Starts improved together: a small table round each, smaller where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((one, x), (other, y))]
     step = np.ones(len(x))
-    for _ in range(COARSE):
+    for _ in range(rounds):
         near = [
             np.clip(at[:, None] + step[:, None] * shifts, low[:, None], high[:, None])
             for at, (low, high) in zip((x, y), ends, strict=True)

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_cli.roots import least
 from tmm_cli.synthesis import burmester_search
 from tmm_cli.synthesis.burmester import Dyads, Poses, beside, by_turn, centre, unit
-from tmm_cli.synthesis.burmester_search import Limits
+from tmm_cli.synthesis.burmester_search import Effort, Limits
 from tmm_cli.synthesis.record import Infeasible
 
 W: Final = "synthesis_coupler_positions"
@@ -23,6 +23,9 @@ SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the t
 FAR, NEAR = 100.0, 10.0  # reach of a given turn, over that size: beyond it is refused; of what is told instead
 SURE: Final = 1e-6  # rad: with less than that of transmission it is not sure that a four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
+QUICK: Final = Effort(60, 16, 8, (), 96, 5, 10)  # finds a sound four-bar in most tasks that have one, in 0.02 s
+THOROUGH: Final = Effort(120, 40, 12, ((4, 6, 5), (1, 10, 8)), 256, 9, 24)
+EFFORTS: Final = (None, THOROUGH, QUICK)  # another layout of the curves may find a strip that one passes over
 SIDES: Final = {"left": 1.0, "right": -1.0}
 
 
@@ -145,24 +148,42 @@ def of_near(asked: Asked, name: str) -> Dyads:
     return by_turn(asked.poses, np.asarray(turn, np.longdouble), branch)
 
 
-def best(asked: Asked, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+def limits(asked: Asked, given: Mapping[str, Dyads]) -> Limits:
+    """What is sensible beside the dyads that are given."""
     first, size = asked.poses.places[0], asked.size
     ends = [max((float(abs(x)) for x in row), default=0.0) for row in (
         [one.pivot - first for one in given.values()], [one.pin for one in given.values()])]  # fmt: skip
-    limits = Limits(
+    return Limits(
         SHORTEST * size, LONGEST * size, LONGEST * size + ends[0], LONGEST * size + ends[1],
         None if asked.within is None else asked.outside,
     )  # fmt: skip
+
+
+def searched(
+    asked: Asked, given: Mapping[str, Dyads], loose: bool = False, efforts: tuple[Effort | None, ...] = EFFORTS
+) -> tuple[Dyads, Dyads, float] | None:
+    """The best dyads beside those that are given and their transmission angle (rad), of the first search with a sound
+    four-bar, else of the last; None: there are none. loose: branches are not asked for."""
+    found, bounds = None, limits(asked, given)
+    for effort in efforts:
+        found = burmester_search.best(asked.poses, asked.size, bounds, dict(given), loose, effort)
+        if found is None or found[2] > SURE:
+            break
+    return found
+
+
+def best(asked: Asked, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
+    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+    bounds = limits(asked, given)
     for loose in (False, True):  # without a sound one: one whose branches only are not the same
-        found = burmester_search.best(asked.poses, size, limits, dict(given), loose)
+        found = searched(asked, given, loose, EFFORTS[: 1 if loose else None])
         if found is None:
             _refuse_empty(asked)
         elif found[2] > SURE:
             return found[:2]
     assert found is not None
     frame, coupler = abs(found[0].pivot - found[1].pivot), abs(found[0].pin - found[1].pin)
-    if limits.shortest <= min(frame, coupler) and frame <= limits.frame and coupler <= limits.coupler:
+    if bounds.shortest <= min(frame, coupler) and frame <= bounds.frame and coupler <= bounds.coupler:
         return found[:2]
     if asked.within is not None:
         raise Infeasible("pivots_within", f"{W}.no_room", f"{W}.roomy")
@@ -238,14 +259,10 @@ def fair(asked: Asked, one: Dyads, other: Dyads) -> Any:
 
 
 def _refuse_empty(asked: Asked) -> None:
-    """No link is to be had: because of the box, with the pivot that is nearest to it, or at all."""
+    """No link is to be had: because of the box, or at all."""
     if asked.within is not None:
         grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
         plain = Asked(asked.places, asked.angles, asked.sides, asked.keep)
-        found = [rows(plain, {}, grid, (0.0, branch), "AB")[0] for branch in (0, 1)]
-        pivots = np.asarray(np.concatenate([x.pivot for x in found]), complex)
-        if len(pivots):
-            place = complex(pivots[int(np.argmin(asked.outside(pivots)))])
-            values = {"x": (place.real, "length"), "y": (place.imag, "length")}
-            raise Infeasible("pivots_within", f"{W}.none_within", f"{W}.wider", values)
+        if any(rows(plain, {}, grid, (0.0, branch), "AB")[1] for branch in (0, 1)):
+            raise Infeasible("pivots_within", f"{W}.none_within", f"{W}.wider")
     raise Infeasible("positions", f"{W}.no_curve", f"{W}.other_positions")

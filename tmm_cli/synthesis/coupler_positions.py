@@ -7,7 +7,6 @@ a pivot, or those of best transmission. Positions must be on one assembly, reach
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -17,7 +16,8 @@ from tmm_cli.synthesis import guidance, loop
 from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
 from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Shown, Value
+from tmm_cli.synthesis.nearest_positions import told
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Asked", "Side", "both", "solve"]
@@ -77,25 +77,15 @@ def solve(asked: Asked) -> Outcome:
     try:
         return _solved(asked)
     except Infeasible as error:
-        if asked.within is None:
-            raise
-        raise _roomier(asked, error) from None
+        raise told(asked, error, _solves) from None
 
 
-def _roomier(asked: Asked, error: Infeasible) -> Infeasible:
-    """A refusal because of a box names the pivots of the best four-bar anywhere, if there is one."""
+def _solves(asked: Asked) -> bool:
     try:
-        one, other = both(replace(asked, within=None))
+        _solved(asked)
     except Infeasible:
-        return error
-    if int(marks(asked.poses, one, other).defect):
-        return error
-    values: dict[str, Shown] = {
-        f"{point}{axis}": (float(part), "length")
-        for point, pivot in (("A", complex(one.pivot)), ("D", complex(other.pivot)))
-        for axis, part in (("x", pivot.real), ("y", pivot.imag))
-    }  # fmt: skip
-    return Infeasible("pivots_within", error.reason, f"{W}.box_of_best", values)
+        return False
+    return True
 
 
 def _solved(asked: Asked) -> Outcome:

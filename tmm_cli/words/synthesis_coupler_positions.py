@@ -38,6 +38,8 @@ WORDS: dict[str, str] = {
     f"{_W}.elsewhere": "another {point}",
     f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",
     f"{_W}.off_line": "another {point}, or a slider instead of the link",
+    f"{_W}.off_line_at": "{point} [{x}, {y}], whose link reaches {sizes} times the size of the task, or a slider "
+    "instead of the link",
     f"{_W}.one_point": "{names} are one point: that is no four-bar",
     f"{_W}.two_points": "two points",
     f"{_W}.short": "{name} does not reach both places",
@@ -56,6 +58,9 @@ WORDS: dict[str, str] = {
     "length and direction, taken across the arms in the middle of their way",
     f"{_W}.source_still": "all points of a coupler that does not turn go on equal circles: A and D are their centres",
     f"{_W}.other_positions": "other positions",
+    f"{_W}.position": "position {which}: {part} {to}",
+    f"{_W}.left_out": "without {left}",
+    f"{_W}.left_out_position": "without {left}, and position {which}: {part} {to}",
     f"{_W}.no_curve": "Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)",
     f"{_W}.has_branch": "branch defect: some positions are on the other assembly of the four-bar",
     f"{_W}.has_turns_back": "order defect: AB does not reach the positions in order by turning one way",
@@ -67,13 +72,14 @@ WORDS: dict[str, str] = {
     f"{_W}.turn": "{name} {turn}; or defects: keep",
     f"{_W}.turns": "AB_turn {one} with AB_branch: {first} and DC_turn {other} with DC_branch: {second}; "
     "or defects: keep",
-    f"{_W}.wider_box": "a wider box, or defects: keep",
+    f"{_W}.turns_no_box": "AB_turn {one} with AB_branch: {first} and DC_turn {other} with DC_branch: {second}, and no "
+    "pivots_within; or defects: keep",
     f"{_W}.no_room": "two pivots of links, frame and coupler of sensible length have no room in this box",
     f"{_W}.roomy": "a wider box",
     f"{_W}.none_within": "no pivot of a link of sensible length lies in this box",
-    f"{_W}.box_of_best": "a box that holds the pivots of a four-bar without defects; of the best one, "
-    "[{Ax}, {Ay}] and [{Dx}, {Dy}]",
-    f"{_W}.wider": "a box that holds a pivot, such as [{x}, {y}]",
+    f"{_W}.box_grown": "[[{one_x}, {one_y}], [{other_x}, {other_y}]]: the box with its sides moved outwards by {by}; "
+    "the pivots of the best four-bar anywhere are [{Ax}, {Ay}] and [{Dx}, {Dy}]",
+    f"{_W}.wider": "a wider box",
     f"{_W}.curve": "Burmester's curves: pivots on the frame and their pins",
     f"{_W}.column_branch": "branch",
     f"{_W}.column_turn": "turn from 1 to 2",
@@ -98,7 +104,17 @@ WORDS: dict[str, str] = {
     f"{_W}.other_y": "pivots within, to y",
     f"{_W}.other_points": "other points or turns, or defects: keep",
 }
-for _key in ("sides", "length", "point", "turn", "turns"):
+for _key in ("position", "left_out", "left_out_position"):
+    WORDS[f"{_W}.{_key}_or_keep"] = WORDS[f"{_W}.{_key}"] + "; or defects: keep"
+_FAR = "; no change of one position by up to {turn}, or {share} of the size of the task, was found to help"
+for _key, _text in {
+    "other_positions": "other positions",
+    "other_points": "other points",
+    "still_slider": "places on a circle, or a slider",
+    "no_box": "other positions: without this box there is no such four-bar either",
+}.items():
+    WORDS |= {f"{_W}.{_key}_far": _text + _FAR, f"{_W}.{_key}_far_or_keep": f"{_text}{_FAR}; or defects: keep"}
+for _key in ("sides", "length", "point", "turn", "turns", "turns_no_box"):
     WORDS[f"{_W}.{_key}_swap"] = WORDS[f"{_W}.{_key}"].replace("; or", "; or DC as the driver; or")
 for _point, _text in {
     "A": "pivot A",
