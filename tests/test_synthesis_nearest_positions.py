@@ -120,8 +120,12 @@ def test_of_turns_that_are_told_for_both_links_none_can_be_nearer(positions, tur
 @pytest.mark.parametrize(("turn", "free"), [({"AB_turn": 14}, True), ({"AB_turn": 14, "DC_turn": -20}, False)])
 def test_the_nearest_turn_of_one_link_is_told_whether_the_other_is_free_or_given(turn, free):
     block = task([[0, 0, 0], [27, 36, 25], [48, 85, 48], [101, 94, 65]], **turn)
-    match = re.search(r"^(AB_turn|DC_turn) (\S+ deg); or defects: keep$", refused(block).allowed)
+    words = r"^(AB_turn|DC_turn) (\S+ deg) \((\S+ deg) for a least transmission angle of (\d+) deg\); or defects"
+    match = re.search(words, refused(block).allowed)
     solved(block | {match[1]: match[2]})
+    found = solved(block | {match[1]: match[3]}).found
+    least = next(float(v.value) for v in found if v.words.endswith(".transmission"))
+    assert np.degrees(least) > int(match[4]) >= 1
     plainly_refused(block | {match[1]: nearer(match[2], turn[match[1]])})
 
 

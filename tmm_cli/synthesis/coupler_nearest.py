@@ -24,6 +24,7 @@ from tmm_cli.synthesis.coupler_dyads import (
     rows,
 )  # fmt: skip
 from tmm_cli.synthesis.coupler_points import by_points, pair, sound
+from tmm_cli.synthesis.coupler_usable import usable_turn
 from tmm_cli.synthesis.nearest_positions import LESS, limit, soluble
 from tmm_cli.synthesis.nearest_turns import by_both_turns
 from tmm_cli.synthesis.record import Infeasible, Shown
@@ -45,14 +46,16 @@ def refuse_turn(asked: Asked, name: str, given: Mapping[str, Dyads]) -> None:
         length = float(abs(asked.poses.on_frame(own.pin)[..., 0] - own.pivot))
         reason, values = f"{W}.far_turn", {"length": (length, "length"), "name": (name, "word")}
     others = [found for other, found in given.items() if other != name and bool(exists(asked, found))]
+    rest = others[0] if others else None
     if asked.keep:
         told = _nearest(lambda turns: exists(asked, of_turn(asked, name, turns)), asked.sides[name].turn, GRID)
     else:
-        told = _turn(asked, name, others[0] if others else None) if others or len(given) == 1 else None
+        told = _turn(asked, name, rest) if others or len(given) == 1 else None
     if told is not None:
-        raise Infeasible(key, reason, f"{W}.nearest_turn", values | {"turn": told})
+        usable = {} if asked.keep else _usable(asked, name, rest, told)
+        raise Infeasible(key, reason, f"{W}.nearest_turn{'_usable' * bool(usable)}", values | {"turn": told} | usable)
     words, told_values = by_both_turns(asked)
-    raise Infeasible(key, reason, f"{W}.{words}", values | told_values)
+    raise Infeasible(key, reason, f"{W}.{words}{'_usable' * ('usable' in told_values)}", values | told_values)
 
 
 def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
@@ -63,8 +66,10 @@ def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
     swap = int(marks(asked.poses, other, one).defect) == 0
     if asked.within is not None and words == "turns":
         words = "turns_no_box"
+    if "usable" in values:
+        words = f"{words}_usable"
     if swap:
-        words = f"{words}_swap" if words in SWAPPED else "swap"
+        words = f"{words}_swap" if words.removesuffix("_usable") in SWAPPED else "swap"
     raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.{words}", values)
 
 
@@ -91,8 +96,7 @@ def _turn(asked: Asked, name: str, other: Dyads | None) -> Shown | None:
         return None
     if other is not None:
         return _nearest(lambda turns: sound(asked, *pair(name, of_turn(asked, name, turns), other)), side.turn, GRID)
-    grid = -np.pi + 2 * np.pi * (np.arange(TURNS) + 0.5) / TURNS
-    rest, _ = rows(asked, {}, grid, None, "DC" if name == "AB" else "AB")
+    rest = _others(asked, name)
 
     def good(turns: Any) -> Any:
         own = by_turn(asked.poses, turns, side.branch)[:, None]
@@ -121,13 +125,25 @@ def _by_turns(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Sh
     found = []
     for name, rest in (("AB", other), ("DC", one)):
         if name in asked.sides and asked.sides[name].turn is not None:
-            told = _turn(asked, name, rest if len(asked.sides) == 2 else None)
+            fixed = rest if len(asked.sides) == 2 else None
+            told = _turn(asked, name, fixed)
             if told is not None:
-                found.append((abs(told[0] - float(asked.sides[name].turn)), name, told))
+                found.append((abs(told[0] - float(asked.sides[name].turn)), name, told, fixed))
     if not found:
         return by_both_turns(asked)
-    _, name, told = min(found, key=lambda row: row[0])
-    return "turn", {"turn": told, "name": (f"{name}_turn", "word")}
+    _, name, told, fixed = min(found, key=lambda row: row[0])
+    usable = _usable(asked, name, fixed, told)
+    return "turn", {"turn": told, "name": (f"{name}_turn", "word")} | usable
+
+
+def _usable(asked: Asked, name: str, other: Dyads | None, told: Shown) -> dict[str, Shown]:
+    return usable_turn(asked, name, _others(asked, name) if other is None else other, told)
+
+
+def _others(asked: Asked, name: str) -> Dyads:
+    """Links of the curves beside the one of that name."""
+    grid = -np.pi + 2 * np.pi * (np.arange(TURNS) + 0.5) / TURNS
+    return rows(asked, {}, grid, None, "DC" if name == "AB" else "AB")[0]
 
 
 def _by_lengths(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Shown]]:

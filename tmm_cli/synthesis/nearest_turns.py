@@ -11,6 +11,7 @@ import numpy as np
 from tmm_cli.synthesis.burmester import Dyads, by_turn
 from tmm_cli.synthesis.coupler_dyads import TURNS, Asked, Side, fair
 from tmm_cli.synthesis.coupler_points import sound
+from tmm_cli.synthesis.coupler_usable import DEGREE, enough, transmission, whole
 from tmm_cli.synthesis.record import Shown
 
 BRANCH: Final = np.radians(0.5)  # what another branch counts beside a turn
@@ -42,9 +43,22 @@ def by_both_turns(asked: Asked) -> tuple[str, dict[str, Shown]]:
         found.append(_Pair(asked, (int(branches[i]), int(branches[j]))).by_tables(turns[i], turns[j]))
     _, pair, one, other = min(found, key=lambda row: row[0])
     one, other = pair.by_lines(one, other)
-    return "turns", {
+    return "turns", _usable(asked, links, turns, branches, cost) | {
         "one": (one, "angle", "exact"), "first": (str(pair.branches[0] + 1), "word"),
         "other": (other, "angle", "exact"), "second": (str(pair.branches[1] + 1), "word"),
+    }  # fmt: skip
+
+
+def _usable(asked: Asked, links: Dyads, turns: Any, branches: Any, cost: Any) -> dict[str, Shown]:
+    """The nearest pair of some links with a transmission angle that will do."""
+    least = transmission(asked, Dyads(links.pivot[:, None], links.pin[:, None]), links)
+    if not np.max(least) > DEGREE:
+        return {}
+    i, j = np.unravel_index(int(np.argmin(np.where(least >= enough(least), cost, np.inf))), cost.shape)
+    return {
+        "usable": (float(turns[i]), "angle"), "usable_first": (str(branches[i] + 1), "word"),
+        "usable_other": (float(turns[j]), "angle"), "usable_second": (str(branches[j] + 1), "word"),
+        "transmission": (whole(float(least[i, j])), "angle"),
     }  # fmt: skip
 
 

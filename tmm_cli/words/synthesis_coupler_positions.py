@@ -48,6 +48,7 @@ WORDS: dict[str, str] = {
     f"{_W}.far_turn": "{name} of this turn is {length} long, or its ends are as far from the positions: near the turn "
     "of the coupler itself links grow beyond all bounds",
     f"{_W}.nearest_turn": "{turn}",
+    f"{_W}.nearest_turn_usable": "{turn} ({usable} for a least transmission angle of {transmission})",
     f"{_W}.still_line": "the coupler does not turn, and its places lie on a line: links would be infinitely long",
     f"{_W}.still_slider": "places on a circle, or a slider",
     f"{_W}.still_off": "the coupler does not turn: all its points go on equal circles, and the fourth place is not on "
@@ -114,7 +115,15 @@ for _key, _text in {
     "no_box": "other positions: without this box there is no such four-bar either",
 }.items():
     WORDS |= {f"{_W}.{_key}_far": _text + _FAR, f"{_W}.{_key}_far_or_keep": f"{_text}{_FAR}; or defects: keep"}
-for _key in ("sides", "length", "point", "turn", "turns", "turns_no_box"):
+_USABLE = {
+    "turn": " ({usable} for a least transmission angle of {transmission})",
+    "turns": " ({usable} on {usable_first} and {usable_other} on {usable_second} for a least transmission angle of "
+    "{transmission})",
+}
+for _key, _text in {"turn": "turn", "turns": "turns", "turns_no_box": "turns"}.items():
+    WORDS[f"{_W}.{_key}_usable"] = WORDS[f"{_W}.{_key}"].replace("; or", _USABLE[_text] + "; or")
+for _key in ("sides", "length", "point", *("turn", "turn_usable", "turns", "turns_usable"), "turns_no_box",
+             "turns_no_box_usable"):  # fmt: skip
     WORDS[f"{_W}.{_key}_swap"] = WORDS[f"{_W}.{_key}"].replace("; or", "; or DC as the driver; or")
 for _point, _text in {
     "A": "pivot A",
