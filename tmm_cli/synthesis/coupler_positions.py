@@ -27,6 +27,7 @@ PARAMETERS: Final = {
 }
 W: Final = "synthesis_coupler_positions"
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
+SPARE: Final = (0.001, 0.01, 0.1, 0.5)  # of a box that is told, beyond the pivots it holds: the first that will do
 
 
 def both(asked: Asked) -> tuple[Dyads, Dyads]:
@@ -83,19 +84,31 @@ def solve(asked: Asked) -> Outcome:
 
 
 def _roomier(asked: Asked, error: Infeasible) -> Infeasible:
-    """A refusal because of a box names the pivots of the best four-bar anywhere, if there is one."""
+    """A refusal because of a box names one about the pivots of the best four-bar anywhere, if there is one."""
     try:
-        one, other = both(replace(asked, within=None))
+        best = both(replace(asked, within=None))
     except Infeasible:
         return error
-    if int(marks(asked.poses, one, other).defect):
+    if int(marks(asked.poses, *best).defect):
         return error
-    values: dict[str, Shown] = {
-        f"{point}{axis}": (float(part), "length")
-        for point, pivot in (("A", complex(one.pivot)), ("D", complex(other.pivot)))
-        for axis, part in (("x", pivot.real), ("y", pivot.imag))
-    }  # fmt: skip
-    return Infeasible("pivots_within", error.reason, f"{W}.box_of_best", values)
+    places = [complex(one.pivot) for one in best]
+    low = complex(min(p.real for p in places), min(p.imag for p in places))
+    high = complex(max(p.real for p in places), max(p.imag for p in places))
+    for share in SPARE:
+        spare = share * abs(high - low) * (1 + 1j)
+        box = low - spare, high + spare
+        try:
+            found = both(replace(asked, within=box))
+        except Infeasible:
+            continue
+        if not int(marks(asked.poses, *found).defect):
+            values: dict[str, Shown] = {
+                f"{axis}{n}": (part, "length")
+                for n, corner in enumerate(box)
+                for axis, part in (("x", corner.real), ("y", corner.imag))
+            }
+            return Infeasible("pivots_within", error.reason, f"{W}.box_of_best", values)
+    return error
 
 
 def _solved(asked: Asked) -> Outcome:

@@ -72,7 +72,7 @@ WORDS: dict[str, str] = {
     f"{_W}.roomy": "a wider box",
     f"{_W}.none_within": "no pivot of a link of sensible length lies in this box",
     f"{_W}.box_of_best": "a box that holds the pivots of a four-bar without defects; of the best one, "
-    "[{Ax}, {Ay}] and [{Dx}, {Dy}]",
+    "[[{x0}, {y0}], [{x1}, {y1}]]",
     f"{_W}.wider": "a box that holds a pivot, such as [{x}, {y}]",
     f"{_W}.curve": "Burmester's curves: pivots on the frame and their pins",
     f"{_W}.column_branch": "branch",
