@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from test_commands import ROOT
 
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
@@ -66,3 +67,18 @@ def test_an_output_without_strokes_is_refused_with_bounds_that_give_it_some():
     assert error.message == "no mechanism within the bounds was found that has this quantity"
     assert error.allowed == "wider bounds, the nearest: l1 from 79.9898 mm"
     solved("{of: stroke, least: 45 deg}", **(bounds | {"l1": "[79.9898, 120]"}))
+
+
+def test_a_link_that_cannot_turn_fully_is_refused_with_another_way_whatever_else_is_asked():
+    """Slotted link 1 of the tangent mechanism goes from -90 to 90 deg: its slider has no stroke in a cycle."""
+    text = (ROOT / "problems" / "tangent.yaml").read_text(encoding="utf-8")
+    task = (
+        "synthesis: {task: optimal, vary: {a: [60, 200]}, objective: moment, constraints: [{of: stroke, least: 200}]}"
+    )
+    text = text.replace("a: 120, ", "").replace("points: {O", f"{task}\npoints: {{O", 1)
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    assert caught.value.message == "no mechanism within these bounds can go the whole way of its driver"
+    assert "over: [from, to] or over: positions" in caught.value.allowed
+    (found,) = build(read_text(text.replace("optimal,", "optimal, over: positions,"), "x.yaml")).synthesis.outcome.found
+    assert float(found.value) == pytest.approx(0.1)  # 2 a tan(45 deg) = 200 mm

@@ -121,8 +121,10 @@ def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> Prob
         return ProblemError(f"the key `{path[-1]}` is missing", path=path, allowed=_describe(path, tree))
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
+        described = _describe(path, tree) or ""
         return ProblemError(
-            "this word is not known here", path=path, found=quote(data), allowed=words,
+            "this word is not known here", path=path, found=quote(data),
+            allowed=described if "[" in described else words,  # a list may stand here too
             near=nearest(str(data), words.split(", ")),
         )  # fmt: skip
     hint = decimal_comma_hint(tree, path)

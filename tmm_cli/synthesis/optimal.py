@@ -143,7 +143,8 @@ def _mended(search: Search, found: Best) -> Best:
     n = int(np.argmax(misses))
     limit = search.limits[n]
     if n == 0 or np.isnan(found.values[n + 1]):
-        return _from(search, found, ("vary", f"{W}.never") if n == 0 else (limit.at, f"{W}.has_none"))
+        never = n == 0 or misses[0] > KEPT  # what does not go its whole way has no stroke either
+        return _from(search, found, ("vary", f"{W}.never") if never else (limit.at, f"{W}.has_none"))
     bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
     kind = limit.goal.kind(search.linkage, search.groups)

@@ -81,7 +81,8 @@ class Shape(Block):
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
-        default=None, description="the driver's way: a cycle, its stroke, that of the file's positions, or [from, to]"
+        default=None,
+        description="the driver's way: cycle, stroke (its own), positions (through the file's), [from, to]",
     )
     positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
     population: int = Field(default=0, ge=0, le=10_000, description="in a generation; 0: 20 a parameter")
