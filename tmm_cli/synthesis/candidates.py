@@ -19,7 +19,7 @@ from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
 from tmm_cli.synthesis.dwells import ratio
-from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, Goal, Over, points_of, spans_of
+from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, SIDE, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
@@ -36,7 +36,6 @@ from tmm_cli.vectors import Real
 
 W: Final = "synthesis_optimal"
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
-TRIES = 40  # of linkages that could tell the assembly
 SCAN = 720  # places where peaks are looked for before the polish
 NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
 ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
@@ -56,6 +55,8 @@ class NoneAssembled(Infeasible):
 class Search:
     """A task ready for evaluation. Raises Infeasible."""
 
+    tries = 40  # of linkages that could tell the assembly
+
     def __init__(self, asked: Asked, first: Sequence[float] | None = None) -> None:
         """first: numbers that can be assembled, if they are known."""
         self.asked = asked
@@ -70,6 +71,8 @@ class Search:
         check_output(self)
         self.program = self._program()
         self.coarse = self.program.without(CLOSELY)
+        kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
+        self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
         self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
@@ -126,7 +129,7 @@ class Search:
     def _first(self) -> list[float]:
         """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
         chance = np.random.default_rng(0)
-        shares = [np.full(len(self.low), 0.5), *chance.random((TRIES, len(self.low)))]
+        shares = [np.full(len(self.low), 0.5), *chance.random((self.tries, len(self.low)))]
         refusal: Refused | None = None
         for share in shares:
             numbers = [float(x) for x in self.low + share * (self.high - self.low)]
@@ -182,7 +185,19 @@ class Search:
     @cached_property
     def places(self) -> Places:
         own = np.concatenate([np.zeros(0), *(np.array(goal.places) for goal in self.goals)])
-        return Places(self.over(self.asked.positions), own)
+        return Places(self.over(self.asked.positions), self._with_sketch(own))
+
+    def _with_sketch(self, driver: Real) -> Real:
+        """Places of the driver, and that of the sketch, where it counts."""
+        return np.append(driver, self.linkage.sketch.at) if self.single else driver
+
+    def _turned_over(self, found: Mapping[str, Real], count: int) -> Real:
+        """Which variants pass a dead position that they do not stop at, (variants,), from so many shares of the way."""
+        over: Any = False
+        for name in self.single:
+            det = np.hstack([found[name][:, :count], found[name][:, -1:]])
+            over = over | (np.min(det, axis=1) * np.max(det, axis=1) <= 0)
+        return np.asarray(over)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
@@ -202,10 +217,9 @@ class Search:
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
         found = self.run(x, self.places, closely=False)
-        return [
-            goal.coarse(_reader(found, n, self.exact[n]), self.overs[n])
-            for n, goal in enumerate(self.goals)
-        ]  # fmt: skip
+        values = [goal.coarse(_reader(found, n, self.exact[n]), self.overs[n]) for n, goal in enumerate(self.goals)]
+        values[1] = np.where(self._turned_over(found, self.asked.positions), -1.0, values[1])
+        return values
 
     def wanted(self, value: Real) -> Real:
         """What is made least: of a margin its opposite, of a target the distance from it."""
@@ -266,6 +280,9 @@ class Search:
                 if goal.of == "k":
                     resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])
                     values[n] = values[n] if resting is None else resting
+            if self.single:
+                two = self.run(np.stack([x, x]), Places(self.over(SCAN), self._with_sketch(np.zeros(0))))
+                values[1] = -1.0 if self._turned_over(two, SCAN)[0] else values[1]
         return [float(value) for value in values]
 
     def _along(self, x: Real, n: int, name: str, shares: Real) -> Real:

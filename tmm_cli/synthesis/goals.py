@@ -33,6 +33,7 @@ LEAST: Final = ("margin", "crank")  # whose least value counts
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
 OF_A_SIDE = 3  # points that may come to bear on a side of the box
+SIDE = "side"  # outputs whose sign tells on which side of a dead position a group is that has one assembly only
 CLOSELY = "closely."  # outputs that are wanted for windows alone
 
 Read = Callable[[str], Real]  # an output by name, (variants, places)
@@ -112,8 +113,11 @@ class Goal:
         if self.of == "margin":
             return {"y0": -reduce(np.minimum, [at.margin for at in motion.placements])}
         if self.of == "crank":
-            both = zip(motion.kernels, motion.placements, strict=True)
-            return {"y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])}
+            both = list(zip(motion.kernels, motion.placements, strict=True))
+            single = [at.det for kernel, at in both if getattr(kernel, "assemblies", 0) == 1]
+            return {f"{SIDE}{k}": det for k, det in enumerate(single)} | {
+                "y0": reduce(np.maximum, [at.gap / kernel.size for kernel, at in both])
+            }
         if self.of == "box":
             spots = [motion.spot(p) for p in points_of(linkage)]
             x, y = [p.real for p in spots], [p.imag for p in spots]

@@ -114,7 +114,7 @@ def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...
 
 def _other(reason: str, closed: bool) -> str:
     """Words where no bounds that would do were found."""
-    own = {f"{W}.no_assembly": f"{W}.other_sketch", f"{W}.never": f"{W}.over" if closed else f"{W}.wider"}
+    own = {f"{W}.no_assembly": f"{W}.other_sketch", f"{W}.never": f"{W}.over" if closed else f"{W}.other_way"}
     return own.get(reason, f"{W}.wider")
 
 

@@ -5,11 +5,15 @@ The same search over wider bounds, in which what lies beyond the given ones is m
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from tmm_cli.assembly import assemble
+from tmm_cli.mobile import mobile
+from tmm_cli.refused import Refused
 from tmm_cli.synthesis.candidates import Search
 from tmm_cli.synthesis.evolution import evolve
 from tmm_cli.synthesis.goals import Goal
@@ -18,11 +22,12 @@ from tmm_cli.synthesis.polish import Local
 from tmm_cli.synthesis.record import Infeasible, Shown
 from tmm_cli.vectors import Real
 
-TIMES = (3.0, 1.5, 1.1)  # as wide: of the larger bound, as far as the file takes it
+TIMES = (5.0, 3.0, 1.5, 1.1)  # as wide: of the larger bound, as far as the file takes it
 GENERATIONS = 120
 BEYOND = 1e-9  # shares of the range: what is less is within
 ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
 KEPT = 1e-7
+STEPS = 65  # on the way to what the sketch shows, where it does not show the nearest mechanism
 
 
 class Wider(Search):
@@ -31,6 +36,8 @@ class Wider(Search):
     In shares of the given ranges, summed up; sides: of each number whether it may lie below, within or above (-1, 0,
     1), or anywhere (nan).
     """
+
+    tries = 400
 
     def __init__(self, asked: Asked, low: Real, high: Real, sides: Real) -> None:
         self.own_low, self.own_high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
@@ -41,6 +48,21 @@ class Wider(Search):
             objective=Goal("length"), target=None,
         )  # fmt: skip
         super().__init__(wide)
+
+    def within(self, low: Real, high: Real, sides: Real) -> Wider:
+        """The same over other bounds."""
+        other = copy(self)
+        other.low, other.high, other.sides = low, high, sides
+        return other
+
+    def shown(self, numbers: Real) -> bool:
+        """Whether the file's sketch shows the assembly of such a linkage."""
+        linkage = self.asked.make(numbers.tolist()).linkage
+        try:
+            assemble(linkage, mobile(linkage))
+        except Refused:
+            return False
+        return True
 
     def beyond(self, x: Real) -> Real:
         """(variants, n)"""
@@ -118,9 +140,12 @@ def _nearest(asked: Asked) -> Nearest | None:
     numbers = search.numbers(evolved.population[0])
     for _ in range(2):
         numbers = _drawn(asked, search, numbers)
-    x = search.shares(numbers)
-    if not search.missed(search.exactly(x)) <= KEPT:
+    way = (numbers + share * (np.array(search.first) - numbers) for share in np.linspace(0, 1, STEPS))
+    kept = (x for x in way if search.shown(x) and search.missed(search.exactly(search.shares(x))) <= KEPT)
+    nearest = next(kept, None)
+    if nearest is None:
         return None
+    numbers = nearest
     span = search.own_high - search.own_low
     beyond = []
     for n, name in enumerate(asked.low):
@@ -139,7 +164,7 @@ def _drawn(asked: Asked, wide: Wider, numbers: Real) -> Real:
     )
     low = np.where(sides < 0, wide.low, np.where(sides > 0, wide.own_high, wide.own_low))
     high = np.where(sides > 0, wide.high, np.where(sides < 0, wide.own_low, wide.own_high))
-    search = Wider(asked, low, high, sides)
+    search = wide.within(low, high, sides)
     start = np.clip(search.shares(numbers), 0.0, 1.0)
     best, least = numbers, float(wide.beyond(wide.shares(numbers)[None]).sum())
     for x in (start, search.polished(start)):

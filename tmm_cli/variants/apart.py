@@ -31,7 +31,7 @@ class Apart:
         self.variant = make(first)
         self.ordinary = self.variant.linkage
         self.structure = mobile(self.ordinary)
-        assemble(self.ordinary, self.structure)
+        self.kernels = assemble(self.ordinary, self.structure)
         self.names = tuple(self._one(self.first, Places(np.zeros(1), np.zeros(0))))
 
     def way(self, columns: Real) -> Way:

@@ -92,7 +92,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
-    "synthesis_optimal.wider": "other bounds; none were found that are up to three times as wide",
+    "synthesis_optimal.wider": "other bounds; none were found that are up to five times as wide",
+    "synthesis_optimal.other_way": "other bounds; or another way of the driver (over, stroke or positions)",
     "synthesis_optimal.over": "other bounds; or, where the crank is not to turn fully, over: [from, to] or "
     "over: positions",
     "synthesis_optimal.unmet": "no mechanism within the bounds was found that meets this and the other constraints",

@@ -187,9 +187,17 @@ def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError
     values = shown(error.values, units)
     return ProblemError(
         say(error.reason, **values), path=error.path,
-        found=quote(_at(block, error.path)) if error.path else None,
+        found=_found(block, error.path),
         allowed=say(error.nearest, **values),
     )  # fmt: skip
+
+
+def _found(block: Block, path: tuple[str | int, ...]) -> str | None:
+    """What stands there; of bounds all of them."""
+    given = _at(block, path)
+    if path == ("vary",):
+        return quote(", ".join(f"{name}: [{low}, {high}]" for name, (low, high) in given.items()))
+    return quote(given) if path else None
 
 
 def _at(block: Any, path: tuple[str | int, ...]) -> Any:
