@@ -19,6 +19,7 @@ from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
 from tmm_cli.synthesis.dwells import ratio
+from tmm_cli.synthesis.first import assembled
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, SIDE, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
@@ -48,10 +49,6 @@ GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what 
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
-class NoneAssembled(Infeasible):
-    """No candidate that was tried can be assembled as it is sketched."""
-
-
 class Search:
     """A task ready for evaluation. Raises Infeasible."""
 
@@ -63,7 +60,7 @@ class Search:
         self.low, self.high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
         self.goals = (asked.objective, *(limit.goal for limit in self.limits))
-        self.first = self._first() if first is None else list(first)
+        self.first = assembled(asked, self.tries) if first is None else list(first)
         self.variant = asked.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
@@ -125,23 +122,6 @@ class Search:
     @property
     def generations(self) -> int:
         return self.asked.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
-
-    def _first(self) -> list[float]:
-        """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
-        chance = np.random.default_rng(0)
-        shares = [np.full(len(self.low), 0.5), *chance.random((self.tries, len(self.low)))]
-        refusal: Refused | None = None
-        for share in shares:
-            numbers = [float(x) for x in self.low + share * (self.high - self.low)]
-            linkage = self.asked.make(numbers).linkage
-            try:
-                assemble(linkage, mobile(linkage))
-            except Refused as error:
-                refusal = error
-            else:
-                return numbers
-        assert refusal is not None
-        raise NoneAssembled("vary", f"{W}.no_assembly", f"{W}.other_sketch")
 
     def _outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {

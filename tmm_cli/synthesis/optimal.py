@@ -12,8 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.synthesis.candidates import NoneAssembled, Search, W
+from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.evolution import Evolved, evolve
+from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real

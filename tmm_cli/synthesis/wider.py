@@ -11,11 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.assembly import assemble
-from tmm_cli.mobile import mobile
-from tmm_cli.refused import Refused
 from tmm_cli.synthesis.candidates import Search
 from tmm_cli.synthesis.evolution import evolve
+from tmm_cli.synthesis.first import shown
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal_asked import Asked
 from tmm_cli.synthesis.polish import Local
@@ -54,15 +52,6 @@ class Wider(Search):
         other = copy(self)
         other.low, other.high, other.sides = low, high, sides
         return other
-
-    def shown(self, numbers: Real) -> bool:
-        """Whether the file's sketch shows the assembly of such a linkage."""
-        linkage = self.asked.make(numbers.tolist()).linkage
-        try:
-            assemble(linkage, mobile(linkage))
-        except Refused:
-            return False
-        return True
 
     def beyond(self, x: Real) -> Real:
         """(variants, n)"""
@@ -141,7 +130,7 @@ def _nearest(asked: Asked) -> Nearest | None:
     for _ in range(2):
         numbers = _drawn(asked, search, numbers)
     way = (numbers + share * (np.array(search.first) - numbers) for share in np.linspace(0, 1, STEPS))
-    kept = (x for x in way if search.shown(x) and search.missed(search.exactly(search.shares(x))) <= KEPT)
+    kept = (x for x in way if shown(search.asked, x) and search.missed(search.exactly(search.shares(x))) <= KEPT)
     nearest = next(kept, None)
     if nearest is None:
         return None
