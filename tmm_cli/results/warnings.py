@@ -83,11 +83,15 @@ def warnings(results: Results) -> Iterable[str]:
         yield say("warning.passive", pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
     if not way.repeats:
         yield say("warning.cycle")
-    for pressure in results.pressure if any(results.problem.limits_set) else ():
-        if results.problem.limits_set[0 if pressure.slides else 1] and not pressure.holds:
+    chosen = way.full and _chosen_freely(results)
+    for pressure in results.pressure if any(results.problem.limits_set) or chosen else ():
+        said = results.problem.limits_set[0 if pressure.slides else 1]
+        if (chosen or said) and not pressure.holds:
             largest, allowed = (f"{units.from_si(v, ANGLE):.6g} {units.symbol(ANGLE)}" for v in
                                 (pressure.largest, pressure.allowed))  # fmt: skip
-            yield say("warning.pressure", link=pressure.link, largest=largest, allowed=allowed)
+            words = "warning.pressure" if said else "warning.pressure_usual"
+            key = "pressure_sliding" if pressure.slides else "pressure_turning"
+            yield say(words, link=pressure.link, largest=largest, allowed=allowed, key=key)
     if results.friction is not None and np.any(results.friction.locked):
         yield say("warning.locked", places="; ".join(_locked(results, results.friction)))
     yield from _twisted(results, place)
@@ -110,6 +114,15 @@ def warnings(results: Results) -> Iterable[str]:
             "warning.lever", number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
             limit=f"{100 * results.problem.lever_limit:.3g}",
         )  # fmt: skip
+
+
+def _chosen_freely(results: Results) -> bool:
+    """Whether a synthesis found the linkage, and was asked nothing about its pressure angle."""
+    found = results.synthesis
+    if found is None:
+        return False
+    asked = [d for d in found.outcome.demands if d.asked or found.task == "optimal"]
+    return not any(d.words.endswith(".pressure") for d in asked)
 
 
 def _locked(results: Results, rubbed: Rubbed) -> Iterable[str]:
