@@ -400,7 +400,7 @@ def test_two_pairs_and_one_length_tell_the_free_ratio_and_the_family_of_it():
     outcome = problem("pairs: [[30, 60], [80, 90]], l4: 100").synthesis.outcome
     free = next(v.value for v in outcome.found if v.words.endswith(".free"))
     assert free == pytest.approx(float(outcome.parameters["l4"].value / outcome.parameters["l1"].value))
-    assert any(note.endswith("free_note") for note in outcome.notes)
+    assert any(note.endswith("free_end") for note in outcome.notes)  # l4 = 10 l1
     (family,) = outcome.listings
     for ratio, l1, l2, l3, l4, phi0, psi0, *_ in family.rows[::20]:
         assert l4 / l1 == pytest.approx(ratio, rel=1e-12)

@@ -91,7 +91,7 @@ def warnings(results: Results) -> Iterable[str]:
                                 (pressure.largest, pressure.allowed))  # fmt: skip
             words = "warning.pressure" if said else "warning.pressure_usual"
             key = "pressure_sliding" if pressure.slides else "pressure_turning"
-            yield say(words, link=pressure.link, largest=largest, allowed=allowed, key=key)
+            yield say(words, link=pressure.link, largest=largest, allowed=allowed, check=key)
     if results.friction is not None and np.any(results.friction.locked):
         yield say("warning.locked", places="; ".join(_locked(results, results.friction)))
     yield from _twisted(results, place)

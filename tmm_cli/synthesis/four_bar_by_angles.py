@@ -96,9 +96,12 @@ def solve(asked: Asked) -> Outcome:
         demands.append(Demand(f"{W}.error", error, "angle", partial(_largest, one, asked), False, 1.0))
         drawings.append(curve)
     notes = ((f"{W}.parallelogram",) if any_one else ()) + ((f"{W}.reversed",) if mark.reversed else ())
+    if asked.choose == "crank" and not mark.crank:
+        notes = (*notes, f"{W}.no_crank")
     listings = (_solutions(asked, found, at),) if len(found) > 1 else ()
     if _free(asked):
-        notes, listings = (*notes, f"{W}.free_note"), (*listings, _family(asked))
+        at_end = abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9
+        notes, listings = (*notes, f"{W}.free_end" if at_end else f"{W}.free_note"), (*listings, _family(asked))
     return Outcome(_given(asked), tuple(values), f"{W}.source", tuple(demands), tuple(drawings), notes, listings)
 
 
@@ -119,14 +122,15 @@ def _solutions(asked: Asked, found: list[Bars], at: int) -> Listing:
     columns = (
         (f"{W}.number_of", "name"), (f"{W}.taken", "word"),
         *((f"{W}.column_{name}", "length" if name[0] == "l" else "angle") for name in names),
-        (f"{W}.column_transmission", "angle"), (f"{W}.defect", "word"),
+        (f"{W}.column_transmission", "angle"), (f"{W}.column_crank", "word"), (f"{W}.defect", "word"),
     )  # fmt: skip
     rows = []
     for k, one in enumerate(found):
         mark, size = quality(one, asked), _size(asked, one)
         lengths = (float(one.l1 * size), float(one.l2 * size), float(one.l3 * size), float(size))
         taken = f"{W}.chosen" if k == at else None
-        rows.append((str(k + 1), taken, *lengths, float(one.phi0), float(one.psi0), mark.least,
+        crank = f"{W}.turns_fully" if mark.crank else f"{W}.swings"
+        rows.append((str(k + 1), taken, *lengths, float(one.phi0), float(one.psi0), mark.least, crank,
                      f"{W}.short_{mark.defect or 'sound'}"))  # fmt: skip
     return Listing("solutions", f"{W}.solutions", columns, tuple(rows))
 

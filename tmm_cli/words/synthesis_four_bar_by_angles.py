@@ -3,7 +3,7 @@
 _W = "synthesis_four_bar_by_angles"
 _COLUMNS = {
     "l1": "l1", "l2": "l2", "l3": "l3", "l4": "l4", "phi0": "phi0", "psi0": "psi0",
-    "transmission": "least transmission angle",
+    "transmission": "least transmission angle", "crank": "input turns fully",
 }  # fmt: skip
 
 WORDS: dict[str, str] = {
@@ -37,6 +37,11 @@ WORDS: dict[str, str] = {
     f"{_W}.free": "l4/l1, free with two pairs",
     f"{_W}.free_note": "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two "
     "of l1, l3, l4 to take another",
+    f"{_W}.free_end": "two pairs leave l1/l4 free: of 0.1 to 10 an end has the best transmission, and was taken; give "
+    "two of l1, l3, l4 to take another",
+    f"{_W}.no_crank": "no solution without defects has an input that turns fully: another was taken",
+    f"{_W}.turns_fully": "yes",
+    f"{_W}.swings": "no",
     f"{_W}.family": "Four-bars through both pairs",
     f"{_W}.error": "largest structural error",
     f"{_W}.error_curve": "structural error of the output angle",

@@ -6,7 +6,7 @@ WORDS: dict[str, str] = {
     "dimensions only, and the reactions of links {among} are indeterminate (given: the least ones)",
     "warning.pressure": "the pressure angle on link {link} comes to {largest}, the file allows {allowed}",
     "warning.pressure_usual": "the pressure angle on link {link} comes to {largest}; usual is at most {allowed} "
-    "(another limit: checks: {{{key}: ...}})",
+    "(another limit: checks: {{{check}: ...}})",
     "warning.locked": "the mechanism locks itself by friction: {places}; no forces are given there",
     "warning.locked_in": "in position{s} {numbers}, most of all in pair {pair} of links {i} and {j}",
     "warning.twist": "torsion spring {spring} is turned by more than half a turn from its free angle at {place}: its "
