@@ -53,6 +53,27 @@ class NoneAssembled(Infeasible):
     """No candidate that was tried can be assembled as it is sketched."""
 
 
+def first_of(asked: Asked) -> list[float]:
+    """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
+    low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
+    chance = np.random.default_rng(0)
+    for share in (np.full(len(low), 0.5), *chance.random((TRIES, len(low)))):
+        numbers = [float(x) for x in low + share * (high - low)]
+        if assembled(asked, numbers):
+            return numbers
+    raise NoneAssembled("vary", f"{W}.no_assembly", f"{W}.other_sketch")
+
+
+def assembled(asked: Asked, numbers: Sequence[float]) -> bool:
+    """Whether a linkage can be assembled as it is sketched."""
+    linkage = asked.make(numbers).linkage
+    try:
+        assemble(linkage, mobile(linkage))
+    except Refused:
+        return False
+    return True
+
+
 class Search:
     """A task ready for evaluation. Raises Infeasible."""
 
@@ -62,7 +83,7 @@ class Search:
         self.low, self.high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
         self.goals = (asked.objective, *(limit.goal for limit in self.limits))
-        self.first = self._first() if first is None else list(first)
+        self.first = first_of(asked) if first is None else list(first)
         self.variant = asked.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
@@ -122,23 +143,6 @@ class Search:
     @property
     def generations(self) -> int:
         return self.asked.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
-
-    def _first(self) -> list[float]:
-        """Numbers whose linkage can be assembled as it is sketched: the middle of the bounds, or others."""
-        chance = np.random.default_rng(0)
-        shares = [np.full(len(self.low), 0.5), *chance.random((TRIES, len(self.low)))]
-        refusal: Refused | None = None
-        for share in shares:
-            numbers = [float(x) for x in self.low + share * (self.high - self.low)]
-            linkage = self.asked.make(numbers).linkage
-            try:
-                assemble(linkage, mobile(linkage))
-            except Refused as error:
-                refusal = error
-            else:
-                return numbers
-        assert refusal is not None
-        raise NoneAssembled("vary", f"{W}.no_assembly", f"{W}.other_sketch")
 
     def _outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -258,10 +262,12 @@ class Search:
     def exactly(self, x: Real) -> list[float]:
         """Objective and constrained quantities of one candidate."""
         with np.errstate(all="ignore"):
-            found = self.closely(x)(x)
+            found, coarse = self.closely(x)(x), self.values(np.stack([x, x]))
             values = [np.min(p) if goal.of in LEAST else np.max(p) for goal, p in zip(self.goals, found, strict=True)]
             for n, goal in enumerate(self.goals):
-                if self.overs[n].rough and goal.of in FORCES:
+                if goal.of in FORCES and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
+                    values[n] = np.nan
+                elif self.overs[n].rough and goal.of in FORCES:
                     values[n] = self._highest(x, n)
                 if goal.of == "k":
                     resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])

@@ -14,6 +14,7 @@ import numpy as np
 
 from tmm_cli.synthesis.candidates import NoneAssembled, Search, W
 from tmm_cli.synthesis.evolution import Evolved, evolve
+from tmm_cli.synthesis.goals import FORCES, Goal
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
@@ -78,10 +79,11 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
         if not found:
             raise
         evolved = replace(evolved, stopped=True)
+    goes = any(search.limits[0].missed(values[1]) <= KEPT for *_, values in found)
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
-        if evolved.violation[0] == 0.0:
-            raise Infeasible("objective", f"{W}.has_none", f"{W}.another")
+        if goes or evolved.violation[0] == 0.0:
+            raise Infeasible("objective", *_none(search, search.asked.objective))
         raise Infeasible("vary", f"{W}.never", _other(f"{W}.never", search.closed))
     missed, _, x, values = min(found, key=lambda one: one[:2])
     return Best(x, search.numbers(x), values, missed, evolved)
@@ -99,6 +101,13 @@ def solve(asked: Asked) -> Outcome:
     if found.missed:
         found = _mended(search, found)
     return told(search, found)
+
+
+def _none(search: Search, goal: Goal) -> tuple[str, str]:
+    """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
+    if goal.of in FORCES and search.variant.accelerated:
+        return f"{W}.stops", f"{W}.goes_on"
+    return f"{W}.has_none", f"{W}.another"
 
 
 def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...], str]) -> Best:
@@ -143,6 +152,8 @@ def _mended(search: Search, found: Best) -> Best:
     n = int(np.argmax(misses))
     limit = search.limits[n]
     if n == 0 or np.isnan(found.values[n + 1]):
+        if n and limit.goal.of in FORCES and search.variant.accelerated:
+            raise Infeasible(limit.at, *_none(search, limit.goal))
         return _from(search, found, ("vary", f"{W}.never") if n == 0 else (limit.at, f"{W}.has_none"))
     bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)

@@ -195,7 +195,7 @@ def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError
 def _at(block: Any, path: tuple[str | int, ...]) -> Any:
     for step in path:
         block = block[step] if isinstance(step, int) or isinstance(block, dict) else getattr(block, step, None)
-    return block
+    return getattr(block, "of", block)  # of a quantity its name
 
 
 def _texts(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], str]]:
