@@ -139,7 +139,11 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
     if found.beyond:
         name, above, *_ = found.beyond[0]
         words, values = found.told
+        if not found.keeps and reason != f"{W}.no_assembly":  # with these bounds it goes its way, and no more is said
+            key, reason = "vary", f"{W}.never"
         raise Infeasible(("vary", name, int(above)) if key == "vary" else key, reason, f"{W}.{words}", values)
+    if not found.sketched:
+        raise Infeasible(key, reason, f"{W}.other_sketch")
     return found.numbers
 
 

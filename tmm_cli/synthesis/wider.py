@@ -5,12 +5,13 @@ The same search over wider bounds, in which what lies beyond the given ones is m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.synthesis.candidates import Search
+from tmm_cli.synthesis.candidates import NoneAssembled, Search, assembled, first_of
 from tmm_cli.synthesis.evolution import evolve
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal_asked import Asked
@@ -32,7 +33,7 @@ class Wider(Search):
     1), or anywhere (nan).
     """
 
-    def __init__(self, asked: Asked, low: Real, high: Real, sides: Real) -> None:
+    def __init__(self, asked: Asked, low: Real, high: Real, sides: Real, first: Sequence[float] | None = None) -> None:
         self.own_low, self.own_high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.sides = sides
         names = list(asked.low)
@@ -40,7 +41,7 @@ class Wider(Search):
             asked, low=dict(zip(names, low.tolist(), strict=True)), high=dict(zip(names, high.tolist(), strict=True)),
             objective=Goal("length"), target=None,
         )  # fmt: skip
-        super().__init__(wide)
+        super().__init__(wide, first)
 
     def beyond(self, x: Real) -> Real:
         """(variants, n)"""
@@ -71,10 +72,15 @@ class Wider(Search):
 
 @dataclass(frozen=True)
 class Nearest:
-    """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind."""
+    """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind.
+
+    keeps: the constraints, which no mechanism was found to keep where it is False. sketched: as the file has it.
+    """
 
     numbers: Real
     beyond: tuple[tuple[str, bool, float, str], ...]
+    keeps: bool = True
+    sketched: bool = True
 
     @property
     def told(self) -> tuple[str, dict[str, Shown]]:
@@ -85,7 +91,7 @@ class Nearest:
                 f"name{n}": (name, "word"), f"side{n}": ("to" if above else "from", "word"),
                 f"value{n}": (value, kind, "least" if above else "most"),
             }  # fmt: skip
-        return f"wider{len(self.beyond)}", values
+        return f"wider{len(self.beyond)}" + ("" if self.sketched else "_sketch"), values
 
 
 def nearest(asked: Asked) -> Nearest | None:
@@ -96,7 +102,7 @@ def nearest(asked: Asked) -> Nearest | None:
     for limits in dict.fromkeys((asked.limits, ())):
         found = _nearest(replace(asked, limits=limits))
         if found is not None:
-            return found
+            return replace(found, keeps=limits == asked.limits)
     return None
 
 
@@ -128,7 +134,22 @@ def _nearest(asked: Asked) -> Nearest | None:
             if past > BEYOND * span[n]:
                 value = float(numbers[n] + (ROOM if above else -ROOM) * past)
                 beyond.append((name, above, value, asked.kinds[name]))
-    return Nearest(numbers, tuple(beyond))
+    found = Nearest(numbers, tuple(beyond))
+    return replace(found, sketched=_sketched(asked, found))
+
+
+def _sketched(asked: Asked, found: Nearest) -> bool:
+    """Whether the file's sketch shows a linkage within such bounds, so that a search in them can begin."""
+    if assembled(asked, found.numbers.tolist()):
+        return True
+    low, high = dict(asked.low), dict(asked.high)
+    for name, above, value, _ in found.beyond:
+        (high if above else low)[name] = value
+    try:
+        first_of(replace(asked, low=low, high=high))
+    except NoneAssembled:
+        return False
+    return bool(found.beyond)
 
 
 def _drawn(asked: Asked, wide: Wider, numbers: Real) -> Real:
@@ -139,9 +160,12 @@ def _drawn(asked: Asked, wide: Wider, numbers: Real) -> Real:
     )
     low = np.where(sides < 0, wide.low, np.where(sides > 0, wide.own_high, wide.own_low))
     high = np.where(sides > 0, wide.high, np.where(sides < 0, wide.own_low, wide.own_high))
-    search = Wider(asked, low, high, sides)
+    try:
+        search = Wider(asked, low, high, sides)
+    except NoneAssembled:
+        search = Wider(asked, low, high, sides, wide.first)
     start = np.clip(search.shares(numbers), 0.0, 1.0)
-    best, least = numbers, float(wide.beyond(wide.shares(numbers)[None]).sum())
+    best, least = numbers, np.inf  # between the positions of the search it may fail
     for x in (start, search.polished(start)):
         values: Any = search.exactly(x)
         if search.missed(values) <= KEPT and values[0] <= least:
