@@ -124,6 +124,11 @@ OPTIMAL = {
         "crank-slider-offset", (("20 rad/s.2", "eps"),),
         "{eps: [1 rad/s^2, 20 rad/s^2]}", "{of: speed, target: 0.3 m/s}", "",
     ),
+    "output that turns on": (
+        "whitworth", (("OA: 150, ", ""), ("output: .link: 5", "output: {link: 3"), (", when: working stroke", ""),
+                      ("from: working stroke", "from: 0")), "{OA: [130, 170]}",
+        "{of: stroke, target: 230}\n  over: [0, 250]", "",
+    ),
     "slider through its positions": ("clamp", (("AB: 200, ", ""),), "{AB: [195, 205]}", "moment", ""),
 }  # fmt: skip
 
