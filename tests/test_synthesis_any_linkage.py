@@ -110,9 +110,24 @@ OPTIMAL = {
         "crank-slider-offset", (("l: 190", "Q: 1"), ("turns: ccw", "turns: cw"), (", when: working stroke", ""),
                                 ("from: working stroke", "from: 40 deg")), "{l: [180, 260]}", "moment", "",
     ),
+    "accelerated from a place that varies": (
+        "crank-slider-offset", (("l: 190", "Q: 1"), (", when: working stroke", ""),
+                                ("from: working stroke", "from: a0")),
+        "{l: [180, 260], a0: [10 deg, 80 deg]}", "moment", "",
+    ),
+    "accelerated through positions a turn farther on": (
+        "crank-slider-offset", (("l: 190", "Q: 1"), (", when: working stroke", ""),
+                                ("count: 12, from: working stroke, detail: .3.", "at: [380, 410, 460]")),
+        "{l: [180, 260]}", "moment\n  over: positions", "",
+    ),
     "acceleration": (
         "crank-slider-offset", (("20 rad/s.2", "eps"),),
         "{eps: [1 rad/s^2, 20 rad/s^2]}", "{of: speed, target: 0.3 m/s}", "",
+    ),
+    "output that turns on": (
+        "whitworth", (("OA: 150, ", ""), ("output: .link: 5", "output: {link: 3"), (", when: working stroke", ""),
+                      ("from: working stroke", "from: 0")), "{OA: [130, 170]}",
+        "{of: stroke, target: 230}\n  over: [0, 250]", "",
     ),
     "slider through its positions": ("clamp", (("AB: 200, ", ""),), "{AB: [195, 205]}", "moment", ""),
 }  # fmt: skip
@@ -174,3 +189,43 @@ def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
     x, places = np.array([[0.095], [0.107]]), Places(np.linspace(0, 1, 9), np.zeros(0))
     found, expected = search.program(x, places), apart(x, places)
     assert expected and all(np.allclose(found[key], expected[key], rtol=1e-11, atol=1e-12) for key in expected)
+
+
+def refused(name, edits, *task):
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
+    return caught.value
+
+
+@pytest.mark.parametrize("objective", ["moment", "length"])
+def test_forces_of_a_driver_that_stops_on_its_way_are_refused(objective):
+    """w^2 = 5^2 - 2*20*angle is zero after 0.625 rad: the crank does not come round."""
+    edits = (("l: 190", "Q: 1"), ("20 rad/s.2", "-20 rad/s^2"), (", when: working stroke", ""),
+             ("from: working stroke", "from: 40 deg"))  # fmt: skip
+    limit = "{of: reaction, pair: A, most: 5 kN}"
+    error = refused("crank-slider-offset", edits, "{l: [180, 260]}", objective, limit)
+    assert error.path == (
+        ("synthesis", "objective") if objective == "moment" else ("synthesis", "constraints", 0, "most")
+    )
+    assert error.message.startswith("the driver does not come to all places of its way")
+    assert error.found == ("'moment'" if objective == "moment" else "'5 kN'")
+
+
+def test_a_cycle_that_rests_on_what_varies_is_none_to_search_over():
+    """Drivers of 50 and 120 rpm come round after 5 turns, of 51 and 120 rpm after 17."""
+    edits = (("link: 1, speed: 60 rpm", "link: 1, speed: n"),)
+    error = refused("five-bar", edits, "{n: [50 rpm, 70 rpm]}", "moment", "")
+    assert error.path == ("synthesis", "vary", "n")
+    assert error.message == "after how many turns all comes round again rests on this parameter"
+    both = (*edits, ("speed: 120 rpm", "speed: 2*n"))
+    text = text_of("five-bar", *both, (r"points: \{", block("{n: [50 rpm, 70 rpm]}", "moment", "")))
+    assert Search(search_of(read_text(text, "x.yaml"))).closed
+
+
+def test_a_law_is_asked_where_the_driver_goes_whatever_its_ends():
+    """The way from s0 to 120 mm begins at 40 mm for the largest s0."""
+    edits = (("AB: 250, ", ""), ("at: .0, 20.*3.}", "at: [s0, 120]}"))
+    law = "{of: law, link: 3, at: [30, 90], values: [0, 20], relative: true}"
+    error = refused("cylinder", edits, "{AB: [240, 270], s0: [0, 40]}", law, "")
+    assert error.path == ("synthesis", "objective", "at", 0)
+    assert error.allowed == "a place of its way, 40 to 120 mm at a bound of what varies"

@@ -6,6 +6,7 @@ import re
 
 import pytest
 from test_commands import ROOT
+from test_synthesis_any_linkage import text_of
 
 from tmm_cli import solve
 from tmm_cli.problem.build import build
@@ -123,3 +124,59 @@ def test_guides_that_become_parallel_on_the_way_are_no_way(over):
     with pytest.raises(ProblemError) as caught:
         file_with("tangent", ("a: 120, ", ""), "{a: [60, 200]}", f", over: {over}")
     assert caught.value.message == "no mechanism within these bounds can go the whole way of its driver"
+
+
+def test_bounds_that_only_let_the_crank_turn_are_told_as_such():
+    """The crank turns from 75 mm of l3 on; that all links are 170 mm at most is another matter."""
+    bounds = {"l1": "[65, 70]", "l2": "[60, 70]", "l3": "[50, 70]"}
+    error = refused("{of: length, most: 170 mm}", **bounds)
+    assert error.path == ("synthesis", "vary", "l3", 1)
+    assert error.message == "no mechanism within these bounds can go the whole way of its driver"
+    assert error.allowed == "wider bounds, the nearest: l3 to 75.0051 mm"
+
+
+CRANK_SLIDER = """tmm: 1
+units: {{length: mm, angle: deg}}
+synthesis: {{task: optimal, vary: {{r: {r}, l: {l}}}, objective: length, positions: 24}}
+points: {{O: [0, 0]}}
+guides: {{x: {{through: [0, 30], angle: 0}}}}
+links:
+  1: {{points: [O, A], length: r}}
+  2: {{points: [A, B], length: l}}
+  3: {{points: [B], slides: {{on: x}}}}
+driver: {{link: 1, speed: 5 rad/s, acceleration: 20 rad/s^2}}
+sketch: {{at: 60 deg, B: {B}}}
+positions: {{count: 12, from: working stroke}}
+"""
+
+
+def slid(sketch, **bounds):
+    return build(read_text(CRANK_SLIDER.format(B=sketch, **bounds), "x.yaml")).synthesis.outcome
+
+
+def test_a_crank_that_starts_with_its_working_stroke_has_nearest_bounds_too():
+    """l >= r + 30 mm: from r = 50 and l = 70 mm on by 10 mm, which is half the range of l and the whole one of r."""
+    bounds = {"r": "[50, 60]", "l": "[50, 70]"}
+    with pytest.raises(ProblemError) as caught:
+        slid("[r*cos(60 deg) + l, 30]", **bounds)
+    assert caught.value.allowed == "wider bounds, the nearest: l to 80.0101 mm"
+    slid("[r*cos(60 deg) + l, 30]", **(bounds | {"l": "[50, 80.0101]"}))
+
+
+def test_bounds_that_the_sketch_does_not_fit_are_told_with_that():
+    with pytest.raises(ProblemError) as caught:
+        slid("[300, 30]", r="[50, 60]", l="[50, 70]")
+    assert caught.value.message == "no linkage within these bounds can be assembled as it is sketched"
+    assert caught.value.allowed.startswith("wider bounds, the nearest: l to 80.0101 mm; and a sketch")
+
+
+def test_what_fails_between_the_positions_of_the_search_is_not_told_as_nearest():
+    """The lever 3 goes nearly round when its crank is nearly as long as the frame: too quickly for 24 positions."""
+    text = text_of(
+        "shaper", (r"  OA: 110\n", ""), (r"  OC: 350\n", ""),
+        (r"points: \{O", "synthesis:\n  task: optimal\n  vary: {OA: [200, 220], OC: [150, 180]}\n"
+         "  objective: length\n  positions: 24\npoints: {O"),
+    )  # fmt: skip
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    assert caught.value.allowed == "wider bounds, the nearest: OC to 222.017 mm"

@@ -19,7 +19,7 @@ from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
 from tmm_cli.synthesis.dwells import ratio
-from tmm_cli.synthesis.first import assembled
+from tmm_cli.synthesis.first import first_of
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, SIDE, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
@@ -60,7 +60,7 @@ class Search:
         self.low, self.high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.limits = (Limit(Goal("crank"), least=ROOM), *asked.limits)
         self.goals = (asked.objective, *(limit.goal for limit in self.limits))
-        self.first = assembled(asked, self.tries) if first is None else list(first)
+        self.first = first_of(asked, self.tries) if first is None else list(first)
         self.variant = asked.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
@@ -252,10 +252,12 @@ class Search:
     def exactly(self, x: Real) -> list[float]:
         """Objective and constrained quantities of one candidate."""
         with np.errstate(all="ignore"):
-            found = self.closely(x)(x)
+            found, coarse = self.closely(x)(x), self.values(np.stack([x, x]))
             values = [np.min(p) if goal.of in LEAST else np.max(p) for goal, p in zip(self.goals, found, strict=True)]
             for n, goal in enumerate(self.goals):
-                if self.overs[n].rough and goal.of in FORCES:
+                if goal.of in FORCES and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
+                    values[n] = np.nan
+                elif self.overs[n].rough and goal.of in FORCES:
                     values[n] = self._highest(x, n)
                 if goal.of == "k":
                     resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])

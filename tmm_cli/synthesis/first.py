@@ -28,7 +28,7 @@ def shown(asked: Asked, numbers: Real) -> bool:
     return True
 
 
-def assembled(asked: Asked, tries: int) -> list[float]:
+def first_of(asked: Asked, tries: int) -> list[float]:
     """Numbers (SI) of such a linkage: the middle of the bounds, or others. Raises NoneAssembled."""
     low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
     chance = np.random.default_rng(0)

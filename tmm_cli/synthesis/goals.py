@@ -198,7 +198,7 @@ class Goal:
     def windows(self, read: Read, over: Over) -> list[tuple[str, int]]:
         """Curves and places about which to look closely, from a scan of one variant over the way.
 
-        A curve of the box is its side and a point, whose own path is smooth.
+        A curve of the box is its side and a point, whose own path is smooth; that of a run the angle there, followed.
         """
         if self.of == "box":
             found = []
@@ -214,8 +214,12 @@ class Goal:
             slope = read("slope")[0]
             moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
             after = np.roll(moves, -1) if over.closed else np.append(moves[1:], moves[-1:])
-            turns = [("slope", int(k)) for k in moves[slope[moves] * slope[after] < 0]]
-            return turns if over.closed else [("slope", 0), *turns, ("slope", len(slope) - 1)]
+            turns = [int(k) for k in moves[slope[moves] * slope[after] < 0]]
+            turns = turns if over.closed else [0, *turns, len(slope) - 1]
+            if self.of == "k" or not over.swings:
+                return [("0", k) for k in turns]
+            followed = np.unwrap(read("run")[0])
+            return [(f"{followed[k]}", k) for k in turns]
         if self.of == "path" and not self.places:
             p = read("px")[0] + 1j * read("py")[0]
             return [(f"{n}", int(np.argmin(np.abs(p - w)))) for n, w in enumerate(self.wanted)]
@@ -247,10 +251,10 @@ class Goal:
                 return exact("slope")[:, :1] * np.nan  # it has no strokes
             if self.of != "k":
                 runs = []
-                for _, _, read in parts:
+                for angle, _, read in parts:
                     run = read("run")
                     if over.swings:
-                        run = run - 2 * np.pi * np.round((run - parts[0][2]("run")[:1, :1]) / (2 * np.pi))
+                        run = run - 2 * np.pi * np.round((run - float(angle)) / (2 * np.pi))
                     runs.append(run)
                 if self.of == "stroke":
                     tops, lows = ([peak(side * run) for run in runs] for side in (1, -1))

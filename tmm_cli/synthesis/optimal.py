@@ -15,6 +15,7 @@ import numpy as np
 from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
+from tmm_cli.synthesis.goals import FORCES, Goal
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
@@ -79,10 +80,11 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
         if not found:
             raise
         evolved = replace(evolved, stopped=True)
+    goes = any(search.limits[0].missed(values[1]) <= KEPT for *_, values in found)
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
-        if evolved.violation[0] == 0.0:
-            raise Infeasible("objective", f"{W}.has_none", f"{W}.another")
+        if goes or evolved.violation[0] == 0.0:
+            raise Infeasible("objective", *_none(search, search.asked.objective))
         raise Infeasible("vary", f"{W}.never", _other(f"{W}.never", search.closed))
     missed, _, x, values = min(found, key=lambda one: one[:2])
     return Best(x, search.numbers(x), values, missed, evolved)
@@ -100,6 +102,13 @@ def solve(asked: Asked) -> Outcome:
     if found.missed:
         found = _mended(search, found)
     return told(search, found)
+
+
+def _none(search: Search, goal: Goal) -> tuple[str, str]:
+    """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
+    if goal.of in FORCES and search.variant.accelerated:
+        return f"{W}.stops", f"{W}.goes_on"
+    return f"{W}.has_none", f"{W}.another"
 
 
 def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...], str]) -> Best:
@@ -131,7 +140,11 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
     if found.beyond:
         name, above, *_ = found.beyond[0]
         words, values = found.told
+        if not found.keeps and reason != f"{W}.no_assembly":  # with these bounds it goes its way, and no more is said
+            key, reason = "vary", f"{W}.never"
         raise Infeasible(("vary", name, int(above)) if key == "vary" else key, reason, f"{W}.{words}", values)
+    if not found.sketched:
+        raise Infeasible(key, reason, f"{W}.other_sketch")
     return found.numbers
 
 
@@ -144,6 +157,8 @@ def _mended(search: Search, found: Best) -> Best:
     n = int(np.argmax(misses))
     limit = search.limits[n]
     if n == 0 or np.isnan(found.values[n + 1]):
+        if n and limit.goal.of in FORCES and search.variant.accelerated and misses[0] <= KEPT:
+            raise Infeasible(limit.at, *_none(search, limit.goal))
         never = n == 0 or misses[0] > KEPT  # what does not go its whole way has no stroke either
         return _from(search, found, ("vary", f"{W}.never") if never else (limit.at, f"{W}.has_none"))
     bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most

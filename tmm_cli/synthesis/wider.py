@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_cli.synthesis.candidates import Search
 from tmm_cli.synthesis.evolution import evolve
-from tmm_cli.synthesis.first import shown
+from tmm_cli.synthesis.first import NoneAssembled, first_of, shown
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal_asked import Asked
 from tmm_cli.synthesis.polish import Local
@@ -75,6 +75,20 @@ class Wider(Search):
     def _local(self, x: Real, found: list[Real], top: float) -> Local:
         return replace(super()._local(x, found, top), pieces=self.beyond(np.atleast_2d(x)).sum(axis=1, keepdims=True))
 
+    def kept(self, numbers: Real) -> bool:
+        """Whether they keep the constraints."""
+        return self.missed(self.exactly(self.shares(numbers))) <= KEPT
+
+    def beyond_by(self, numbers: Real) -> tuple[tuple[str, bool, float, str], ...]:
+        """Which bounds they lie beyond, with a little room: name, whether above, value, its kind."""
+        found, span = [], self.own_high - self.own_low
+        for n, name in enumerate(self.asked.low):
+            for above, past in ((False, self.own_low[n] - numbers[n]), (True, numbers[n] - self.own_high[n])):
+                if past > BEYOND * span[n]:
+                    value = float(numbers[n] + (ROOM if above else -ROOM) * past)
+                    found.append((name, above, value, self.asked.kinds[name]))
+        return tuple(found)
+
     def missed(self, values: list[float]) -> float:
         """By how much the constraints are."""
         return float(sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True)))
@@ -82,10 +96,15 @@ class Wider(Search):
 
 @dataclass(frozen=True)
 class Nearest:
-    """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind."""
+    """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind.
+
+    keeps: the constraints, which no mechanism was found to keep where it is False. sketched: as the file has it.
+    """
 
     numbers: Real
     beyond: tuple[tuple[str, bool, float, str], ...]
+    keeps: bool = True
+    sketched: bool = True
 
     @property
     def told(self) -> tuple[str, dict[str, Shown]]:
@@ -96,7 +115,7 @@ class Nearest:
                 f"name{n}": (name, "word"), f"side{n}": ("to" if above else "from", "word"),
                 f"value{n}": (value, kind, "least" if above else "most"),
             }  # fmt: skip
-        return f"wider{len(self.beyond)}", values
+        return f"wider{len(self.beyond)}" + ("" if self.sketched else "_sketch"), values
 
 
 def nearest(asked: Asked) -> Nearest | None:
@@ -107,7 +126,7 @@ def nearest(asked: Asked) -> Nearest | None:
     for limits in dict.fromkeys((asked.limits, ())):
         found = _nearest(replace(asked, limits=limits))
         if found is not None:
-            return found
+            return replace(found, keeps=limits == asked.limits)
     return None
 
 
@@ -128,34 +147,41 @@ def _nearest(asked: Asked) -> Nearest | None:
         return None
     numbers = search.numbers(evolved.population[0])
     for _ in range(2):
-        numbers = _drawn(asked, search, numbers)
-    way = (numbers + share * (np.array(search.first) - numbers) for share in np.linspace(0, 1, STEPS))
-    kept = (x for x in way if shown(search.asked, x) and search.missed(search.exactly(search.shares(x))) <= KEPT)
-    nearest = next(kept, None)
-    if nearest is None:
+        numbers = _drawn(search, numbers)
+    if not search.kept(numbers):
         return None
-    numbers = nearest
-    span = search.own_high - search.own_low
-    beyond = []
-    for n, name in enumerate(asked.low):
-        for above, past in ((False, search.own_low[n] - numbers[n]), (True, numbers[n] - search.own_high[n])):
-            if past > BEYOND * span[n]:
-                value = float(numbers[n] + (ROOM if above else -ROOM) * past)
-                beyond.append((name, above, value, asked.kinds[name]))
-    return Nearest(numbers, tuple(beyond))
+    found = Nearest(numbers, search.beyond_by(numbers))
+    if _sketched(asked, found):
+        return found
+    way = (numbers + share * (np.array(search.first) - numbers) for share in np.linspace(0, 1, STEPS)[1:])
+    there = next((x for x in way if shown(asked, x) and search.kept(x)), None)
+    return replace(found, sketched=False) if there is None else Nearest(there, search.beyond_by(there))
 
 
-def _drawn(asked: Asked, wide: Wider, numbers: Real) -> Real:
+def _sketched(asked: Asked, found: Nearest) -> bool:
+    """Whether the file's sketch shows a linkage within such bounds, so that a search in them can begin."""
+    if shown(asked, found.numbers):
+        return True
+    low, high = dict(asked.low), dict(asked.high)
+    for name, above, value, _ in found.beyond:
+        (high if above else low)[name] = value
+    try:
+        first_of(replace(asked, low=low, high=high), Search.tries)
+    except NoneAssembled:
+        return False
+    return bool(found.beyond)
+
+
+def _drawn(wide: Wider, numbers: Real) -> Real:
     """As near as the polish leads from some numbers: those that lie within their bounds stay there."""
     span = wide.own_high - wide.own_low
-    sides = np.where(
-        numbers > wide.own_high + BEYOND * span, 1.0, np.where(numbers < wide.own_low - BEYOND * span, -1.0, 0.0)
-    )
+    above, below = numbers > wide.own_high + BEYOND * span, numbers < wide.own_low - BEYOND * span
+    sides = above * 1.0 - below
     low = np.where(sides < 0, wide.low, np.where(sides > 0, wide.own_high, wide.own_low))
     high = np.where(sides > 0, wide.high, np.where(sides < 0, wide.own_low, wide.own_high))
     search = wide.within(low, high, sides)
     start = np.clip(search.shares(numbers), 0.0, 1.0)
-    best, least = numbers, float(wide.beyond(wide.shares(numbers)[None]).sum())
+    best, least = numbers, np.inf  # between the positions of the search it may fail
     for x in (start, search.polished(start)):
         values: Any = search.exactly(x)
         if search.missed(values) <= KEPT and values[0] <= least:
@@ -169,16 +195,10 @@ def _widest(asked: Asked) -> tuple[Real, Real]:
     middle = (low + high) / 2
     ends: tuple[Real, Real] = (low.copy(), high.copy())
     for n in range(len(low)):
-        size = max(abs(low[n]), abs(high[n]))
         for side, end in enumerate(ends):
             for times in TIMES:
-                far = (
-                    high[n] + (times - 1) * size
-                    if side
-                    else low[n] / times
-                    if low[n] > 0
-                    else low[n] - (times - 1) * size
-                )
+                more = (times - 1) * max(abs(low[n]), abs(high[n]))
+                far = high[n] + more if side else low[n] / times if low[n] > 0 else low[n] - more
                 numbers = middle.copy()
                 numbers[n] = far
                 if asked.accepts(numbers.tolist()):

@@ -69,7 +69,7 @@ class Apart:
         kernels, way = mechanism.kernels, mechanism.way
         strokes, start = mechanism.strokes if way.full and self.forces else None, None
         if variant.accelerated:
-            begins = mechanism.strokes if variant.request.start == "working stroke" else None
+            begins = mechanism.strokes if variant.begins else None
             start = float(places_of(variant.request, way, begins, linkage.driver.sense)[0])
         q = Way.of(variant, 1, way.turns, start).at(places)[0]
         with np.errstate(all="ignore"):

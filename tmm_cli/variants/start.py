@@ -20,7 +20,7 @@ def start_of(variant: Variant, working: Any = None) -> Any:
     if request.places:
         return request.places[0]
     if variant.ends is None:
-        found = working if request.start == "working stroke" else request.start
+        found = working if variant.begins else request.start
         if found is None:
             raise Iterated
         return found

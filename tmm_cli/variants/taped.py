@@ -33,7 +33,7 @@ class Taped:
         if self.ordinary.others or (forces and by_stroke):
             raise Iterated
         varied = make([Varied(x, x) for x in first])
-        start = start_of(varied)
+        start = start_of(varied) if forces else None  # nothing else hangs on where its law begins
         if any(isinstance(x, Varied) for x in (start, *(varied.ends or ()))):
             raise Iterated
         self.start = start

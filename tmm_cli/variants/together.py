@@ -104,7 +104,8 @@ class Together:
         self.by_strokes = forces and any(
             x.working_stroke_only or (x.table is not None and x.table.against != "crank angle") for x in ordinary.loads
         )
-        start_of(self.variant, 0.0)
+        if forces:
+            start_of(self.variant, 0.0)
         if self.by_strokes and self.variant.ends and ordinary.driver.kind == "turn" and not ordinary.driver.stroke:
             raise Iterated  # whether it has strokes hangs on whether its crank turns fully
 
@@ -166,14 +167,15 @@ class Together:
     def _found(self, columns: Real, places: Places, walked: Walked | None) -> dict[str, Real]:
         varied = self.varied(columns)
         way, strokes, working = Way.of(varied, len(columns), self.turns), None, None
-        begins = varied.accelerated and varied.request.start == "working stroke"
+        begins = self.forces and varied.accelerated and varied.begins
         if (self.by_strokes or begins) and way.closed:
             link = output_link(self.ordinary, self.structure.groups)
             strokes = find_strokes(lambda q: self._elements(columns, q, walked), way, self.ordinary, link)
             working = _first_of(strokes, len(columns))
-        start = start_of(varied, working)
+        start = start_of(varied, working) if self.forces else None  # nothing else hangs on where its law begins
         if start is not None:
-            way = Way.of(varied, len(columns), self.turns, start)
+            lost = np.isnan(start)  # it has no working stroke, but how far it can go is known all the same
+            way = Way.of(varied, len(columns), self.turns, np.where(lost, self.ordinary.sketch.at, start))
             start = np.repeat(np.broadcast_to(start, len(columns)), places.count)
         q = way.at(places)
         flat, kernels = self._elements(columns, q, walked)

@@ -28,6 +28,11 @@ class Variant:
         """Whether its speed depends on where it started."""
         return bool(self.linkage.driver.acceleration) and not self.linkage.others
 
+    @property
+    def begins(self) -> bool:
+        """Whether position 0 is the start of the working stroke; the file may say a number that varies instead."""
+        return isinstance(self.request.start, str) and not self.request.places
+
 
 Make = Callable[[Sequence[Any]], Variant]
 

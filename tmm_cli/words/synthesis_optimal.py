@@ -87,6 +87,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.other_sketch": "a sketch that fits, e.g. with places that rest on the parameters",
     "synthesis_optimal.unused": "nothing in the file rests on this parameter",
     "synthesis_optimal.used": "a parameter that lengths, places, masses or loads of the file rest on",
+    "synthesis_optimal.cycle_varies": "after how many turns all comes round again rests on this parameter",
+    "synthesis_optimal.over_ends": "over: [from, to] or over: positions; or a parameter that leaves ratios as they are",
     "synthesis_optimal.not_as_sketched": "the file's sketch does not show the mechanism that was found: it is "
     "assembled as the middle of the bounds is",
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
@@ -98,9 +100,16 @@ WORDS: dict[str, str] = {
     "over: positions",
     "synthesis_optimal.unmet": "no mechanism within the bounds was found that meets this and the other constraints",
     "synthesis_optimal.nearest": "with the others kept, the nearest is {value}",
+    "synthesis_optimal.stops": "the driver does not come to all places of its way with this acceleration: it stops "
+    "before, or they lie before position 0",
+    "synthesis_optimal.goes_on": "less to brake it, a higher speed, or a way from position 0 on in its sense",
     "synthesis_optimal.another": "another quantity",
     "synthesis_optimal.has_none": "no mechanism within the bounds was found that has this quantity",
 }
 for _count in range(1, 21):
     _bounds = ", ".join(f"{{name{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
     WORDS[f"synthesis_optimal.wider{_count}"] = f"wider bounds, the nearest: {_bounds}"
+    WORDS[f"synthesis_optimal.wider{_count}_sketch"] = (
+        f"wider bounds, the nearest: {_bounds}; and a sketch of such a mechanism, e.g. with places that rest on the "
+        "parameters"
+    )

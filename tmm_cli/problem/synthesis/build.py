@@ -203,7 +203,7 @@ def _found(block: Block, path: tuple[str | int, ...]) -> str | None:
 def _at(block: Any, path: tuple[str | int, ...]) -> Any:
     for step in path:
         block = block[step] if isinstance(step, int) or isinstance(block, dict) else getattr(block, step, None)
-    return block
+    return getattr(block, "of", block)  # of a quantity its name
 
 
 def _texts(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[tuple[str | int, ...], str]]:

@@ -86,8 +86,8 @@ def _ends(problem: Problem, over: Over) -> Ends:
                 "the positions are one place", path=("over",), allowed="over: [from, to]; or positions: {at: [...]}"
             )
     assert not isinstance(over, str)
-    if driver.kind != "turn" or driver.stroke is not None:
-        return over
+    if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and places):
+        return over  # an accelerated crank comes to a place a turn farther on with another speed
     turns = round(float(problem.linkage.sketch.at - (over[0] + over[1]) / 2) / (2 * np.pi))
     return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # about the sketch, whose assembly it has
 

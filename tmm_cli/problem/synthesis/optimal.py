@@ -18,7 +18,7 @@ from tmm_cli.problem.schema import Name, Strict, Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.synthesis.build import OfTheFile
-from tmm_cli.problem.synthesis.driven import asked_over, driven, within
+from tmm_cli.problem.synthesis.driven import Ends, asked_over, driven, within
 from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
 from tmm_cli.problem.varied import VariedUnits
 from tmm_cli.synthesis.goals import Goal
@@ -132,11 +132,11 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         return True
 
     middle = make(middles)
-    _check_bounds(shape, make, low, high)
+    ways = list(dict.fromkeys([middle.ends, *_check_bounds(shape, make, low, high)]))
     limits = []
     for n, given in enumerate(shape.constraints):
         path: tuple[str | int, ...] = ("constraints", n)
-        goal = _goal(given, middle, sense, path)
+        goal = _goal(given, middle, ways, sense, path)
         dimension = _dimension(goal, middle.linkage)
         sides = {
             key: sense.number(value, dimension, (*path, key))
@@ -150,7 +150,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
             raise ProblemError("the least is more than the most", path=path, found=f"{given.least} and {given.most}")
         key = "equal" if equal is not None else "least" if most is None else "most"
         limits.append(Limit(goal, least, most, (*path, key)))
-    objective = _goal(shape.objective, middle, sense, ("objective",))
+    objective = _goal(shape.objective, middle, ways, sense, ("objective",))
     target = shape.objective.target
     wanted = (
         None if target is None else sense.number(target, _dimension(objective, middle.linkage), ("objective", "target"))
@@ -176,13 +176,14 @@ def _check_work(shape: Shape) -> None:
         )  # fmt: skip
 
 
-def _check_bounds(shape: Shape, make: Make, low: dict[str, float], high: dict[str, float]) -> None:
-    """What the file refuses at a bound is said before the search. Raises ProblemError."""
+def _check_bounds(shape: Shape, make: Make, low: dict[str, float], high: dict[str, float]) -> list[Ends]:
+    """The drivers' ways at the bounds; what the file refuses there is said before the search. Raises ProblemError."""
+    found = []
     middle = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
     for n, ends in enumerate((low, high)):
         for k, (name, end) in enumerate(ends.items()):
             try:
-                make([*middle[:k], end, *middle[k + 1 :]])
+                found.append(make([*middle[:k], end, *middle[k + 1 :]]).ends)
             except OfTheFile as error:
                 path: tuple[str | int, ...] = ("vary", name, n)
                 raise ProblemError(
@@ -190,6 +191,7 @@ def _check_bounds(shape: Shape, make: Make, low: dict[str, float], high: dict[st
                     found=quote(shape.vary[name][n]), allowed=error.error.allowed or "another bound",
                 ) from None  # fmt: skip
         make(list(ends.values()))
+    return found
 
 
 def _kind_of(source: Any, sense: Sense) -> str | None:
@@ -204,7 +206,7 @@ def _dimension(goal: Goal, linkage: Linkage) -> Dimension:
     return KINDS[goal.kind(linkage, mobile(linkage).solved)].dimension
 
 
-def _goal(given: Quality, variant: Variant, sense: Sense, path: tuple[str | int, ...]) -> Goal:
+def _goal(given: Quality, variant: Variant, ways: list[Ends], sense: Sense, path: tuple[str | int, ...]) -> Goal:
     linkage = variant.linkage
     own = {"pair", "point", "link", "links", "through", "values", "at", "relative", "norm"}
     takes = {"reaction": {"pair"}, "path": {"point", "through", "at", "norm"},
@@ -230,7 +232,7 @@ def _goal(given: Quality, variant: Variant, sense: Sense, path: tuple[str | int,
     if given.of == "law":
         dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
-    places = [_place(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
+    places = [_place(v, variant, ways, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
     if given.of in ("path", "law"):
         key = "through" if given.of == "path" else "values"
         if not wanted:
@@ -245,20 +247,23 @@ def _goal(given: Quality, variant: Variant, sense: Sense, path: tuple[str | int,
     )
 
 
-def _place(value: Any, variant: Variant, sense: Sense, path: tuple[str | int, ...]) -> float:
-    """A place of the driver's way."""
+def _place(value: Any, variant: Variant, ways: list[Ends], sense: Sense, path: tuple[str | int, ...]) -> float:
+    """A place of the driver's way, on all ways that it has at the bounds."""
     turns = variant.linkage.driver.kind == "turn"
     dimension = ANGLE if turns else LENGTH
-    found = within(float(sense.number(value, dimension, path)), variant.ends, turns=turns)
-    if found is None and variant.ends is not None:
-        low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in variant.ends)
-        of = "its stroke" if variant.ends == variant.linkage.driver.stroke else "its way"
-        raise ProblemError(
-            "the driver does not go there", path=path, found=quote(value),
-            allowed=f"a place of {of}, {low} to {high} {sense.units.symbol(dimension)}",
-        )  # fmt: skip
+    place = float(sense.number(value, dimension, path))
+    for ends in ways[::-1]:
+        found = within(place, ends, turns=turns)
+        if found is None and ends is not None:
+            low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in ends)
+            of = "its stroke" if ends == variant.linkage.driver.stroke else "its way"
+            raise ProblemError(
+                "the driver does not go there", path=path, found=quote(value),
+                allowed=f"a place of {of}, {low} to {high} {sense.units.symbol(dimension)}"
+                + (" at a bound of what varies" if len(ways) > 1 else ""),
+            )  # fmt: skip
     assert found is not None
-    return found
+    return found  # on the way of the middle of the bounds, which is the first of them
 
 
 def _bar() -> Callable[[int, int], None]:
