@@ -12,7 +12,7 @@ from typing import Any
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Closed
 from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.stack import changed, numbers
@@ -37,7 +37,7 @@ def family(
     ordinary = make(first)
     structure = mobile(ordinary)
     kernels = assemble(ordinary, structure)
-    if not all(isinstance(kernel, Dyad) and kernel.winding is None for kernel in kernels) or ordinary.friction:
+    if not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in kernels) or ordinary.friction:
         raise Iterated
 
     def stages(*data: Stand) -> Mapping[str, Any]:

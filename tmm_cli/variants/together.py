@@ -16,7 +16,7 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
 from tmm_cli.family import Iterated
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import Pose
 from tmm_cli.groups.track import State
@@ -203,7 +203,7 @@ class Together:
             links = own.group.links
             if isinstance(own, Newton):
                 found.append(replace(own, track=Started(State(on(x, links), on(turn, links)), gap)))
-            elif isinstance(own, Dyad) and getattr(kernel, "winding", None) is not None:
+            elif isinstance(own, Closed) and getattr(kernel, "winding", None) is not None:
                 found.append(replace(own, winding=Followed({n: turn[n].ravel() for n in links})))
             else:
                 found.append(own)
