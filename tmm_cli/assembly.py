@@ -11,6 +11,7 @@ from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
 from tmm_cli.groups.base import Closed, Kernel, Turn, reach
 from tmm_cli.groups.state import Drives, Placement, Pose
+from tmm_cli.groups.telescope import Chain, Telescope
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move, towards
@@ -62,7 +63,10 @@ def _assembled(
 
 def closed_form(group: Group, linkage: Linkage) -> Closed | None:
     """The group with its numbers, not yet assembled, if it has a closed form."""
-    return KERNELS[group.type].of(group, linkage) if group.type in KERNELS and not group.drivers else None
+    if group.type in KERNELS and not group.drivers:
+        return KERNELS[group.type].of(group, linkage)
+    chain = Chain.of(group)
+    return Telescope.of(group, linkage) if chain is not None and chain.dyad.type in KERNELS else None
 
 
 def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
