@@ -25,6 +25,12 @@ from tmm_cli.mobile import mobile
 from tmm_cli.motion import Law, move
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.search import search_of
+from tmm_cli.synthesis.candidates import Search
+from tmm_cli.synthesis.check import measured
+from tmm_cli.variants.apart import Apart
+from tmm_cli.variants.taped import Taped
+from tmm_cli.variants.way import Places
 
 # pairs of the arm with what it hangs on, of the arm with the cylinder's far end, and of its near end
 CHAINS = ("RRR", "RRP", "PRR", "RPR", "PRP", "RPP", "PPR")
@@ -167,3 +173,48 @@ def test_links_that_are_not_such_a_chain_stay_with_newtons_method():
     loader = load(str(ROOT / "problems" / "loader.yaml")).linkage
     for linkage in (loader, any_linkage(1, ("arm",)), any_linkage(1, ("III",))):
         assert all(Chain.of(group) is None for group in mobile(linkage).groups)
+
+
+LIFT = """tmm: 1
+parameters:
+  first: hypot(b*cos(10 deg) - xC, b*sin(10 deg) - yC)
+  last: hypot(b*cos(60 deg) - xC, b*sin(60 deg) - yC)
+synthesis:
+  task: optimal
+  vary: {b: [400, 800], xC: [200, 700], yC: [-700, -300]}
+  objective: moment
+  constraints: [{of: reaction, pair: O, most: 9 kN}]
+  positions: 24
+  population: 8
+  generations: 3
+units: {length: mm, angle: deg}
+points: {O: [0, 0], C: [xC, yC]}
+links:
+  1: {points: {O: [0, 0], B: [b, 0], P: [2000, 0]}}
+  2: {points: {C: [0, 0], U: [300, 0]}}
+  3: {points: {B: [0, 0], V: [-250, 0]}, slides: {on: 2, along: C-U}}
+driver: {link: 3, on: 2, speed: 40 mm/s}
+sketch: {at: (first + last)/2, B: [b*cos(35 deg), b*sin(35 deg)]}
+masses: {1: {mass: 60 kg, inertia: 20, centre: [800, 0]}, 2: {mass: 14 kg, inertia: 0.2, centre: U}}
+loads: {F: {on: 1, at: P, force: [0, -2 kN]}}
+output: 1
+positions: {at: [first, (first + last)/2, last]}
+"""
+
+
+def test_candidates_whose_strokes_vary_are_on_one_tape():
+    """The boom goes from 10 to 60 deg in each of them, so that the cylinder goes another way in each."""
+    search = Search(search_of(read_text(LIFT, "x.yaml")))
+    assert isinstance(search.program, Taped)
+    variants = search.numbers(np.random.default_rng(3).random((5, 3)))
+    places = Places(np.linspace(0, 1, 7), np.zeros(0))
+    found = search.program(variants, places)
+    expected = Apart(search.asked.make, search.first, search._outputs, forces=True)(variants, places)
+    for name in found:
+        assert near(found[name], expected[name]), name
+
+
+def test_what_is_found_for_a_lift_is_measured_on_it():
+    problem = build(read_text(LIFT, "x.yaml"))
+    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+        assert m.met, (m.demand.words, m.demand.value, m.value)
