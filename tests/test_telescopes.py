@@ -117,6 +117,20 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
             assert near(found[name][k] if np.ndim(found[name]) > 1 else found[name], expected[name]), name
 
 
+@pytest.mark.parametrize("chain", CHAINS)
+@pytest.mark.parametrize("seed", range(4))
+def test_its_gap_grows_as_fast_as_it_says(chain, seed):
+    """From five places of the driver about the sketch, wherever the arm lies."""
+    linkage = swinging(seed, chain)
+    _, kernel, _ = both(linkage)
+    step = 1e-3
+    motion = move(linkage, [kernel], linkage.sketch.at + step * np.arange(-2, 3), LAW, 1)
+    at = kernel.closed(motion.poses, motion.drives)
+    rate = kernel.closing(at, motion.poses, motion.first, motion.drives)
+    b2, b1, _, a1, a2 = at.gap
+    assert rate[2] == pytest.approx((8 * (a1 - b1) - (a2 - b2)) / (12 * step), rel=1e-8, abs=1e-9)
+
+
 def test_its_driver_turns_back_where_the_triangle_is_flat():
     """Lever of 200 mm, hinges hypot(350, 300) apart: the cylinder is the difference or the sum of them long."""
     results = solved(SWINGING.replace(", stroke: [400, 600]", "").replace("{count: 5}", "{at: [550]}"))

@@ -2,7 +2,7 @@
 place.
 
 For what the tape cannot hold: groups that are found by iteration, toothed wheels, cams, friction, several drivers,
-drivers that work between two ends, loads of working strokes.
+loads of working strokes.
 """
 
 from __future__ import annotations
