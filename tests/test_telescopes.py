@@ -12,6 +12,7 @@ from test_commands import ROOT
 from test_cylinders import SWINGING, solved
 
 from tmm_cli import load, solve
+from tmm_cli.accuracy.data import widened
 from tmm_cli.assemblies import find_assemblies
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import everything, prepare
@@ -115,6 +116,21 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
         expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
         for name in found:
             assert near(found[name][k] if np.ndim(found[name]) > 1 else found[name], expected[name]), name
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_in_extended_precision_it_has_all_of_its_digits(chain):
+    linkage = swinging(2, chain)
+    wide = widened(linkage)
+    _, closed, iterated = both(linkage)
+    rounding = np.finfo(np.longdouble).eps
+    q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5).astype(np.longdouble)
+    one, other = (move(wide, [kernel.again(wide)], q, LAW) for kernel in (closed, iterated))
+    for link in linkage.moving:
+        assert one.second[link].a.dtype == np.clongdouble
+        assert np.max(np.abs(one.poses[link].x - other.poses[link].x)) < 200 * rounding
+        size = np.max(np.abs(other.second[link].a))
+        assert np.max(np.abs(one.second[link].a - other.second[link].a)) < 1e4 * rounding * max(1.0, size)
 
 
 @pytest.mark.parametrize("chain", CHAINS)
