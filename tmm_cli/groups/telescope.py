@@ -2,8 +2,8 @@
 
 With the run of the drive they are one body, so the group is placed as a group of two links: the arm, and the telescope
 in the axes of its link m that hangs on another, on which the pin of its link n, the one that holds the arm, has moved.
-A point of n moves as if n hung on a link that moves as m's does and along the guide besides. E. Soylemez, Mechanisms,
-METU, ch. 3 (loop closure with a variable length as the input).
+A point of n moves as if n hung on a link that moves as m's does and along the guide besides: so velocities and
+accelerations come from those of the two links too, and reactions as if both parts were one body.
 """
 
 from __future__ import annotations
@@ -145,13 +145,14 @@ class Telescope(Closed):
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
         known = self.chain.m if of_m else self.chain.arm
         turned = unit(angle)
-        moved: Any = ({"there": origin + inner.there * turned} if of_m else {"here": origin + inner.here * turned}) | {
-            "known": known
-        }
-        if isinstance(inner, Run):
-            moved |= {"turned": inner.turned + angle if of_m else inner.turned - angle}
-            moved |= {"direction": inner.direction + angle if of_m else inner.direction}
-        return replace(self.dyad, inner=replace(inner, **moved), sign=self.sign)
+        there = origin + inner.there * turned if of_m else inner.there
+        here = inner.here if of_m else origin + inner.here * turned
+        moved = replace(inner, known=known, there=there, here=here)
+        if isinstance(moved, Run):  # angles of a guide are against m now
+            moved = replace(
+                moved, direction=moved.direction + angle * of_m, turned=moved.turned + (angle if of_m else -angle)
+            )
+        return replace(self.dyad, inner=moved, sign=self.sign)
 
     def _two(self, at: Placement) -> Placement:
         """Places of the two links alone."""
