@@ -55,7 +55,7 @@ class Chain:
     @classmethod
     def of(cls, group: Group) -> Chain | None:
         """None where the group is no such chain."""
-        if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1) or group.idle:
+        if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
             return None
         driven = [pair for pair in group.inner if pair.slide and pair.name == group.drivers[0].joint]
         if not driven or not all(pair.lower for pair in (*group.inner, *group.outer)):
