@@ -248,3 +248,37 @@ def test_what_is_found_for_a_lift_is_measured_on_it():
     problem = build(read_text(LIFT, "x.yaml"))
     for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
         assert m.met, (m.demand.words, m.demand.value, m.value)
+
+
+def digger():
+    """A search over where the boom's cylinder stands: the three pass through another sketch in each candidate."""
+    text = (ROOT / "problems" / "excavator.yaml").read_text(encoding="utf-8")
+    asked = (
+        "synthesis: {task: optimal, vary: {HX: [550, 650]}, objective: moment, positions: 24}\noutput: 7\npoints: {O"
+    )
+    for old, new in (("s1: sqrt(600^2", "s1: sqrt(HX^2"), ("H: [600, 0]", "H: [HX, 0]"), ("points: {O", asked)):
+        assert old in text
+        text = text.replace(old, new, 1)
+    return Search(search_of(read_text(text, "x.yaml")))
+
+
+def test_drivers_of_each_candidate_pass_through_its_own_sketch():
+    search = digger()
+    variants = np.array([[0.56], [0.6], [0.64]])
+    places = Places(np.linspace(0, 1, 7), np.zeros(0))
+    found = search.program(variants, places)
+    expected = Apart(search.asked.make, search.first, search._outputs, forces=True)(variants, places)
+    assert near(found["0.y0"], expected["0.y0"])
+    at = [search.program.sketch(numbers).at for numbers in variants]
+    assert np.allclose(at, np.hypot(variants[:, 0], 0.9), rtol=1e-15)
+
+
+def test_a_batch_of_linkages_with_sketches_of_their_own_moves_each_from_its_own():
+    make = digger().asked.make
+    linkages = [make([x]).linkage for x in (0.58, 0.62)]
+    q = 1.1 + np.linspace(0, 0.02, 5)
+    found = prepare(linkages, everything)(q)
+    for k, one in enumerate(linkages):
+        structure = mobile(one)
+        expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
+        assert all(near(1.0 * found[name][k], 1.0 * expected[name]) for name in found)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -104,6 +104,8 @@ class Together:
         self.by_strokes = forces and any(
             x.working_stroke_only or (x.table is not None and x.table.against != "crank angle") for x in ordinary.loads
         )
+        if self.walks and self.ordinary.others and self._varying_sketch():
+            raise DependsOnData("linkage.sketch.at")
         start_of(self.variant, 0.0)
         if self.by_strokes and self.variant.ends and ordinary.driver.kind == "turn" and not ordinary.driver.stroke:
             raise Iterated  # whether it has strokes hangs on whether its crank turns fully
@@ -115,12 +117,20 @@ class Together:
         before, after = (dict(numbers(self.make(x.tolist()))) for x in (self.first, self.first + steps))
         return {path for path in written if abs(before[path] - after[path]) > SAME * abs(before[path])}
 
+    def _varying_sketch(self) -> bool:
+        """Whether the place of the sketch varies."""
+        return isinstance(self.make([Varied(x, x) for x in self.first]).linkage.sketch.at, Varied)
+
     def varied(self, columns: Real) -> Variant:
         """A variant of arrays (variants,), for numbers (variants, n)."""
         varied = self.make([Varied(x, c) for x, c in zip(self.first, columns.T, strict=True)])
         arrays = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
         found: Variant = changed(varied, arrays)
-        return replace(found, linkage=replace(found.linkage, sketch=self.ordinary.sketch))
+        sketch = self.ordinary.sketch
+        if self.ordinary.others:  # they pass through the places of the sketch together
+            at: Any = found.linkage.sketch.at
+            sketch = replace(sketch, at=at.stand if isinstance(at, Varied) else at)
+        return replace(found, linkage=replace(found.linkage, sketch=sketch))
 
     def linkage(self, columns: Real) -> Linkage:
         """The same without its way."""
@@ -138,7 +148,9 @@ class Together:
         """How one variant looks at the place of the sketch."""
         one = numbers[None, :]
         walked = self._walked(one, self.way(one))
-        linkage = replace(self.make([float(number) for number in numbers]).linkage, sketch=self.ordinary.sketch)
+        linkage = self.make([float(number) for number in numbers]).linkage
+        if self.walks:  # which is known at the place where they start from
+            linkage = replace(linkage, sketch=self.ordinary.sketch)
         kernels = []
         for kernel in kernels_of(linkage, self.kernels):
             if walked is not None and isinstance(kernel, Newton):
