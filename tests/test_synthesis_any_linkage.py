@@ -42,6 +42,7 @@ ALIKE = {
     "crank-slider-offset": (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),),
     "loader": (("speed: v}", "speed: v, stroke: [240, 300]}"),),  # the sketch is at its end
     "clamp": (),  # through its positions
+    "positioner": (("speed: v}", "speed: v, stroke: [200, 280]}"),),  # a cylinder in closed form
 }
 
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.assembly import closed_form
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.state import Drives, Pose
 from tmm_cli.groups.track import State
 from tmm_cli.linkage import FRAME, Linkage
@@ -129,9 +129,10 @@ def find_assemblies(
 
 
 def _of_group(group: Group, linkage: Linkage, motion: Motion, placed: Mapping[str, Pose]) -> GroupAssemblies:
-    if group.type in KERNELS and not group.drivers:
-        dyad = KERNELS[group.type].of(group, linkage)
-        found = GroupAssemblies(group, tuple(_of_dyad(dyad, linkage, placed)), "closed form", dyad.assemblies)
+    kernel = closed_form(group, linkage)
+    if kernel is not None:
+        own = tuple(_of_closed(kernel, linkage, placed, motion.drives))
+        found = GroupAssemblies(group, own, "closed form", kernel.assemblies)
     else:
         found = _of_higher(group, linkage, placed, motion)
     sketched = _sketched(group, motion)
@@ -167,14 +168,14 @@ def _assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose]
     return Assembly(poses, angles, points, margin)
 
 
-def _of_dyad(dyad: Dyad, linkage: Linkage, placed: Mapping[str, Pose]) -> Iterable[Assembly]:
+def _of_closed(kernel: Closed, linkage: Linkage, placed: Mapping[str, Pose], drives: Drives) -> Iterable[Assembly]:
     """One for each sign, one in a dead position, none where it does not reach."""
-    for sign in (1, -1)[: dyad.assemblies]:
+    for sign in (1, -1)[: kernel.assemblies]:
         with np.errstate(invalid="ignore", divide="ignore"):
-            at = replace(dyad, sign=sign).closed(placed)
+            at = replace(kernel, sign=sign).closed(placed, drives)
         if not at.assembled[0] or not np.isfinite(at.a.x[0] + at.b.x[0]):
             return
-        yield _assembly(linkage, placed, dict(zip(dyad.group.links, at.poses, strict=True)), float(at.margin[0]))
+        yield _assembly(linkage, placed, dict(zip(kernel.group.links, at.poses, strict=True)), float(at.margin[0]))
         if at.dead[0]:
             return
 

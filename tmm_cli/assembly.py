@@ -9,8 +9,9 @@ import numpy as np
 
 from tmm_cli.cycle import turns_of_cycle
 from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import Dyad, Kernel, Turn, reach
+from tmm_cli.groups.base import Closed, Kernel, Turn, reach
 from tmm_cli.groups.state import Drives, Placement, Pose
+from tmm_cli.groups.telescope import Chain, Telescope
 from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.motion import Law, Motion, driven_state, drives_at, frame_state, move, towards
@@ -47,16 +48,25 @@ def _assembled(
     group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
 ) -> tuple[Kernel, Placement]:
     q = np.array([linkage.sketch.at])
-    if group.type in KERNELS and not group.drivers:
-        dyad, at = _choose(KERNELS[group.type].of(group, linkage), linkage, poses)
+    closed = closed_form(group, linkage)
+    if closed is not None:
+        kernel, at = _choose(closed, linkage, poses, drives)
         geared = {name for mesh in linkage.meshes for name in (mesh.i, mesh.j, mesh.carrier)} & set(group.links)
         if geared:
-            dyad = replace(dyad, winding=_winding(linkage, (*before, dyad), tuple(geared)))
-            at = dyad.place(poses, q, drives)
-        return dyad, at
+            kernel = replace(kernel, winding=_winding(linkage, (*before, kernel), tuple(geared)))
+            at = kernel.place(poses, q, drives)
+        return kernel, at
     from tmm_cli.assembly_newton import assembled  # class II alone needs none of it
 
     return assembled(group, linkage, poses, drives, before)
+
+
+def closed_form(group: Group, linkage: Linkage) -> Closed | None:
+    """The group with its numbers, not yet assembled, if it has a closed form."""
+    if group.type in KERNELS and not group.drivers:
+        return KERNELS[group.type].of(group, linkage)
+    chain = Chain.of(group)
+    return Telescope.of(group, linkage) if chain is not None and chain.dyad.type in KERNELS else None
 
 
 def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
@@ -79,17 +89,18 @@ def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ..
     return Winding(q[first:last], angles, closed)
 
 
-def _choose(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> tuple[Dyad, Placement]:
+def _choose(kernel: Closed, linkage: Linkage, poses: dict[str, Pose], drives: Drives) -> tuple[Closed, Placement]:
+    signed = [replace(kernel, sign=s) for s in (1, -1)[: kernel.assemblies]]
     with np.errstate(invalid="ignore", divide="ignore"):
-        ways = [(replace(dyad, sign=s), replace(dyad, sign=s).closed(poses)) for s in (1, -1)[: dyad.assemblies]]
+        ways = [(one, one.closed(poses, drives)) for one in signed]
     first = ways[0][1]
     if not first.assembled[0] or not np.isfinite(first.a.x[0] + first.b.x[0]):
-        raise NoAssembly(dyad.group, float(first.gap[0]))
+        raise NoAssembly(kernel.group, float(first.gap[0]))
     if len(ways) == 1:
         return ways[0]
     if first.dead[0]:
-        raise Undecided(dyad.group, {})
-    return ways[nearest_to_sketch(dyad, linkage, [at.poses for _, at in ways], _shift(dyad, linkage, poses))]
+        raise Undecided(kernel.group, {})
+    return ways[nearest_to_sketch(kernel, linkage, [at.poses for _, at in ways], _shift(kernel, linkage, poses))]
 
 
 def nearest_to_sketch(
@@ -113,13 +124,13 @@ def nearest_to_sketch(
     return best
 
 
-def _shift(dyad: Dyad, linkage: Linkage, poses: dict[str, Pose]) -> complex:
+def _shift(kernel: Closed, linkage: Linkage, poses: dict[str, Pose]) -> complex:
     """How far the sketch has the hinges that the group hangs on from where they are (m).
 
     What a sketch tells is on which side of them the group lies, so a group is compared with them put in their places.
     """
     shifts = []
-    for pair, end in zip(dyad.group.outer, dyad.ends, strict=True):
+    for pair, end in kernel.leads:
         if isinstance(end, Turn):
             if end.known == FRAME:
                 shifts.append(0j)

@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.assembly import assemble
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, react
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.state import Drive
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.mobile import mobile
@@ -119,7 +119,9 @@ def prepare(
         raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
     structure = mobile(first)
     kernels = assemble(first, structure)
-    if not all(isinstance(kernel, Dyad) and kernel.winding is None for kernel in kernels) or first.friction:
+    # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+    apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
+    if apart or first.friction or not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in kernels):
         return Batch(linkages, structure, kernels, asked, forces, strokes, None)
     columns, together = parts(varying(linkages))
     if len(linkages) > 1 and not columns:  # all the same

@@ -12,7 +12,7 @@ from typing import Any
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Closed
 from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.stack import changed, numbers
@@ -27,17 +27,19 @@ class Iterated(ValueError):  # noqa: N818  it says what is the matter
 
 
 def family(
-    make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False, start: float | None = None
-) -> Program:
+    make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False, start: float | None = None,
+    own_places: bool = False,
+) -> Program:  # fmt: skip
     """A program of the varying numbers, each (variants, 1), and the driver's places (positions,).
 
     make: the linkage for given numbers, floats or Varied; first: those of the linkage whose assembly all have; start:
-    where the driver's law begins, in the sketch when left out. Raises Iterated, and what assembly raises.
+    where the driver's law begins, in the sketch when left out; own_places: whether each variant has places of its own,
+    (variants, positions). Raises Iterated, and what assembly raises.
     """
     ordinary = make(first)
     structure = mobile(ordinary)
     kernels = assemble(ordinary, structure)
-    if not all(isinstance(kernel, Dyad) and kernel.winding is None for kernel in kernels) or ordinary.friction:
+    if not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in kernels) or ordinary.friction:
         raise Iterated
 
     def stages(*data: Stand) -> Mapping[str, Any]:
@@ -47,4 +49,4 @@ def family(
         own = tuple(kernel.again(linkage) for kernel in kernels)
         return solved(linkage, structure.again(linkage), own, data[-1], asked, forces, None, blank=False, start=start)
 
-    return record(stages, *[1] * len(first), 2)
+    return record(stages, *[1] * len(first), 3 if own_places else 2)

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from tmm_cli.cycle import MOST, turns_of_cycle
-from tmm_cli.groups.base import Dyad, Kernel, reach
+from tmm_cli.groups.base import Closed, Kernel, reach
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.roots import least, roots
@@ -292,12 +292,12 @@ def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: f
     The least of a quantity is known to half the digits only, the root of its rate to all of them.
     """
     last = kernels[-1]
-    if not isinstance(last, Dyad):
+    if not isinstance(last, Closed):
         return place
 
     def closing(q: Real) -> Real:
         before = move(linkage, kernels[:-1], q, Law(0.0, 1.0, 0.0, 1), 1)
-        return last.closing(last.closed(before.poses), before.poses, before.first)
+        return last.closing(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
 
     low, high = np.array([place - step]), np.array([place + step])
     with np.errstate(all="ignore"):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.track import State
 from tmm_cli.motion import Motion
@@ -41,7 +41,7 @@ class Changed:
         if number is None:
             return NOWHERE
         before, after = (kernels[number] for kernels in self.kernels)
-        if isinstance(before, Dyad):
+        if isinstance(before, Closed):
             return self._root(place, lambda motion, _: motion.placements[number].gap)
         if not isinstance(before, Newton) or not isinstance(after, Newton) or before.followed is None:
             return NOWHERE
@@ -67,13 +67,13 @@ class Changed:
     def dead(self, place: float, group: str) -> float:
         """Of a dead position inside the way of a group of two links: there its gap stops growing."""
         number = self._number(group)
-        if number is None or not isinstance(self.kernels[0][number], Dyad):
+        if number is None or not isinstance(self.kernels[0][number], Closed):
             return NOWHERE
 
         def closing(motion: Motion, side: int) -> Real:
             kernel = self.kernels[side][number]
-            assert isinstance(kernel, Dyad)
-            return kernel.closing(kernel.closed(motion.poses), motion.poses, motion.first)
+            assert isinstance(kernel, Closed)
+            return kernel.closing(kernel.closed(motion.poses, motion.drives), motion.poses, motion.first, motion.drives)
 
         return self._root(place, closing)
 

@@ -17,7 +17,7 @@ from tmm_cli.accuracy.data import Length, changed, lengths
 from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, U, exact
 from tmm_cli.accuracy.places import Changed
 from tmm_cli.extended import WIDER
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Closed
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move
 from tmm_cli.pipeline import CYCLE, Results, cycle_losses, given
@@ -318,7 +318,7 @@ class _Wide:
     def end(self, place: float, towards: int, group: str, span: float) -> float:
         """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
         kernel = next((k for k in self.kernels if k.group.title == group), None)
-        if not isinstance(kernel, Dyad):
+        if not isinstance(kernel, Closed):
             return LEAST * span + 4 * U * abs(place)
         steps = self.steps(place).astype(self.kind)
         inside = self.at(self.kind(place) - towards * steps).placed
@@ -330,11 +330,11 @@ class _Wide:
         """Of a dead position inside the way: there the gap of the group stops growing."""
         number = next(k for k, kernel in enumerate(self.kernels) if kernel.group.title == group)
         kernel = self.kernels[number]
-        if not isinstance(kernel, Dyad):
+        if not isinstance(kernel, Closed):
             return GUESS * span
 
         def closing(motion: Motion) -> Real:
-            return kernel.closing(kernel.closed(motion.poses), motion.poses, motion.first)
+            return kernel.closing(kernel.closed(motion.poses, motion.drives), motion.poses, motion.first, motion.drives)
 
         return min(self.bracket(place, closing, kernel.size), GUESS * span)
 

@@ -143,9 +143,9 @@ def _loaded(results: Results, linkage: Linkage) -> int:
 
 
 def _closed_form(results: Results, q: Real, compare: Callable[..., Saving]) -> Saving:
-    from tmm_cli.groups.base import Dyad
+    from tmm_cli.groups.base import Closed
 
-    if not any(isinstance(kernel, Dyad) for kernel in results.kernels):
+    if not any(isinstance(kernel, Closed) for kernel in results.kernels):
         return Saving("closed", why="no_dyads")
     from tmm_cli.assembly import assemble
 

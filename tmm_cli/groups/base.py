@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -25,7 +25,7 @@ from tmm_cli.vectors import Real, Vector, unit
 if TYPE_CHECKING:
     from tmm_cli.groups.track import Track
 
-__all__ = ["Accel", "Dyad", "Held", "Holding", "Kernel", "Placement", "Pose", "Rate", "Wrench"]
+__all__ = ["Accel", "Closed", "Dyad", "Held", "Holding", "Kernel", "Placement", "Pose", "Rate", "Wrench"]
 
 ROUNDINGS = 8.0  # a distance below so many roundings of its data cannot be told from zero
 
@@ -86,6 +86,11 @@ def run_end(pair: Pair, own: str) -> Run:
     return Run(slide.runner, slide.at, slide.through, slide.direction - slide.turned, -slide.turned, False)
 
 
+def seen(pair: Pair, own: str, linkage: Linkage) -> Turn | Run:
+    """A lower pair as its link `own` sees it."""
+    return turn_end(pair, own, linkage) if pair.kind == "R" else run_end(pair, own)
+
+
 @dataclass(frozen=True)
 class Kernel(ABC):
     """An Assur group that can be solved."""
@@ -135,49 +140,65 @@ class Kernel(ABC):
 
 
 @dataclass(frozen=True)
-class Dyad(Kernel):
-    """An Assur group of class II: two links, one inner pair, two outer pairs. sign tells its two assemblies apart.
+class Closed(Kernel):
+    """A group whose places are found in closed form. sign tells its two assemblies apart.
 
     winding: how often its links have gone round, where something depends on that.
     """
 
+    sign: int = field(default=1, kw_only=True)
+    winding: Winds | None = field(default=None, kw_only=True)
+
+    @property
+    @abstractmethod
+    def assemblies(self) -> int:
+        """How many there are at most, 1 or 2."""
+
+    @property
+    @abstractmethod
+    def leads(self) -> tuple[tuple[Pair, Turn | Run], ...]:
+        """Its outer pairs, each as its own link sees it."""
+
+    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+        at = self.closed(poses, drives)
+        return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
+
+    @abstractmethod
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
+        """Places of its links in the group's own assembly."""
+
+    @abstractmethod
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
+        """The rate at which its gap grows, from the motion of the links it hangs on and of its drivers alone."""
+
+
+@dataclass(frozen=True)
+class Dyad(Closed):
+    """An Assur group of class II: two links, one inner pair, two outer pairs."""
+
     ends: tuple[Turn | Run, Turn | Run]
     inner: Turn | Run
-    sign: int = 1
-    winding: Winds | None = None
 
     type: ClassVar[str]
-    assemblies: ClassVar[int] = 2
+    assemblies = 2
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage, sign: int = 1) -> Dyad:
         """The group with its numbers; the inner pair is seen from link b."""
-
-        def seen(pair: Pair, own: str) -> Turn | Run:
-            return turn_end(pair, own, linkage) if pair.kind == "R" else run_end(pair, own)
-
         a, b = group.links
-        ends = (seen(group.outer[0], a), seen(group.outer[1], b))
+        ends = (seen(group.outer[0], a, linkage), seen(group.outer[1], b, linkage))
         size = reduce(np.maximum, [spread(linkage, link) for link in (a, b, *(end.known for end in ends))])
-        return cls(group, size, ends, seen(group.inner[0], b), sign)
+        return cls(group, size, ends, seen(group.inner[0], b, linkage), sign=sign)
 
     def again(self, linkage: Linkage) -> Kernel:
         return replace(type(self).of(self.group.again(linkage), linkage, self.sign), winding=self.winding)
 
-    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
-        at = self.closed(poses)
-        return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
+    @property
+    def leads(self) -> tuple[tuple[Pair, Turn | Run], ...]:
+        return tuple(zip(self.group.outer, self.ends, strict=True))
 
     def inner_on(self, pair: Pair) -> str:
         return self.group.links[1]
-
-    @abstractmethod
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
-        """Places of both links in the group's own assembly."""
-
-    @abstractmethod
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
-        """The rate at which its gap grows, from the motion of the links it hangs on alone."""
 
 
 def spread(linkage: Linkage, link: str) -> Any:

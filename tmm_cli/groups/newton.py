@@ -272,7 +272,7 @@ class Newton(Kernel):
         outer, inner = len(self.group.outer), len(self.group.inner)
         for k, pair in enumerate(self.group.outer):
             if pair.i in self.order:
-                held[k] = _turned_round(held[k])
+                held[k] = held[k].opposite
         drives = {
             driver.link: found[..., row - len(self.group.drivers) + k] for k, driver in enumerate(self.group.drivers)
         }
@@ -286,11 +286,3 @@ def _stacked(values: Sequence[Any]) -> Real:
 
 def _nothing(shape: tuple[int, ...]) -> Wrench:
     return Wrench(np.zeros(shape, complex), np.zeros(shape))
-
-
-def _turned_round(held: Held) -> Held:
-    """The reaction on the pair's first link."""
-    couple = None if held.couple is None else -held.couple
-    if held.back is not None:
-        return Held(-held.force, held.back, at=held.at, back=held.couple)
-    return Held(-held.force, couple, at=held.at)

@@ -29,7 +29,7 @@ class PRP(Dyad):
         assert isinstance(a, Run) and isinstance(b, Run) and isinstance(self.inner, Turn)
         return a, b, self.inner
 
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
         a, b, c = self._ends
         (P, u), (Q, v) = line(a, poses), line(b, poses)
         za, zb = poses[a.known].z * unit(a.turned), poses[b.known].z * unit(b.turned)
@@ -42,7 +42,7 @@ class PRP(Dyad):
         a, b, c = self._ends
         return at.a.at(c.there), line(a, poses)[1], line(b, poses)[1]
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
         a, b, _ = self._ends
         u, v = line(a, poses)[1], line(b, poses)[1]
         return turned_apart(u, v, rates[a.known].w, rates[b.known].w)

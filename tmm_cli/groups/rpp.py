@@ -30,7 +30,7 @@ class RPP(Dyad):
         assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Run)
         return a, b, self.inner
 
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
         a, b, run = self._ends
         Q, v = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
@@ -48,7 +48,7 @@ class RPP(Dyad):
         _, b, run = self._ends
         return at.a.z * unit(run.direction), line(b, poses)[1]
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
         return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
 
     def rates(

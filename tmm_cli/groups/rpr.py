@@ -50,7 +50,7 @@ class RPR(Dyad):
         offset: Real = cross(unit(run.direction), fixed)
         return offset
 
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
         a, b, run = self._ends
         A, B = a.place(poses), b.place(poses)
         base = B - A
@@ -72,7 +72,7 @@ class RPR(Dyad):
         _, _, run = self._ends
         return at.a.z * unit(run.direction), self._offset()
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
         a, b, _ = self._ends
         base = b.place(poses) - a.place(poses)
         shorter: Real = -dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / np.abs(base)

@@ -41,7 +41,7 @@ class RRP(Dyad):
         assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Turn)
         return a, b, self.inner
 
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
         a, b, c = self._ends
         A = a.place(poses)
         Q, u = line(b, poses)
@@ -65,7 +65,7 @@ class RRP(Dyad):
         _, u = line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
         a, b, c = self._ends
         Q, u = line(b, poses)
         A = a.place(poses)

@@ -44,7 +44,7 @@ class RRR(Dyad):
         a, b, c = self._ends
         return (c.there - a.here) * at.a.z, (c.here - b.here) * at.b.z
 
-    def closed(self, poses: Mapping[str, Pose]) -> Placement:
+    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
         a, b, c = self._ends
         A, B = a.place(poses), b.place(poses)
         arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
@@ -70,7 +70,7 @@ class RRR(Dyad):
             (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), gap, slack
         )
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Real:
+    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
         a, b, c = self._ends
         base = b.place(poses) - a.place(poses)
         d = np.abs(base)

@@ -139,6 +139,13 @@ class Held:
     at: Vector | None = None
     back: Real | None = None
 
+    @property
+    def opposite(self) -> Held:
+        """The reaction on the pair's other link."""
+        if self.back is not None:
+            return Held(-self.force, self.back, at=self.at, back=self.couple)
+        return Held(-self.force, None if self.couple is None else -self.couple, at=self.at)
+
 
 @dataclass(frozen=True)
 class Holding:

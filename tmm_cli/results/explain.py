@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.groups.base import Dyad
+from tmm_cli.groups.base import Closed
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pipeline import Results
 from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
@@ -155,7 +155,7 @@ def _way(results: Results) -> Table:
     for number, group in enumerate(structure.groups, 2):
         hangs = "; ".join(_hang(pair, group) for pair in group.outer)
         kernel = solved.get(group.links[0])
-        if isinstance(kernel, Dyad):
+        if isinstance(kernel, Closed):
             one = kernel.assemblies == 1
             which = say("explain.one") if one else say("explain.two", sign=f"{kernel.sign:+d}")
         elif kernel is not None:

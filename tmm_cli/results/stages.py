@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.cycle import DENSE
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import towards
 from tmm_cli.pipeline import CYCLE, Results
@@ -23,7 +23,7 @@ ORDERS = ("stages.places", "stages.velocities", "stages.accelerations")
 
 def how(kernel: Kernel) -> str:
     """How a group is solved, in a word."""
-    if isinstance(kernel, Dyad):
+    if isinstance(kernel, Closed):
         return say("stages.closed" if kernel.winding is None else "stages.closed_followed")
     return say("stages.newton" if kernel.followed is None else "stages.newton_followed")
 

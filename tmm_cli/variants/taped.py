@@ -1,9 +1,10 @@
-"""Variants of a linkage by its tape: the fastest way, for groups in closed form on a way that is the same for all."""
+"""Variants of a linkage by its tape: the fastest way, for groups in closed form and loads that ask for no strokes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from typing import Any, Self
 
 from tmm_cli.assembly import assemble
@@ -11,6 +12,7 @@ from tmm_cli.batch import Asked
 from tmm_cli.family import Iterated, family
 from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
+from tmm_cli.tape import Stand, record
 from tmm_cli.tape.varied import Varied
 from tmm_cli.variants.sketch import sketch_of
 from tmm_cli.variants.start import start_of
@@ -27,19 +29,30 @@ class Taped:
     """
 
     def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
-        self.make, self.variant = make, make(first)
+        self.make, self.first, self.variant = make, first, make(first)
         self.ordinary = self.variant.linkage
         by_stroke = any(x.working_stroke_only or x.table is not None for x in self.ordinary.loads)
         if self.ordinary.others or (forces and by_stroke):
             raise Iterated
         varied = make([Varied(x, x) for x in first])
         start = start_of(varied) if forces else None  # nothing else hangs on where its law begins
-        if any(isinstance(x, Varied) for x in (start, *(varied.ends or ()))):
+        if isinstance(start, Varied):
             raise Iterated
         self.start = start
-        program = family(lambda numbers: make(numbers).linkage, first, asked, forces=forces, start=start)
+        own = any(isinstance(end, Varied) for end in varied.ends or ())
+        self.ends = record(self._ends, *[1] * len(first)) if own else None
+        program = family(
+            lambda numbers: make(numbers).linkage, first, asked, forces=forces, start=start, own_places=own
+        )
         self.kernels = assemble(self.ordinary, mobile(self.ordinary))
         self.program = program.only(*(name for name in program.outputs if name not in UNUSED))
+
+    def _ends(self, *columns: Stand) -> Mapping[str, Any]:
+        """Where the driver's way begins and ends in each variant, as its numbers say."""
+        ends = self.make([Varied(x, c) for x, c in zip(self.first, columns, strict=True)]).ends or ()
+        return {
+            name: end.stand if isinstance(end, Varied) else end for name, end in zip(("low", "high"), ends, strict=True)
+        }
 
     @property
     def operations(self) -> int:
@@ -48,7 +61,10 @@ class Taped:
 
     def way(self, columns: Real) -> Way:
         """The crank's turn, or the way of the driver."""
-        return Way.of(self.variant, len(columns), 1, self.start)
+        if self.ends is None:
+            return Way.of(self.variant, len(columns), 1, self.start)
+        found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
+        return Way.of(replace(self.variant, ends=(found["low"], found["high"])), len(columns), 1, self.start)
 
     def without(self, part: str) -> Taped:
         """Without results whose names have such a part."""
@@ -66,5 +82,5 @@ class Taped:
         return self
 
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
-        q: Any = self.way(columns[:1]).at(places)[0]
+        q: Any = self.way(columns[:1]).at(places)[0] if self.ends is None else self.way(columns).at(places)
         return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)

@@ -2,21 +2,21 @@
 place.
 
 For what the tape cannot hold: groups that are found by iteration, toothed wheels, cams, friction, several drivers,
-drivers that work between two ends, loads of working strokes.
+loads of working strokes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from tmm_cli.assembly import assemble
 from tmm_cli.batch import Asked, solved
 from tmm_cli.family import Iterated
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import Pose
 from tmm_cli.groups.track import State
@@ -104,6 +104,8 @@ class Together:
         self.by_strokes = forces and any(
             x.working_stroke_only or (x.table is not None and x.table.against != "crank angle") for x in ordinary.loads
         )
+        if self.walks and self.ordinary.others and self._varying_sketch():
+            raise DependsOnData("linkage.sketch.at")
         if forces:
             start_of(self.variant, 0.0)
         if self.by_strokes and self.variant.ends and ordinary.driver.kind == "turn" and not ordinary.driver.stroke:
@@ -116,12 +118,20 @@ class Together:
         before, after = (dict(numbers(self.make(x.tolist()))) for x in (self.first, self.first + steps))
         return {path for path in written if abs(before[path] - after[path]) > SAME * abs(before[path])}
 
+    def _varying_sketch(self) -> bool:
+        """Whether the place of the sketch varies."""
+        return isinstance(self.make([Varied(x, x) for x in self.first]).linkage.sketch.at, Varied)
+
     def varied(self, columns: Real) -> Variant:
         """A variant of arrays (variants,), for numbers (variants, n)."""
         varied = self.make([Varied(x, c) for x, c in zip(self.first, columns.T, strict=True)])
         arrays = {path: number.stand for path, number in numbers(varied) if isinstance(number, Varied)}
         found: Variant = changed(varied, arrays)
-        return replace(found, linkage=replace(found.linkage, sketch=self.ordinary.sketch))
+        sketch = self.ordinary.sketch
+        if self.ordinary.others:  # they pass through the places of the sketch together
+            at: Any = found.linkage.sketch.at
+            sketch = replace(sketch, at=at.stand if isinstance(at, Varied) else at)
+        return replace(found, linkage=replace(found.linkage, sketch=sketch))
 
     def linkage(self, columns: Real) -> Linkage:
         """The same without its way."""
@@ -139,7 +149,9 @@ class Together:
         """How one variant looks at the place of the sketch."""
         one = numbers[None, :]
         walked = self._walked(one, self.way(one))
-        linkage = replace(self.make([float(number) for number in numbers]).linkage, sketch=self.ordinary.sketch)
+        linkage = self.make([float(number) for number in numbers]).linkage
+        if self.walks:  # which is known at the place where they start from
+            linkage = replace(linkage, sketch=self.ordinary.sketch)
         kernels = []
         for kernel in kernels_of(linkage, self.kernels):
             if walked is not None and isinstance(kernel, Newton):
@@ -205,7 +217,7 @@ class Together:
             links = own.group.links
             if isinstance(own, Newton):
                 found.append(replace(own, track=Started(State(on(x, links), on(turn, links)), gap)))
-            elif isinstance(own, Dyad) and getattr(kernel, "winding", None) is not None:
+            elif isinstance(own, Closed) and getattr(kernel, "winding", None) is not None:
                 found.append(replace(own, winding=Followed({n: turn[n].ravel() for n in links})))
             else:
                 found.append(own)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.groups.base import Dyad, Kernel
+from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import CONVERGED, Newton
 from tmm_cli.groups.state import Pose
 from tmm_cli.groups.track import State
@@ -40,7 +40,7 @@ def kernels_of(linkage: Linkage, kernels: Sequence[Kernel]) -> tuple[Kernel, ...
             found.append(Newton.of(kernel.group.again(linkage), linkage))
         else:
             again = kernel.again(linkage)
-            assert isinstance(again, Dyad)
+            assert isinstance(again, Closed)
             found.append(replace(again, winding=None))
     return tuple(found)
 
@@ -226,8 +226,8 @@ def _step(linkage: Linkage, kernels: Sequence[Kernel], q: Real, guess: Step) -> 
                     sound &= np.max(np.abs(gaps), axis=-1) < CONVERGED
                 own: Any = kernel.poses_of(state)
             else:
-                assert isinstance(kernel, Dyad)
-                own = dict(zip(links, kernel.closed(poses).poses, strict=True))
+                assert isinstance(kernel, Closed)
+                own = dict(zip(links, kernel.closed(poses, drives).poses, strict=True))
                 for n in links:
                     angle = np.angle(own[n].z)
                     followed = angle + 2 * np.pi * np.round((guess.turn[n] - angle) / (2 * np.pi))
