@@ -51,14 +51,17 @@ def by_both_turns(asked: Asked) -> tuple[str, dict[str, Shown]]:
 
 def _usable(asked: Asked, links: Dyads, turns: Any, branches: Any, cost: Any) -> dict[str, Shown]:
     """The nearest pair of some links with a transmission angle that will do."""
-    least = transmission(asked, Dyads(links.pivot[:, None], links.pin[:, None]), links)
+    rows, columns = np.nonzero(np.isfinite(cost))
+    one, other = (Dyads(links.pivot[at], links.pin[at]) for at in (rows, columns))
+    least = transmission(asked, one, other)
     if not np.max(least) > DEGREE:
         return {}
-    i, j = np.unravel_index(int(np.argmin(np.where(least >= enough(least), cost, np.inf))), cost.shape)
+    k = int(np.argmin(np.where(least >= enough(least), cost[rows, columns], np.inf)))
+    i, j = rows[k], columns[k]
     return {
         "usable": (float(turns[i]), "angle"), "usable_first": (str(branches[i] + 1), "word"),
         "usable_other": (float(turns[j]), "angle"), "usable_second": (str(branches[j] + 1), "word"),
-        "transmission": (whole(float(least[i, j])), "angle"),
+        "transmission": (whole(float(least[k])), "angle"),
     }  # fmt: skip
 
 
