@@ -258,7 +258,10 @@ class Search:
                 if goal.of in FORCES and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                     values[n] = np.nan
                 elif self.overs[n].rough and goal.of in FORCES:
-                    values[n] = self._highest(x, n)
+                    values[n] = self._highest(x, n, "y0")
+                slides = goal.of == "stroke" and not self.overs[n].swings and not np.isnan(values[n])
+                if slides and not isinstance(self.program, Apart):
+                    values[n] = self._highest(x, n, "run") + self._highest(x, n, "run", -1.0)
                 if goal.of == "k":
                     resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])
                     values[n] = values[n] if resting is None else resting
@@ -272,17 +275,16 @@ class Search:
         found: Real = self.run(np.stack([x, x]), Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
         return found
 
-    def _highest(self, x: Real, n: int) -> float:
-        """The largest value of a quantity that may jump: closer and closer about its highest places."""
-
+    def _highest(self, x: Real, n: int, name: str, sign: float = 1.0) -> float:
+        """The largest value of an output that may jump or bend sharply: closer and closer about its highest places."""
         scan, closed = self.over(SCAN)[self.along(n, SCAN)], self.overs[n].closed
-        y = self._along(x, n, "y0", scan)
+        y = sign * self._along(x, n, name, scan)
         best, step = float(np.nanmax(y)), scan[1] - scan[0]
         middle = scan[peaks_of(y, RIVALS, closed)]
         for _ in range(ZOOMS):
             shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
             shares = shares if closed else np.clip(shares, 0.0, 1.0)
-            there = self._along(x, n, "y0", shares.ravel()).reshape(shares.shape)
+            there = sign * self._along(x, n, name, shares.ravel()).reshape(shares.shape)
             middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
             best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
         return best

@@ -141,7 +141,7 @@ def _nearest(asked: Asked) -> Nearest | None:
     generations = min(search.generations, GENERATIONS)
     evolved = evolve(
         search.evaluate, len(low), population=search.population, generations=generations, seed=asked.seed,
-        shrinking=generations // 2 if equal else 0,
+        shrinking=generations // 2 if equal else 0, progress=asked.progress,
     )  # fmt: skip
     if not evolved.violation[0] < 1.0:
         return None
