@@ -106,9 +106,11 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
             float(sense.number(v, KINDS[kind].dimension, (*way, n))) for n, v in enumerate((first, second))
         )
         if not low[name] < high[name]:
+            same = low[name] == high[name]
             raise ProblemError(
-                "the lower bound comes first", path=way, found=f"{first} and {second}", allowed="[low, high]"
-            )
+                "between equal bounds nothing varies" if same else "the lower bound comes first", path=way,
+                found=f"{first} and {second}", allowed="[low, high]; or a parameter" if same else "[low, high]",
+            )  # fmt: skip
     _check_work(shape)
     varied = VariedUnits(sense.units)
     names = [shape.names.get(name, name) for name in low]
