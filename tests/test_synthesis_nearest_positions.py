@@ -151,3 +151,9 @@ def test_a_limit_is_followed_beyond_where_a_short_search_loses_it(monkeypatch):
     monkeypatch.setattr(nearest_positions, "QUICK", short)
     monkeypatch.setattr(nearest_positions, "soluble", lambda at, *efforts: at > (0.5 if short in efforts else 0.3))
     assert nearest_positions.limit(lambda at: at, 1.0, 0.0, 0.01) == pytest.approx(0.3, abs=0.011)
+
+
+def test_where_no_coordinate_alone_helps_a_whole_position_is_told():
+    positions = [[0, 0, 0], [25, 29, 23], [52, 8, 28], [34, 19, 21]]
+    match = re.search(r"^position 4: \[(\S+ mm), (\S+ mm), (\S+ deg)\]", refused(task(positions)).allowed)
+    solved(task([*positions[:3], list(match.groups())]))

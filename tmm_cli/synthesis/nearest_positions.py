@@ -28,6 +28,7 @@ from tmm_cli.synthesis.coupler_dyads import (
 )  # fmt: skip
 from tmm_cli.synthesis.coupler_points import off_line
 from tmm_cli.synthesis.record import Infeasible, Shown
+from tmm_cli.synthesis.whole_position import whole_position
 
 FARTHEST: Final = 0.3  # change of a position: rad, or a share of the size of the task
 NEAREST: Final = 0.03  # of that: the least change that is tried first
@@ -107,6 +108,12 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
             return Infeasible(error.path, error.reason, f"{W}.left_out{keep}", error.values | left)
         if (values := _position(free, solves)) is not None:
             return Infeasible(error.path, error.reason, f"{W}.left_out_position{keep}", error.values | values | left)
+        if (values := whole_position(free, solves, soluble)) is not None:
+            return Infeasible(error.path, error.reason, f"{W}.left_out_whole{keep}", error.values | values | left)
+    if len(asked.places) == 4 and not asked.sides and not still(asked.poses):
+        values = whole_position(asked, solves, soluble)
+        if values is not None:
+            return Infeasible(error.path, error.reason, f"{W}.whole{keep}", error.values | values)
     words = words if asked.within is None else "no_box"
     far: dict[str, Shown] = {"share": (f"{FARTHEST:g}", "word"), "turn": (FARTHEST, "angle")}
     return Infeasible(error.path, error.reason, f"{W}.{words}_far{keep}", error.values | far)

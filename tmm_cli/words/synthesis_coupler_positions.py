@@ -60,6 +60,9 @@ WORDS: dict[str, str] = {
     f"{_W}.source_still": "all points of a coupler that does not turn go on equal circles: A and D are their centres",
     f"{_W}.other_positions": "other positions",
     f"{_W}.position": "position {which}: {part} {to}",
+    f"{_W}.whole": "position {which}: [{x}, {y}, {angle}], where a four-bar through the others comes; no coordinate of "
+    "one position alone was found to help",
+    f"{_W}.left_out_whole": "without {left}, and position {which}: [{x}, {y}, {angle}]",
     f"{_W}.left_out": "without {left}",
     f"{_W}.left_out_position": "without {left}, and position {which}: {part} {to}",
     f"{_W}.no_curve": "Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)",
@@ -105,7 +108,7 @@ WORDS: dict[str, str] = {
     f"{_W}.other_y": "pivots within, to y",
     f"{_W}.other_points": "other points or turns, or defects: keep",
 }
-for _key in ("position", "left_out", "left_out_position"):
+for _key in ("position", "whole", "left_out", "left_out_position", "left_out_whole"):
     WORDS[f"{_W}.{_key}_or_keep"] = WORDS[f"{_W}.{_key}"] + "; or defects: keep"
 _FAR = "; no change of one position by up to {turn}, or {share} of the size of the task, was found to help"
 for _key, _text in {
