@@ -18,7 +18,7 @@ from tmm_cli.synthesis.record import Shown
 
 PINS: Final = np.linspace(-1.4, 1.4, 11)  # over the size of the task, along both axes of the coupler
 MOST: Final = 4000  # four-bars that are moved, of each three positions
-PLACES: Final = 48  # of each on its way
+SHARES: Final = np.linspace(0.15, 0.85, 48)  # of the way from the position before to the next: well apart from both
 BEYOND: Final = np.radians(100)  # how far past the last of three positions the fourth may lie
 TRANSMISSION: Final = np.radians(5)  # the least that will do
 TRIED: Final = 6  # nearest ones
@@ -95,7 +95,7 @@ def _moved(poses: Poses, one: Dyads, other: Dyads, way: Any, k: int) -> tuple[An
     turn = np.mod(sense[:, None] * turn, 2 * np.pi)  # from each of the three to the next, in the sense of the driver
     low = np.zeros(len(sense)) if k == 1 else turn[:, 0] if k == 2 else turn.sum(axis=1)
     high = turn[:, 0] if k == 1 else turn.sum(axis=1) if k == 2 else np.minimum(low + BEYOND, 2 * np.pi)
-    phi = low[:, None] + (high - low)[:, None] * (np.arange(PLACES) + 0.5) / PLACES
+    phi = low[:, None] + (high - low)[:, None] * SHARES
     pin = a + (b[:, :1] - a) * np.exp(1j * sense[:, None] * phi)
     l2, l3 = np.abs(c - b)[:, :1], np.abs(c - d)[:, :1]
     side = np.sign(((c - b) * np.conj(d - b)).imag)[:, :1]  # of BD on which C lies
