@@ -69,7 +69,7 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.history": "Best candidate by generation",
     "synthesis_optimal.generation": "generation",
     "synthesis_optimal.evolution": "best so far that keeps the constraints",
-    "synthesis_optimal.leading": "leading candidate of the generation",
+    "synthesis_optimal.leading": "leading candidate (a new population where it rises)",
     "synthesis_optimal.violation": "constraints missed, relative",
     "synthesis_optimal.polished": "after the polish",
     "synthesis_optimal.stopped": "stopped by hand: the best candidate so far, polished",
