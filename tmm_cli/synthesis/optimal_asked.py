@@ -36,7 +36,8 @@ class Limit:
         """By how much, in shares of the scale; 0 where it is kept, inf where there is no such quantity."""
         low = 0.0 if self.least is None else self.least - value
         high = 0.0 if self.most is None else value - self.most
-        return np.nan_to_num(np.maximum(np.maximum(low, high), 0.0) / self.scale, nan=np.inf)
+        missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
+        return np.where(np.isnan(missed), np.inf, missed)
 
     def margin(self, value: float) -> float:
         """How far the value is from its nearer limit, in its unit."""
