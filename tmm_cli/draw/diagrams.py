@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -222,14 +223,29 @@ def _figure(
             axes.set_xticks(np.arange(0, end + 1, 30 * math.ceil(results.way.turns**0.8)))
             axes.set_xlim(0, end)
         if any(label for label, _, _ in lines):
-            legend = axes.legend(fontsize=8, ncol=3, loc="best", framealpha=0.9)
-            for text in legend.get_texts():
-                text.set_parse_math(False)
+            _legend(axes, ncol=3, loc="best", framealpha=0.9)
         if number == len(panels):
             unit = units.symbol(LENGTH) if results.linkage.driver.kind == "slide" else "deg"
             axes.set_xlabel(f"{say('draw.turn' if unit == 'deg' else 'cycle.drive')}, {unit}", fontsize=9)
     figure.subplots_adjust(left=0.12, right=0.96, top=0.92, bottom=0.07, hspace=0.22)
+    for axes in figure.axes:
+        if axes.get_legend() is not None and _covers(axes):
+            _legend(axes, ncol=6, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.2, frameon=False)
     return figure
+
+
+def _legend(axes: Axes, **how: Any) -> None:
+    for text in axes.legend(fontsize=8, **how).get_texts():
+        text.set_parse_math(False)
+
+
+def _covers(axes: Axes) -> bool:
+    """Whether its legend lies on a curve, even where it lies best."""
+    legend = axes.get_legend()
+    assert legend is not None
+    box = legend.get_window_extent()
+    curves = [axes.transData.transform(line.get_xydata()) for line in axes.lines[:-1]]  # the last one is the zero
+    return any(bool(np.any(np.all((p > box.min) & (p < box.max), axis=1))) for p in curves)
 
 
 def _in_units(values: Any, dimension: Dimension, units: Any) -> Any:
