@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -112,15 +113,13 @@ def test_a_second_run_is_the_same_to_the_byte(shaper, tmp_path):
         assert path.read_bytes() == (tmp_path / "shaper" / path.name).read_bytes(), path.name
 
 
-def test_a_run_takes_away_what_an_earlier_one_left_and_nothing_else(tmp_path):
-    text = (ROOT / "problems" / "crank-slider-offset.yaml").read_text(encoding="utf-8")
-    problem = tmp_path / "mine.yaml"
-    problem.write_text(text, encoding="utf-8")
+def test_a_run_takes_away_what_an_earlier_one_left_and_nothing_else(shaper, tmp_path):
+    folder, problem = tmp_path / "out" / "shaper", tmp_path / "shaper.yaml"
+    shutil.copytree(shaper[1], folder)
+    (folder / "notes.txt").write_text("keep", encoding="utf-8")
+    problem.write_text(SHAPER.read_text(encoding="utf-8").replace("detail: [3]", "detail: [4]"), encoding="utf-8")
     assert tmm("run", problem, "-o", tmp_path / "out").returncode == 0
-    (tmp_path / "out" / "mine" / "notes.txt").write_text("keep", encoding="utf-8")
-    problem.write_text(text.replace("detail: [3]", "detail: [4]"), encoding="utf-8")
-    assert tmm("run", problem, "-o", tmp_path / "out").returncode == 0
-    names = {path.name for path in (tmp_path / "out" / "mine").iterdir()}
+    names = {path.name for path in folder.iterdir()}
     assert "lever-04.png" in names and "lever-03.png" not in names and "notes.txt" in names
 
 

