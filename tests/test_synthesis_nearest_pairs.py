@@ -17,7 +17,7 @@ FUNCTIONS = (("x^2", [0, 1]), ("log10(x)", [1, 2]), ("sin(x)", [0, 90]), ("exp(x
 NUMBER = (
     r"^(the last output angle|the first output angle|the last input angle|the first input angle|\w+ angle \d:|\w+) "
 )
-COUNT = 5
+COUNT = 3
 KINDS = ("2", "3", "3 wide", "4", "4 wide", "5", "3f", "4f", "5f")
 USABLE = r"\((\S+ (?:deg|mm)) for a least transmission angle of (\d+) deg\)"
 
