@@ -96,8 +96,10 @@ def _measured(measured: Sequence[Measured], units: UnitSystem, digits: int) -> T
 
 
 def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
-    """What is not met, in words."""
+    """What is not met, and what rounding leaves open, in words."""
     for m in measured:
+        if m.open:
+            yield say("synthesis.open", quantity=say(m.demand.words), by=f"{m.open:.2g}")
         if not m.met:
             wanted, unit = _shown(m.demand.value, m.demand.kind, "", units, DIGITS)
             on = _shown(m.value, m.demand.kind, "", units, DIGITS)[0]
@@ -121,7 +123,8 @@ def to_json(found: Synthesised, measured: Sequence[Measured] | None, *, long: bo
         "source": say(found.outcome.source),
         "measured": None if measured is None else [
             {"quantity": say(m.demand.words), "kind": m.demand.kind, "asked": m.demand.asked,
-             "wanted": m.demand.value, "measured": _number(m.value), "difference": _number(m.difference), "met": m.met}
+             "wanted": m.demand.value, "measured": _number(m.value), "difference": _number(m.difference),
+             "open": m.open, "met": m.met}
             for m in measured
         ],
         "met": None if measured is None else all(m.met for m in measured),

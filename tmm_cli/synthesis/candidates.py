@@ -18,9 +18,9 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
-from tmm_cli.synthesis.dwells import ratio
 from tmm_cli.synthesis.first import first_of
 from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, SIDE, Goal, Over, points_of, spans_of
+from tmm_cli.synthesis.mean_ratio import ratio
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
@@ -31,7 +31,7 @@ from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.apart import Apart
 from tmm_cli.variants.sketch import alike, sketch_of
 from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.together import Together
+from tmm_cli.variants.together import Program, Together
 from tmm_cli.variants.way import Places
 from tmm_cli.vectors import Real
 
@@ -252,39 +252,39 @@ class Search:
     def exactly(self, x: Real) -> list[float]:
         """Objective and constrained quantities of one candidate."""
         with np.errstate(all="ignore"):
+            along = partial(self._along, self.program.about(self.numbers(x)), x)
             found, coarse = self.closely(x)(x), self.values(np.stack([x, x]))
             values = [np.min(p) if goal.of in LEAST else np.max(p) for goal, p in zip(self.goals, found, strict=True)]
             for n, goal in enumerate(self.goals):
                 if goal.of in FORCES and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                     values[n] = np.nan
                 elif self.overs[n].rough and goal.of in FORCES:
-                    values[n] = self._highest(x, n, "y0")
+                    values[n] = self._highest(along, n, "y0")
                 slides = goal.of == "stroke" and not self.overs[n].swings and not np.isnan(values[n])
                 if slides and not isinstance(self.program, Apart):
-                    values[n] = self._highest(x, n, "run") + self._highest(x, n, "run", -1.0)
+                    values[n] = self._highest(along, n, "run") + self._highest(along, n, "run", -1.0)
                 if goal.of == "k":
-                    resting = ratio(partial(self._along, x, n, "slope"), self.over(SCAN)[:SCAN])
-                    values[n] = values[n] if resting is None else resting
+                    values[n] = ratio(partial(along, n, "slope"), self.over(SCAN)[:SCAN])
             if self.single:
                 two = self.run(np.stack([x, x]), Places(self.over(SCAN), self._with_sketch(np.zeros(0))))
                 values[1] = -1.0 if self._turned_over(two, SCAN)[0] else values[1]
         return [float(value) for value in values]
 
-    def _along(self, x: Real, n: int, name: str, shares: Real) -> Real:
-        """An output of a goal for one candidate at shares of its way."""
-        found: Real = self.run(np.stack([x, x]), Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
+    def _along(self, near: Program, x: Real, n: int, name: str, shares: Real) -> Real:
+        """An output of a goal for one candidate at shares of its way. near: moves candidates near it."""
+        found: Real = near(self.numbers(np.stack([x, x])), Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
         return found
 
-    def _highest(self, x: Real, n: int, name: str, sign: float = 1.0) -> float:
+    def _highest(self, along: Callable[[int, str, Real], Real], n: int, name: str, sign: float = 1.0) -> float:
         """The largest value of an output that may jump or bend sharply: closer and closer about its highest places."""
         scan, closed = self.over(SCAN)[self.along(n, SCAN)], self.overs[n].closed
-        y = sign * self._along(x, n, name, scan)
+        y = sign * along(n, name, scan)
         best, step = float(np.nanmax(y)), scan[1] - scan[0]
         middle = scan[peaks_of(y, RIVALS, closed)]
         for _ in range(ZOOMS):
             shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
             shares = shares if closed else np.clip(shares, 0.0, 1.0)
-            there = sign * self._along(x, n, name, shares.ravel()).reshape(shares.shape)
+            there = sign * along(n, name, shares.ravel()).reshape(shares.shape)
             middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
             best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
         return best

@@ -16,21 +16,29 @@ ROUNDING = 1e-12  # relative: what is smaller is zero
 
 @dataclass(frozen=True)
 class Measured:
-    """A demand, its value on the mechanism (SI, rad; nan: there is none), and the relative difference."""
+    """A demand, its value on the mechanism (SI, rad; nan: there is none), and the relative difference.
+
+    open: by how much of it rounding leaves the value open, where that is more than is tolerated.
+    """
 
     demand: Demand
     value: float
     difference: float
+    open: float = 0.0
 
     @property
     def met(self) -> bool:
-        return self.difference <= MET
+        return self.difference <= max(MET, self.open)
 
 
 def measured(outcome: Outcome, results: Results) -> tuple[Measured, ...]:
     """Every demand on the mechanism."""
-    values = [(demand, _settled(demand, float(demand.measure(results)))) for demand in outcome.demands]
-    return tuple(Measured(demand, value, demand.difference(value)) for demand, value in values)
+    found = []
+    for demand in outcome.demands:
+        value = _settled(demand, float(demand.measure(results)))
+        left = demand.open(results) if demand.open is not None else 0.0
+        found.append(Measured(demand, value, demand.difference(value), left if left > MET else 0.0))
+    return tuple(found)
 
 
 def _settled(demand: Demand, value: float) -> float:

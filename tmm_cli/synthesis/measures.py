@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.linkage import FRAME
+from tmm_cli.strokes import output_slope
 
 if TYPE_CHECKING:
     from tmm_cli.pipeline import Results
 
 NONE = math.nan
-
+NOISE = 64 * np.finfo(float).eps  # of the largest speed: the sign of a larger one is sure
 
 Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
 
@@ -40,6 +41,27 @@ def slower_ratio(results: Results) -> float:
     """The longer stroke over the shorter."""
     k = ratio(results)
     return max(k, 1 / k)
+
+
+def ratio_open(results: Results) -> float:
+    """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
+    from tmm_cli.pipeline import at_positions
+
+    strokes = results.strokes
+    if strokes is None or not strokes.strokes:
+        return 0.0
+    ends, lengths = np.array([s.start for s in strokes.strokes]), np.array([s.length for s in strokes.strokes])
+    works = np.array([s.working for s in strokes.strokes])
+    away = 2.0 ** np.arange(-52, -6)
+    places = ends[:, None, None] + np.array([[1.0], [-1.0]]) * away
+    around = ends[0] + strokes.cycle * np.arange(64) / 64
+    every = np.abs(output_slope(at_positions(results, np.append(places, around)), strokes.link))
+    speed = every[:-64].reshape(places.shape)
+    dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # which begin and end to the last digit
+    sure = np.all(speed > NOISE * np.nanmax(every), axis=1) | dwells
+    doubtful = np.sum(np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1)  # so many steps, and all nearer ones
+    blur = float(np.sum(away[np.minimum(doubtful, len(away) - 1)]))
+    return blur * (1 / float(lengths[works].sum()) + 1 / float(lengths[~works].sum()))
 
 
 def pressure(results: Results, ends: Ends = None) -> float:

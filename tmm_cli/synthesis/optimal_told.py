@@ -11,7 +11,7 @@ from tmm_cli.synthesis.candidates import Search, W
 from tmm_cli.synthesis.goals import FORCES, LEAST, PLAIN, Goal
 from tmm_cli.synthesis.history import diagram
 from tmm_cli.synthesis.measured_goals import measure
-from tmm_cli.synthesis.measures import Ends, crank_turns
+from tmm_cli.synthesis.measures import Ends, crank_turns, ratio_open
 from tmm_cli.synthesis.reached import reached
 from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
 from tmm_cli.vectors import Real
@@ -68,7 +68,10 @@ def told(search: Search, found: Best) -> Outcome:
 def _demand(search: Search, n: int, value: float, kind: str, ends: Ends, *, asked: bool) -> Demand:
     goal = search.goals[n]
     at = 1e-6 if kind in ("length", "angle") and goal.of not in PLAIN else 0.0
-    return Demand(f"{W}.{_words(search, goal)}", value, kind, partial(measure, goal, ends=ends), asked=asked, at=at)
+    return Demand(
+        f"{W}.{_words(search, goal)}", value, kind, partial(measure, goal, ends=ends), asked=asked, at=at,
+        open=ratio_open if goal.of == "k" else None,
+    )  # fmt: skip
 
 
 def _constraints(search: Search, found: Best, kinds: list[str]) -> Listing:

@@ -49,7 +49,8 @@ class Demand:
     """What must come back when the mechanism is analysed: value (SI, rad), and how it is measured on the Results.
 
     asked: by the file; else it is what the synthesis foretells. A measure gives nan where the mechanism has no such
-    quantity. at: the least size that counts in the relative difference, for a value that may be zero.
+    quantity. at: the least size that counts in the relative difference, for a value that may be zero. open: by how
+    much of it rounding leaves the measured value open; None: by next to nothing.
     """
 
     words: str
@@ -58,6 +59,7 @@ class Demand:
     measure: Callable[[Any], float]
     asked: bool = True
     at: float = 0.0
+    open: Callable[[Any], float] | None = None
 
     def difference(self, measured: float) -> float:
         """Relative to what is wanted, or absolute where that is zero."""

@@ -17,6 +17,7 @@ WORDS: dict[str, str] = {
     "synthesis.no_number": "no mechanism was found: it has no {name}",
     "synthesis.no_number_other": "other numbers",
     "synthesis.not_met": "{quantity}: wanted {wanted}, measured {found}",
+    "synthesis.open": "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open",
     "synthesis.no_block": "this file has no synthesis",
     "synthesis.no_linkage": "the file has no linkage: nothing was measured",
     "synthesis.extremes": "Extreme positions of the output",

@@ -1,4 +1,8 @@
-"""k of an output that rests between its strokes: dwells belong to neither, as in tmm_cli.strokes."""
+"""k of one candidate, closely: strokes end where the slope of the output changes its sign.
+
+Dwells, in which the slope is exactly zero, belong to no stroke; where the output all but rests rounding gives the slope
+one sign and the other, and the middle of such places is one end. Both as in tmm_cli.strokes.
+"""
 
 from __future__ import annotations
 
@@ -11,26 +15,26 @@ from tmm_cli.vectors import Real
 ROUNDS, PARTS = 9, 32  # of looking closer, and into how many parts each
 
 
-def ratio(slope: Callable[[Real], Real], shares: Real) -> float | None:
-    """The longer strokes over the shorter; None where nothing rests.
+def ratio(slope: Callable[[Real], Real], shares: Real) -> float:
+    """The longer strokes over the shorter; nan where there are none.
 
-    slope: the output's first transfer function at shares of the cycle, exactly zero in a dwell; shares: all round it,
-    at equal steps.
+    slope: the output's first transfer function at shares of the cycle; shares: all round it, at equal steps.
     """
     y, step = slope(shares), shares[1] - shares[0]
     moves = np.flatnonzero(y)
     after = np.roll(moves, -1)
     back = y[moves] * y[after] < 0
     last, first = moves[back], after[back]
+    if not last.size:
+        return float("nan")
     still = np.mod(first - last, len(y)) > 1
-    if not np.any(still):
-        return None
-    sign = np.sign(y)
-    ends = _edges(slope, np.append(shares[last], shares[first] - step), step, np.append(sign[last], 0 * sign[first]))
-    stops, goes_on = np.split(ends, 2)
-    goes_on = np.where(still, goes_on, stops)
+    before, on = np.sign(y[last]), np.sign(y[first])
+    stops = _edges(slope, shares[last], step, before)
+    goes_on = 1.0 - _edges(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
+    middle = stops + (np.mod(goes_on - stops + 0.5, 1.0) - 0.5) / 2
+    stops, goes_on = np.where(still, stops, middle), np.where(still, goes_on, middle)
     lengths = np.mod(np.roll(stops, -1) - goes_on, 1.0)
-    forward = y[first] > 0
+    forward = on > 0
     rise, fall = float(lengths[forward].sum()), float(lengths[~forward].sum())
     return max(rise, fall) / min(rise, fall)
 
