@@ -120,9 +120,15 @@ CASES = {
     ),
     "half a tooth": (
         blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [1.5, 30]", "1.5",
-        "gears.z.teeth[0]: a whole number is wanted\n"
+        "gears.z.teeth[0]: a number of teeth is whole\n"
         "  found:   1.5\n"
-        "  allowed: numbers of teeth of both",
+        "  allowed: 1 or 2",
+    ),
+    "arithmetic that gives half a tooth": (
+        blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [61/2, 30]", "61/2",
+        "gears.z.teeth[0]: a number of teeth is whole\n"
+        "  found:   '61/2', which is 30.5\n"
+        "  allowed: 30 or 31",
     ),
     "teeth of one wheel": (
         blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [30]", "[30",

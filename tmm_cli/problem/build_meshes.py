@@ -17,6 +17,7 @@ IN_PHASE = (
     5e-7  # rad: wheels that come round a ring to the same place but for less fit together, as offsets are rounded
 )
 MANY_TEETH = 100_000
+WHOLE = 1e-9  # teeth: a number that arithmetic gave is whole but for rounding
 
 
 def build_meshes(
@@ -198,12 +199,8 @@ class _Maker:
                     "two numbers are wanted, for both wheels", path=(*path, key), found=str(pair), allowed="[20, 40]"
                 )
             if key == "teeth":
-                for k, teeth in enumerate(pair):
-                    if not 1 <= teeth <= MANY_TEETH:
-                        raise ProblemError(
-                            "a number of teeth is wanted", path=(*path, key, k), found=str(teeth), allowed="1 and more"
-                        )
-                found.append((key, pair[0] / pair[1]))
+                first, second = (self._teeth(v, (*path, key, k)) for k, v in enumerate(pair))
+                found.append((key, first / second))
             else:
                 r = [self.sense.positive(v, LENGTH, (*path, key, k)) for k, v in enumerate(pair)]
                 found.append((key, r[0] / r[1]))
@@ -215,14 +212,26 @@ class _Maker:
         if not found:
             raise ProblemError("teeth, radii or ratio is wanted", path=path, found="none", allowed="teeth: [20, 40]",
                                key=True)  # fmt: skip
-        first, size = found[0]
+        known, size = found[0]
         for key, other in found[1:]:
             if abs(other - size) > MESHES * size:
                 raise ProblemError(
                     f"contradictory gear ratios of wheels {' and '.join(given.between)}", path=(*path, key),
-                    found=f"by {key} {other:.6g}, by {first} {size:.6g}", allowed=f"{first} or {key}, or both alike",
+                    found=f"by {key} {other:.6g}, by {known} {size:.6g}", allowed=f"{known} or {key}, or both alike",
                 )  # fmt: skip
         return size
+
+    def _teeth(self, value: object, path: Path) -> float:
+        """A number of teeth, which is whole."""
+        teeth = self.sense.number(value, NUMBER, path)
+        if not 1 <= teeth <= MANY_TEETH:
+            raise ProblemError("a number of teeth is wanted", path=path, found=quote(value), allowed="1 and more")
+        whole = round(float(teeth))
+        if abs(float(teeth) - whole) > WHOLE:
+            near = f"{math.floor(float(teeth))} or {math.ceil(float(teeth))}"
+            told = quote(value) if isinstance(value, float) else f"{quote(value)}, which is {float(teeth):.6g}"
+            raise ProblemError("a number of teeth is whole", path=path, found=told, allowed=near)
+        return float(whole) if isinstance(teeth, float) else teeth
 
     def _meshes(self, given: schema_more.Gear, distance: float, size: float, path: Path) -> None:
         """Whether the pitch circles touch at the distance of the axes."""
@@ -235,7 +244,7 @@ class _Maker:
             if given.teeth is None:
                 raise ProblemError("a module needs numbers of teeth", path=(*path, key), allowed="teeth: [20, 40]")
             module = self.sense.positive(given.module, LENGTH, (*path, key))
-            radii = [module * teeth / 2 for teeth in given.teeth]
+            radii = [module * self._teeth(v, (*path, "teeth", k)) / 2 for k, v in enumerate(given.teeth)]
         if radii is None:
             return
         wanted = abs(radii[0] - radii[1]) if given.inner else radii[0] + radii[1]

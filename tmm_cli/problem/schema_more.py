@@ -14,7 +14,7 @@ class Gear(Strict):
 
     between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
     carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
-    teeth: list[int] | None = Field(default=None, description="numbers of teeth of both")
+    teeth: list[Value] | None = Field(default=None, description="numbers of teeth of both")
     radii: list[Value] | None = Field(default=None, description="radii of both pitch circles")
     ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
     module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
