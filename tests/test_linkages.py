@@ -18,6 +18,8 @@ from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 from tmm_cli.motion import Law, move
 from tmm_cli.pipeline import at_places
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
 
 BANK = Path(__file__).parent.parent / "problems"
@@ -274,6 +276,16 @@ def test_geared_cranks_draw_an_exact_straight_line():
     c = results.motion.named("C")
     assert 1000 * c.x[3].imag == pytest.approx(30 + root, abs=1e-11)
     assert c.v[3].imag == pytest.approx(-2 * math.pi * 0.03 * 50 / root, abs=1e-14)
+
+
+@pytest.mark.parametrize("ratio", ["teeth: [100, 40]", "teeth: [61, 53]", "ratio: sqrt(2)"])
+def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
+    """The sector only swings, so that its wheel is back when it is; of wheels that go round teeth would tell."""
+    text = (BANK / "gear-doubling.yaml").read_text(encoding="utf-8")
+    results = solve(build(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics")
+    assert (results.way.full, results.way.turns, results.way.repeats) == (True, 1, True)
+    run = at_places(results, results.way.start + 2 * np.pi * np.arange(4)).motion.named("F").x
+    assert np.max(np.abs(run - run[0])) < 1e-14
 
 
 def test_summing_lever_repeats_after_three_turns_only():

@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_cli.cycle import MOST, turns_of_cycle
 from tmm_cli.groups.base import Closed, Kernel, reach
+from tmm_cli.groups.winding import Winding
 from tmm_cli.linkage import Linkage
 from tmm_cli.motion import Law, Motion, move, towards
 from tmm_cli.roots import least, roots
@@ -177,9 +178,21 @@ def _ends(kernel: Kernel) -> tuple[float, ...]:
     return tuple(float(q) for q, limit in zip((track.q[0], track.q[-1]), track.limits, strict=True) if limit)
 
 
+def rounds_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> dict[str, int]:
+    """How often links that toothed wheels depend on go round in a turn of the driver, where they were followed."""
+    found = {}
+    for kernel in kernels:
+        winding = kernel.winding if isinstance(kernel, Closed) else None
+        if isinstance(winding, Winding) and winding.closed:
+            turns = (winding.q[-1] - winding.q[0]) / (2 * np.pi)
+            for link, angles in winding.angles.items():
+                found[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
+    return found
+
+
 def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
     """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
-    turns = turns_of_cycle(linkage)
+    turns = turns_of_cycle(linkage, rounds_of(linkage, kernels))
     for kernel in kernels:
         track = kernel.followed
         if track is not None and track.closed and turns is not None:
