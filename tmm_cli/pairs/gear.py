@@ -90,5 +90,5 @@ class Gear(Constraint):
         smaller.
         """
         point, line = self.pitch(poses)
-        sense = 1.0 if self.mesh.ratio < 0 else -1.0
+        sense = -np.sign(self.mesh.ratio)
         return point, sense * line * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)

@@ -6,7 +6,7 @@ Coarsely from places all round the cycle, for the search; exactly from windows a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property, partial
+from copy import copy
 from typing import Any, Final
 
 import numpy as np
@@ -18,34 +18,34 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
 from tmm_cli.motion import Motion
 from tmm_cli.refused import Refused
+from tmm_cli.synthesis.cycles import Cycles
+from tmm_cli.synthesis.exactly import exactly
 from tmm_cli.synthesis.first import first_of
-from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, SIDE, Goal, Over, points_of, spans_of
-from tmm_cli.synthesis.mean_ratio import ratio
+from tmm_cli.synthesis.goals import CLOSELY, FORCES, LEAST, PEAKS, PLAIN, SIDE, Goal, Over, points_of, spans_of
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
-from tmm_cli.synthesis.readings import peaks_of
 from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.synthesis.usable import asked_goals, check_output, check_use
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.apart import Apart
 from tmm_cli.variants.sketch import alike, sketch_of
 from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.together import Program, Together
+from tmm_cli.variants.together import Together
 from tmm_cli.variants.way import Places
 from tmm_cli.vectors import Real
 
 W: Final = "synthesis_optimal"
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
-SCAN = 720  # places where peaks are looked for before the polish
+EACH = 24  # positions of the search in each turn of a cycle of many, at least
+SCAN, SCAN_EACH = 720, 240  # places where peaks are looked for before the polish; in each turn of many, at least
 NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
 ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
 BLOCK = 125  # candidates at once
-RIVALS = 8  # highest places of what may jump
-ZOOMS = 9  # of a peak that may be a jump
 CYCLIC = ("k", "speed")  # what only a driver that turns on and on has
 POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
 GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
+NONE = 1e6  # violation where nothing can be told
 LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
@@ -64,19 +64,33 @@ class Search:
         self.variant = asked.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
+        self.others: dict[int, Search] = {}
         check_use(self)
         check_output(self)
-        self.program = self._program()
+        self.cycles = self._cycles()
+        self._over_turns(self.cycles.of(np.array([self.first]))[0] if self.cycles is not None else 0)
+        for at, goal in asked_goals(self):
+            if goal.of in CYCLIC and not self.closed:
+                raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
+
+    def _cycles(self) -> Cycles | None:
+        """After how many turns candidates come round again, where something belongs to that. Raises Infeasible."""
+        geared = any(mesh.kind == "gear" for mesh in self.linkage.meshes) or self.linkage.others
+        if not geared or self.variant.ends is not None or all(goal.of in PLAIN for _, goal in asked_goals(self)):
+            return None
+        return Cycles(self.asked, self.first, assemble(self.linkage, mobile(self.linkage)))
+
+    def _over_turns(self, turns: int) -> None:
+        """What hangs on after how many turns the driver's way comes round again; 0: as the file's does."""
+        self.program = self._program(turns)
         self.coarse = self.program.without(CLOSELY)
         kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
         self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
         way = self.program.way(np.array([self.first]))
         self.closed, self.cycle = way.closed, float(way.span[0, 0])
         self.ends = float(way.low[0, 0]), float(way.low[0, 0] + way.span[0, 0])
-        for at, goal in asked_goals(self):
-            if goal.of in CYCLIC and not self.closed:
-                raise Infeasible(at, f"{W}.no_cycle", f"{W}.a_crank")
-        self.step = 1 / asked.positions
+        self.turns = max(1, round(self.cycle / (2 * np.pi))) if self.closed else 1
+        self.count, self.scan = max(self.asked.positions, EACH * self.turns), max(SCAN, SCAN_EACH * self.turns)
         loads = self.linkage.loads
         rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in loads)
         self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
@@ -87,9 +101,32 @@ class Search:
             )
             for goal in self.goals
         )  # fmt: skip
+        self.exact, at = [], self.count + self.jumps  # places of the goals after those over the way; else the way
+        for n, goal in enumerate(self.goals):
+            own = len(goal.places)
+            self.exact.append(slice(at, at + own) if own else self.along(n, self.count))
+            at += own
+        wanted = np.concatenate([np.zeros(0), *(np.array(goal.places) for goal in self.goals)])
+        self.places = Places(self.over(self.count), self.with_sketch(wanted))
+
+    def own(self, x: Real) -> Search | None:
+        """The same over the cycle of a candidate; None where it has none."""
+        if self.cycles is None or not self.cycles.varies:
+            return self
+        return self._over_cycle(self.cycles.of(self.numbers(x)[None])[0])
+
+    def _over_cycle(self, turns: int) -> Search | None:
+        if turns and turns not in self.others:
+            self.others[turns] = other = copy(self)
+            other.cycles = None
+            other._over_turns(turns)
+        return self.others.get(turns)
 
     def sketch(self, x: Real) -> Sketch | None:
         """How a candidate looks at the place of the sketch, where the file's own sketch does not show its assembly."""
+        search = self.own(x)
+        if search is not None and search is not self:
+            return search.sketch(x)
         numbers = self.numbers(x)
         own = self.program.sketch(numbers)
         try:
@@ -105,15 +142,20 @@ class Search:
         links = (goal.links or tuple(self.linkage.links)) if goal.of == "length" else ()
         return tuple(len(spans_of(self.linkage, link)) for link in links)
 
-    def _program(self) -> Taped | Together | Apart:
+    def _program(self, turns: int) -> Taped | Together | Apart:
         """What moves the candidates, the fastest there is for this linkage."""
         forces = any(goal.of in FORCES for goal in self.goals)
-        for way in (Taped, Together):
-            try:
-                return way(self.asked.make, self.first, self._outputs, forces=forces)
-            except (Iterated, DependsOnData):
-                continue
-        return Apart(self.asked.make, self.first, self._outputs, forces=forces)
+        try:
+            return Taped(self.asked.make, self.first, self._outputs, forces=forces)
+        except (Iterated, DependsOnData):
+            pass
+        try:
+            return Together(
+                self.asked.make, self.first, self._outputs, forces=forces, turns=turns,
+                other=[self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)],
+            )  # fmt: skip
+        except (Iterated, DependsOnData):
+            return Apart(self.asked.make, self.first, self._outputs, forces=forces, turns=turns)
 
     @property
     def population(self) -> int:
@@ -132,7 +174,7 @@ class Search:
     def numbers(self, x: Real) -> Real:
         """SI numbers of shares of the ranges."""
         found: Real = self.low + x * (self.high - self.low)
-        return found
+        return self.asked.near(found) if self.asked.values else found
 
     def shares(self, numbers: Real) -> Real:
         """Shares of the ranges at which numbers lie."""
@@ -152,26 +194,11 @@ class Search:
         """Which of these shares count for a goal."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
-    @cached_property
-    def exact(self) -> list[slice]:
-        """Where the places of the goals stand after those over the way; of a goal without any, the way."""
-        found, at = [], self.asked.positions + self.jumps
-        for n, goal in enumerate(self.goals):
-            count = len(goal.places)
-            found.append(slice(at, at + count) if count else self.along(n, self.asked.positions))
-            at += count
-        return found
-
-    @cached_property
-    def places(self) -> Places:
-        own = np.concatenate([np.zeros(0), *(np.array(goal.places) for goal in self.goals)])
-        return Places(self.over(self.asked.positions), self._with_sketch(own))
-
-    def _with_sketch(self, driver: Real) -> Real:
+    def with_sketch(self, driver: Real) -> Real:
         """Places of the driver, and that of the sketch, where it counts."""
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
-    def _turned_over(self, found: Mapping[str, Real], count: int) -> Real:
+    def turned_over(self, found: Mapping[str, Real], count: int) -> Real:
         """Which variants pass a dead position that they do not stop at, (variants,), from so many shares of the way."""
         over: Any = False
         for name in self.single:
@@ -181,8 +208,19 @@ class Search:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) // BLOCK))]
+        if self.cycles is not None and self.cycles.varies:
+            return self._by_cycles(x, np.array(self.cycles.of(self.numbers(x))))
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // BLOCK))]
         return np.concatenate([f for f, _ in blocks]), np.concatenate([v for _, v in blocks])
+
+    def _by_cycles(self, x: Real, turns: Real) -> tuple[Real, Real]:
+        """Each over its own cycle."""
+        f, v = np.full(len(x), np.inf), np.full(len(x), NONE)
+        for count in set(turns.tolist()):
+            search, rows = self._over_cycle(count), turns == count
+            if search is not None:
+                f[rows], v[rows] = search.evaluate(x[rows])
+        return f, v
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:
         with np.errstate(all="ignore"):
@@ -190,7 +228,7 @@ class Search:
             violation = sum(limit.missed(v) for limit, v in zip(self.limits, values[1:], strict=True))
             lost = self.limits[0].missed(values[1]) * self.limits[0].scale
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
-            violation = np.where(np.isfinite(violation), violation, 1e6)
+            violation = np.where(np.isfinite(violation), violation, NONE)
             wanted = self.wanted(values[0])
             return np.where(np.isnan(wanted), np.inf, wanted), violation
 
@@ -198,7 +236,7 @@ class Search:
         """Objective and constrained quantities, coarsely."""
         found = self.run(x, self.places, closely=False)
         values = [goal.coarse(_reader(found, n, self.exact[n]), self.overs[n]) for n, goal in enumerate(self.goals)]
-        values[1] = np.where(self._turned_over(found, self.asked.positions), -1.0, values[1])
+        values[1] = np.where(self.turned_over(found, self.count), -1.0, values[1])
         return values
 
     def wanted(self, value: Real) -> Real:
@@ -212,15 +250,15 @@ class Search:
 
         narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
         """
-        scan = self.over(SCAN)
+        scan = self.over(self.scan)
         found = self.run(np.stack([x, x]), Places(scan, np.zeros(0)))
-        half = max(self.step * narrow, ABOUT / SCAN)
+        half = max(narrow / self.count, ABOUT / self.scan)
         step = 2 * half / (WINDOW - 1)
         blocks, parts = [], []
         at = 0
         for n, goal in enumerate(self.goals):
             own = []
-            for name, k in goal.windows(_reader(found, n, self.along(n, SCAN)), self.overs[n]):
+            for name, k in goal.windows(_reader(found, n, self.along(n, self.scan)), self.overs[n]):
                 first = scan[k] - half
                 if not self.overs[n].closed:
                     first = min(max(first, 0.0), 1 - 2 * half)
@@ -251,53 +289,32 @@ class Search:
 
     def exactly(self, x: Real) -> list[float]:
         """Objective and constrained quantities of one candidate."""
-        with np.errstate(all="ignore"):
-            along = partial(self._along, self.program.about(self.numbers(x)), x)
-            found, coarse = self.closely(x)(x), self.values(np.stack([x, x]))
-            values = [np.min(p) if goal.of in LEAST else np.max(p) for goal, p in zip(self.goals, found, strict=True)]
-            for n, goal in enumerate(self.goals):
-                if goal.of in FORCES and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
-                    values[n] = np.nan
-                elif self.overs[n].rough and goal.of in FORCES:
-                    values[n] = self._highest(along, n, "y0")
-                slides = goal.of == "stroke" and not self.overs[n].swings and not np.isnan(values[n])
-                if slides and not isinstance(self.program, Apart):
-                    values[n] = self._highest(along, n, "run") + self._highest(along, n, "run", -1.0)
-                if goal.of == "k":
-                    values[n] = ratio(partial(along, n, "slope"), self.over(SCAN)[:SCAN])
-            if self.single:
-                two = self.run(np.stack([x, x]), Places(self.over(SCAN), self._with_sketch(np.zeros(0))))
-                values[1] = -1.0 if self._turned_over(two, SCAN)[0] else values[1]
-        return [float(value) for value in values]
-
-    def _along(self, near: Program, x: Real, n: int, name: str, shares: Real) -> Real:
-        """An output of a goal for one candidate at shares of its way. near: moves candidates near it."""
-        found: Real = near(self.numbers(np.stack([x, x])), Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
-        return found
-
-    def _highest(self, along: Callable[[int, str, Real], Real], n: int, name: str, sign: float = 1.0) -> float:
-        """The largest value of an output that may jump or bend sharply: closer and closer about its highest places."""
-        scan, closed = self.over(SCAN)[self.along(n, SCAN)], self.overs[n].closed
-        y = sign * along(n, name, scan)
-        best, step = float(np.nanmax(y)), scan[1] - scan[0]
-        middle = scan[peaks_of(y, RIVALS, closed)]
-        for _ in range(ZOOMS):
-            shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
-            shares = shares if closed else np.clip(shares, 0.0, 1.0)
-            there = sign * along(n, name, shares.ravel()).reshape(shares.shape)
-            middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
-            best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
-        return best
+        own = self.own(x)
+        if own is self:
+            return exactly(self, x)
+        return [np.nan, -1.0, *(np.nan for _ in self.limits[1:])] if own is None else own.exactly(x)
 
     def polished(self, x: Real) -> Real:
-        """The best place near x."""
+        """The best place near x, whose numbers that have some values only stay as they are."""
+        own = self.own(x)
+        if own is not self or not self.asked.free:
+            return x if own is None or own is self else own.polished(x)
+        free, whole = self.asked.free, x
+
+        def all_of(some: Real) -> Real:
+            """Candidates with all their numbers."""
+            found = np.repeat(whole[None], len(np.atleast_2d(some)), axis=0)
+            found[:, free] = some
+            return found
+
         for narrow in NARROWER:
             before = x
             try:
                 pieces = self.closely(x, narrow)
                 top = float(np.max(np.abs(self._pieces(pieces(x)[0])))) or 1.0
                 with np.errstate(all="ignore"):
-                    x = polish(lambda some: self._local(some, pieces(some), top), x)  # noqa: B023
+                    best = polish(lambda some: self._local(all_of(some), pieces(all_of(some)), top), x[free])  # noqa: B023
+                x = all_of(best)[0]
             except np.linalg.LinAlgError:
                 return before
             if not narrow and float(np.max(np.abs(x - before))) < 1e-9:

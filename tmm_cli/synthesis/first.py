@@ -33,7 +33,7 @@ def first_of(asked: Asked, tries: int) -> list[float]:
     low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
     chance = np.random.default_rng(0)
     for share in (np.full(len(low), 0.5), *chance.random((tries, len(low)))):
-        numbers = low + share * (high - low)
+        numbers = asked.near(low + share * (high - low))
         if shown(asked, numbers):
             return [float(number) for number in numbers]
     raise NoneAssembled("vary", f"{W}.no_assembly", f"{W}.other_sketch")

@@ -20,7 +20,17 @@ from tmm_cli.motion import Motion
 from tmm_cli.pressure import followers, sides
 from tmm_cli.strokes import output_link, output_place, output_slope
 from tmm_cli.synthesis.peaks import peak, zero
-from tmm_cli.synthesis.readings import apart_squared, forward_share, nearest, peaks_of, ratio_of, sums, swept
+from tmm_cli.synthesis.readings import (
+    apart_squared,
+    ends_of,
+    forward_share,
+    longest,
+    nearest,
+    peaks_of,
+    ratio_of,
+    sums,
+    swept,
+)
 from tmm_cli.vectors import Real
 
 PEAKS: Final = ("pressure", "moment", "reaction", "margin", "crank", "box")
@@ -32,6 +42,7 @@ FORCES: Final = ("moment", "reaction")
 LEAST: Final = ("margin", "crank")  # whose least value counts
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # of the box: right, left, top, bottom
 MOST_PEAKS = 4
+FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may belong to two strokes
 OF_A_SIDE = 3  # points that may come to bear on a side of the box
 SIDE = "side"  # outputs whose sign tells on which side of a dead position a group is that has one assembly only
 CLOSELY = "closely."  # outputs that are wanted for windows alone
@@ -158,7 +169,8 @@ class Goal:
                 turns = np.all(slope > 0, axis=1) | np.all(slope < 0, axis=1)  # such an output has no strokes
                 travel[past] = np.where(turns & over.closed, np.nan, swept(run[past]))
             if self.of == "stroke":
-                return np.asarray(travel)
+                more = over.closed and np.any(ends_of(read("slope")) > FOUR)
+                return longest(run, travel, turns=over.swings) if more else np.asarray(travel)
             found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * _mean_rate(read, over) / over.cycle
             return found
         return self.counted(self.deviations(read, over))
@@ -256,14 +268,17 @@ class Goal:
                     if over.swings:
                         run = run - 2 * np.pi * np.round((run - float(angle)) / (2 * np.pi))
                     runs.append(run)
-                if self.of == "stroke":
+                if self.of == "stroke" and not (over.closed and len(parts) > FOUR):
                     tops, lows = ([peak(side * run) for run in runs] for side in (1, -1))
                     travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
                     return travel[:, None]
                 ends = [
                     np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs
                 ]
-                whole = np.sum(np.abs(np.diff([*ends, ends[0]], axis=0)), axis=0)
+                strokes = np.abs(np.diff([*ends, ends[0]], axis=0))
+                if self.of == "stroke":
+                    return strokes.T
+                whole = np.sum(strokes, axis=0)
                 speed: Real = whole * _mean_rate(parts[0][2], over) / over.cycle
                 return speed[:, None]
             forward: Any = 0.0

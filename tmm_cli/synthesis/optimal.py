@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.synthesis.candidates import Search, W
+from tmm_cli.synthesis.every import every
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.goals import FORCES, Goal
@@ -43,6 +44,9 @@ class Best:
 def best(search: Search) -> Best:
     """Search and polish. Raises Infeasible."""
     asked, size = search.asked, len(search.low)
+    few = every(search)
+    if few is not None:
+        return _best_of(search, few.population[:STARTS], few)
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
         search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
@@ -50,7 +54,8 @@ def best(search: Search) -> Best:
     )  # fmt: skip
     starts: list[Real] = []
     first = evolved.objective[0]
-    for x, f in zip(evolved.population, evolved.objective, strict=True):
+    population = search.shares(search.numbers(evolved.population))  # where they have some values only, at those
+    for x, f in zip(population, evolved.objective, strict=True):
         if (
             len(starts) < STARTS
             and (f == first or not f - first > HOPE * abs(first))
@@ -142,7 +147,7 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
         words, values = found.told
         if not found.keeps and reason != f"{W}.no_assembly":  # with these bounds it goes its way, and no more is said
             key, reason = "vary", f"{W}.never"
-        raise Infeasible(("vary", name, int(above)) if key == "vary" else key, reason, f"{W}.{words}", values)
+        raise Infeasible(asked.bound(name, above) if key == "vary" else key, reason, f"{W}.{words}", values)
     if not found.sketched:
         raise Infeasible(key, reason, f"{W}.other_sketch")
     return found.numbers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +10,9 @@ import numpy as np
 
 from tmm_cli.synthesis.goals import LEAST, Goal
 from tmm_cli.variants.way import Make
+from tmm_cli.vectors import Real
+
+Path = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class Asked:
     """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
     order, with its way. target: the objective is to come near to this. positions: round the cycle, in the search.
     accepts: whether the file takes such numbers. population, generations: 0 for as many as the number of parameters
-    wants.
+    wants. values: of those that have some only; at: the keys of the bounds in the file.
     """
 
     low: dict[str, float]
@@ -66,3 +69,32 @@ class Asked:
     seed: int = 1
     accepts: Callable[[Sequence[float]], bool] = field(default=lambda numbers: True, compare=False)
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
+    values: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    at: Mapping[str, tuple[Path, Path]] = field(default_factory=dict)
+
+    def near(self, numbers: Any) -> Real:
+        """The nearest numbers that the parameters may have, (..., n)."""
+        return near(numbers, self.values, self.low)
+
+    def beside(self, name: str, number: float) -> float:
+        """Another of the values that a parameter may have; nan where it may have all within its bounds."""
+        return next((value for value in self.values.get(name, ()) if value != number), np.nan)
+
+    @property
+    def free(self) -> list[int]:
+        """Which of them may have all values within their bounds."""
+        return [k for k, name in enumerate(self.low) if name not in self.values]
+
+    def bound(self, name: str, above: bool) -> Path:
+        """Where a bound stands in what is asked."""
+        return self.at[name][above] if name in self.at else ("vary", name, int(above))
+
+
+def near(numbers: Any, values: Mapping[str, tuple[float, ...]], names: Iterable[str]) -> Real:
+    """The nearest numbers (..., n) of parameters, some of which may have certain values only."""
+    found = np.array(numbers, dtype=float)
+    for k, name in enumerate(names):
+        if name in values:
+            own = np.array(values[name])
+            found[..., k] = own[np.searchsorted((own[1:] + own[:-1]) / 2, found[..., k])]
+    return found

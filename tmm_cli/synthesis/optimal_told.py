@@ -29,9 +29,11 @@ def told(search: Search, found: Best) -> Outcome:
         Value(name, side[name], asked.kinds[name], f"{W}.{word}")
         for name in asked.low for word, side in (("low", asked.low), ("high", asked.high))
     ]  # fmt: skip
+    given += [Value(name, len(own), "number", f"{W}.values") for name, own in asked.values.items()]
     numbers = []
     for name, x, share in zip(asked.low, found.numbers, found.x, strict=True):
         word = "at_low" if share < ACTIVE else "at_high" if share > 1 - ACTIVE else "parameter"
+        word = "chosen" if word == "parameter" and name in asked.values else word
         numbers.append(Value(name, float(x), asked.kinds[name], f"{W}.{word}"))
     given_ends = asked.make([float(x) for x in found.numbers]).ends
     ends = None if given_ends is None else (float(given_ends[0]), float(given_ends[1]))

@@ -6,16 +6,20 @@ over 7! and less; arrays are (variants, places).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import perm
 
 import numpy as np
 
+from tmm_cli.synthesis.readings import peaks_of
 from tmm_cli.vectors import Real
 
 WINDOW = 33  # places about a peak
 SIDE = 3  # neighbours on either side
 _FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
 NEWTON = 6
+RIVALS = 8  # highest places of what may jump
+ZOOMS = 9  # of a peak that may be a jump
 FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
 
 
@@ -54,3 +58,20 @@ def zero(y: Real) -> Real:
             u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
     found: Real = middle + u
     return found
+
+
+def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
+    """The largest value of a curve that may jump or bend sharply: closer and closer about its highest places.
+
+    scan: shares of the way at equal steps; closed: the curve goes on after its end as at its beginning.
+    """
+    y = curve(scan)
+    best, step = float(np.nanmax(y)), scan[1] - scan[0]
+    middle = scan[peaks_of(y, RIVALS, closed)]
+    for _ in range(ZOOMS):
+        shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
+        shares = shares if closed else np.clip(shares, 0.0, 1.0)
+        there = curve(shares.ravel()).reshape(shares.shape)
+        middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
+        best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
+    return best

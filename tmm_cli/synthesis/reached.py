@@ -22,6 +22,7 @@ Read = Callable[[Places, str], Real]
 
 def reached(search: Search, x: Real, n: int) -> tuple[Listing, Diagram]:
     """Of the n-th goal, for shares x of the ranges."""
+    search = search.own(x) or search
     two = np.stack([x, x])
 
     def read(places: Places, key: str) -> Real:

@@ -22,6 +22,28 @@ def swept(angles: Real) -> Real:
     return found
 
 
+def longest(run: Real, travel: Real, *, turns: bool) -> Real:
+    """The longest stroke of a closed curve that goes to and fro several times, (variants,); travel: its whole range.
+
+    turns: it is an angle that is told within -pi..pi.
+    """
+    step = np.diff(run, axis=1, append=run[:, :1])
+    step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
+    stroke, best = np.zeros(len(run)), np.zeros(len(run))
+    for k in range(2 * run.shape[1]):  # twice round, for the stroke that goes on over the end
+        one = step[:, k % run.shape[1]]
+        stroke = np.where(stroke * one >= 0, stroke + one, one)
+        best = np.maximum(best, np.abs(stroke))
+    return np.minimum(best, travel)
+
+
+def ends_of(slope: Real) -> Real:
+    """How often a curve turns back in a cycle, (variants,); what rests may count twice."""
+    sign = np.sign(slope)
+    found: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
+    return found
+
+
 def apart_squared(x: Real, y: Real, point: complex) -> Real:
     """The square of the distance of places from a point."""
     found: Real = (x - point.real) ** 2 + (y - point.imag) ** 2

@@ -51,6 +51,7 @@ class Wider(Search):
         """The same over other bounds."""
         other = copy(self)
         other.low, other.high, other.sides = low, high, sides
+        other.others = {}
         return other
 
     def beyond(self, x: Real) -> Real:
@@ -194,7 +195,7 @@ def _widest(asked: Asked) -> tuple[Real, Real]:
     low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
     middle = (low + high) / 2
     ends: tuple[Real, Real] = (low.copy(), high.copy())
-    for n in range(len(low)):
+    for n in asked.free:
         for side, end in enumerate(ends):
             for times in TIMES:
                 more = (times - 1) * max(abs(low[n]), abs(high[n]))

@@ -26,7 +26,11 @@ class Apart:
     raises, for the first linkage.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
+    def __init__(
+        self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False, turns: int = 0
+    ) -> None:  # fmt: skip
+        """turns: after which all that are ever asked for come round again; 0: after as many as the first one."""
+        self.turns = turns
         self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
         self.variant = make(first)
         self.ordinary = self.variant.linkage
@@ -36,7 +40,7 @@ class Apart:
 
     def way(self, columns: Real) -> Way:
         """The drivers' ways, as far as they can go round."""
-        turns = Mechanism(self.ordinary, self.structure).way.turns
+        turns = self.turns or Mechanism(self.ordinary, self.structure).way.turns
         return Way.of(self.variant, len(columns), turns)
 
     def without(self, part: str) -> Self:

@@ -80,18 +80,26 @@ class Together:
     what assembly raises.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False) -> None:
+    def __init__(
+        self, make: Make, first: Sequence[float], asked: Asked, *, forces: bool = False, turns: int = 0,
+        other: Sequence[float] = (),
+    ) -> None:  # fmt: skip
+        """turns: after which all of them come round again; 0: after as many as the first one.
+
+        other: further numbers of those that have some values only, nan for all others.
+        """
+        self.other = np.array(other) if other else np.full(len(first), np.nan)
         self.make, self.first, self.asked, self.forces = make, np.array(first), asked, forces
         self.variant = make(first)
         self.ordinary = ordinary = self.variant.linkage
         self.structure = mobile(ordinary)
         self.kernels = assemble(ordinary, self.structure)
         alone = {path for path in self._varying() if any(part in path for part in SINGLE)}
-        if not self.variant.ends:
+        if not self.variant.ends and not turns:
             alone |= self._varying() & {f"linkage.{path}" for path in _of_cycle(ordinary)}
         if alone:
             raise DependsOnData(min(alone))
-        self.turns = 1 if self.variant.ends else Mechanism(ordinary, self.structure).way.turns
+        self.turns = 1 if self.variant.ends else turns or Mechanism(ordinary, self.structure).way.turns
         at = np.array([ordinary.sketch.at])
         poses = move(ordinary, self.kernels, at, Law(float(at[0]), 1.0, 0.0, 1), 0).poses
         links = [n for kernel in self.kernels for n in kernel.group.links]
@@ -115,7 +123,8 @@ class Together:
         """Paths of the numbers that vary; one that is written with what varies may be the same for all."""
         written = {path for path, x in numbers(self.make([Varied(x, x) for x in self.first])) if isinstance(x, Varied)}
         steps = OTHER * np.sqrt(np.arange(2.0, len(self.first) + 2)) * np.where(self.first, self.first, 1.0)
-        before, after = (dict(numbers(self.make(x.tolist()))) for x in (self.first, self.first + steps))
+        steps = np.where(np.isnan(self.other), self.first + steps, self.other)
+        before, after = (dict(numbers(self.make(x.tolist()))) for x in (self.first, steps))
         return {path for path in written if abs(before[path] - after[path]) > SAME * abs(before[path])}
 
     def _varying_sketch(self) -> bool:

@@ -24,6 +24,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.low": "varies from",
     "synthesis_optimal.high": "varies to",
     "synthesis_optimal.parameter": "found within its bounds",
+    "synthesis_optimal.chosen": "found among its values",
+    "synthesis_optimal.values": "number of values to choose from",
     "synthesis_optimal.at_low": "found at its lower bound",
     "synthesis_optimal.at_high": "found at its upper bound",
     "synthesis_optimal.constraints": "Objective and constraints",
@@ -88,7 +90,11 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.unused": "nothing in the file rests on this parameter",
     "synthesis_optimal.used": "a parameter that lengths, places, masses or loads of the file rest on",
     "synthesis_optimal.cycle_varies": "after how many turns all comes round again rests on this parameter",
-    "synthesis_optimal.over_ends": "over: [from, to] or over: positions; or a parameter that leaves ratios as they are",
+    "synthesis_optimal.in_steps": "steps, {{from: 18, to: 40, step: 1}}, or values, {{among: [18, 20, 25]}}, since all "
+    "comes round again with ratios of whole numbers only; or over: [from, to]",
+    "synthesis_optimal.no_return": "with none of these values all comes round again within 60 turns",
+    "synthesis_optimal.other_ratios": "numbers of teeth with small common ratios, or speeds of drivers with such; or "
+    "over: [from, to]",
     "synthesis_optimal.not_as_sketched": "the file's sketch does not show the mechanism that was found: it is "
     "assembled as the middle of the bounds is",
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "

@@ -7,7 +7,7 @@ A task's file has `Shape(Block)`, its keys, and `asked(shape, sense)`, which mak
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model
 from pydantic_core import PydanticCustomError
@@ -76,11 +76,14 @@ def model(block: Any, path: tuple[str | int, ...]) -> type[BaseModel] | None:
     """The model at a path inside the block, for messages."""
     task = block.get("task") if isinstance(block, dict) else None
     here: type[BaseModel] | None = reader(str(task)).Shape if _known(task) else Block
+    named = False  # whether the next key is one of the user's own names
     for step in path:
-        if isinstance(step, int) or here is None:
+        if isinstance(step, int) or here is None or named:
+            named = False
             continue
         field = here.model_fields.get(step)
         here = None if field is None else _inner(field.annotation)
+        named = field is not None and get_origin(field.annotation) is dict
     return here
 
 

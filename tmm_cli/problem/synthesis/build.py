@@ -196,13 +196,22 @@ def _found(block: Block, path: tuple[str | int, ...]) -> str | None:
     """What stands there; of bounds all of them."""
     given = _at(block, path)
     if path == ("vary",):
-        return quote(", ".join(f"{name}: [{low}, {high}]" for name, (low, high) in given.items()))
+        return quote(", ".join(f"{name}: {_told(own)}" for name, own in given.items()))
     return quote(given) if path else None
+
+
+def _told(own: Any) -> str:
+    """Bounds, or steps, as they are written."""
+    if isinstance(own, list):
+        return f"[{', '.join(map(str, own))}]"
+    given = own.model_dump(by_alias=True, exclude_defaults=True)
+    return f"{{{', '.join(f'{key}: {_told(v) if isinstance(v, list) else v}' for key, v in given.items())}}}"
 
 
 def _at(block: Any, path: tuple[str | int, ...]) -> Any:
     for step in path:
-        block = block[step] if isinstance(step, int) or isinstance(block, dict) else getattr(block, step, None)
+        own = isinstance(step, int) or isinstance(block, dict)
+        block = block[step] if own else getattr(block, str(step), getattr(block, f"{step}_", None))
     return getattr(block, "of", block)  # of a quantity its name
 
 

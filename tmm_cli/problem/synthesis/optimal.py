@@ -12,17 +12,18 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.mobile import mobile
 from tmm_cli.problem.dimensions import KINDS
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.expressions import evaluate_quantity
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema import Name, Strict, Value, Vector
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis import Block
 from tmm_cli.problem.synthesis.build import OfTheFile
 from tmm_cli.problem.synthesis.driven import Ends, asked_over, driven, within
+from tmm_cli.problem.synthesis.ranges import Range, Ranges, Two, read
 from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
 from tmm_cli.problem.varied import VariedUnits
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal import Asked, Limit
+from tmm_cli.synthesis.optimal_asked import near
 from tmm_cli.tape.varied import Varied
 from tmm_cli.variants.way import Make, Variant
 
@@ -33,9 +34,6 @@ MOST_PLACES = 2_000_000_000  # positions of candidates: some minutes for a four-
 Of = Literal["length", "mass", "box", "pressure", "moment", "reaction", "margin", "stroke", "k", "speed", "path", "law"]
 NEEDS = {"reaction": "pair", "path": "point", "law": "link"}  # the key that names of what
 FULL = {"moment": "moment of force", "reaction": "force"}
-
-
-Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
 
 class Quality(Strict):
@@ -75,16 +73,20 @@ class Shape(Block):
     """Parameters within bounds that make an objective least and keep constraints; the driver goes its whole way."""
 
     task: Literal["optimal"]
-    vary: dict[Name, Two] = Field(
-        min_length=1, max_length=MOST, description="bounds by name of the parameter; bare numbers are lengths"
-    )
+    vary: dict[Name, Range] = Field(
+        min_length=1, max_length=MOST,
+        description="by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; bare numbers are lengths "
+        "where the file takes them for such",
+    )  # fmt: skip
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
         default=None,
         description="the driver's way: cycle, stroke (its own), positions (through the file's), [from, to]",
     )
-    positions: int = Field(default=72, ge=12, le=720, description="round the cycle, in the search")
+    positions: int = Field(
+        default=72, ge=12, le=720, description="round the cycle, in the search; no fewer than 24 in each of many turns"
+    )
     population: int = Field(default=0, ge=0, le=10_000, description="in a generation; 0: 20 a parameter")
     generations: int = Field(default=0, ge=0, le=100_000, description="25 times the square of the number of parameters")
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
@@ -97,20 +99,8 @@ def parameters(shape: Shape) -> dict[str, str]:
 
 def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], UnitSystem], Problem]) -> Asked:
     """The task in SI. Raises ProblemError."""
-    low, high, kinds = {}, {}, {}
-    for name, (first, second) in shape.vary.items():
-        way = ("vary", name)
-        kind = next((k for k in map(_kind_of, (first, second), (sense, sense)) if k), "length")
-        kinds[name] = kind
-        low[name], high[name] = (
-            float(sense.number(v, KINDS[kind].dimension, (*way, n))) for n, v in enumerate((first, second))
-        )
-        if not low[name] < high[name]:
-            same = low[name] == high[name]
-            raise ProblemError(
-                "between equal bounds nothing varies" if same else "the lower bound comes first", path=way,
-                found=f"{first} and {second}", allowed="[low, high]; or a parameter" if same else "[low, high]",
-            )  # fmt: skip
+    ranges = read(shape.vary, sense, shape.names, file_with)
+    low, high, kinds = ranges.low, ranges.high, ranges.kinds
     _check_work(shape)
     varied = VariedUnits(sense.units)
     names = [shape.names.get(name, name) for name in low]
@@ -120,7 +110,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         dimensions = (KINDS[kind].dimension for kind in kinds.values())
         return file_with({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
-    middles = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
+    middles = near([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)], ranges.values, low).tolist()
     over = asked_over(shape.over, file(middles).linkage.driver, sense)
 
     def make(numbers: Sequence[Any]) -> Variant:
@@ -134,7 +124,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         return True
 
     middle = make(middles)
-    ways = list(dict.fromkeys([middle.ends, *_check_bounds(shape, make, low, high)]))
+    ways = list(dict.fromkeys([middle.ends, *_check_bounds(ranges, make, middles)]))
     limits = []
     for n, given in enumerate(shape.constraints):
         path: tuple[str | int, ...] = ("constraints", n)
@@ -159,7 +149,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
     )
     return Asked(
         low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
-        shape.generations, shape.seed, accepts, _bar(),
+        shape.generations, shape.seed, accepts, _bar(), ranges.values, ranges.at,
     )  # fmt: skip
 
 
@@ -178,30 +168,20 @@ def _check_work(shape: Shape) -> None:
         )  # fmt: skip
 
 
-def _check_bounds(shape: Shape, make: Make, low: dict[str, float], high: dict[str, float]) -> list[Ends]:
+def _check_bounds(ranges: Ranges, make: Make, middles: Sequence[float]) -> list[Ends]:
     """The drivers' ways at the bounds; what the file refuses there is said before the search. Raises ProblemError."""
     found = []
-    middle = [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)]
-    for n, ends in enumerate((low, high)):
+    for n, ends in enumerate((ranges.low, ranges.high)):
         for k, (name, end) in enumerate(ends.items()):
             try:
-                found.append(make([*middle[:k], end, *middle[k + 1 :]]).ends)
+                found.append(make([*middles[:k], end, *middles[k + 1 :]]).ends)
             except OfTheFile as error:
-                path: tuple[str | int, ...] = ("vary", name, n)
                 raise ProblemError(
-                    f"with this bound the file is refused: {error.error.message}", path=path,
-                    found=quote(shape.vary[name][n]), allowed=error.error.allowed or "another bound",
+                    f"with this bound the file is refused: {error.error.message}", path=ranges.at[name][n],
+                    found=ranges.told[name][n], allowed=error.error.allowed or "another bound",
                 ) from None  # fmt: skip
         make(list(ends.values()))
     return found
-
-
-def _kind_of(source: Any, sense: Sense) -> str | None:
-    try:
-        found = evaluate_quantity(source, sense.parameters, sense.units).dimension
-    except ProblemError:
-        return None  # said when it is evaluated
-    return next((name for name, kind in KINDS.items() if kind.dimension == found), None)
 
 
 def _dimension(goal: Goal, linkage: Linkage) -> Dimension:

@@ -1,0 +1,145 @@
+"""Optimal synthesis over parameters that have some values only: lengths from a series, numbers of teeth, speeds."""
+
+import itertools
+import re
+
+import numpy as np
+import pytest
+from test_commands import ROOT
+
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.search import search_of
+from tmm_cli.synthesis.candidates import Search
+from tmm_cli.synthesis.goals import Goal
+from tmm_cli.synthesis.measured_goals import measure
+from tmm_cli.synthesis.readings import longest
+
+
+def text_of(name, edits, task):
+    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8")
+    for old, new in edits:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text.replace("points: {", f"synthesis:\n  task: optimal\n  {task}\npoints: {{", 1)
+
+
+def best_of(text):
+    """What is found, and what is measured on it."""
+    results = solve(build(read_text(text, "x.yaml")))
+    assert results.measured and all(m.met for m in results.measured)
+    return {name: value.value for name, value in results.synthesis.outcome.parameters.items()}, results
+
+
+def with_numbers(text, **numbers):
+    """The same file without its synthesis, with these parameters."""
+    text = re.sub(r"synthesis:\n(  .*\n)+", "", text)
+    given = ", ".join(f"{name}: {value}" for name, value in numbers.items())
+    return solve(build(read_text(text.replace("parameters: {", f"parameters: {{{given}, ", 1), "x.yaml")))
+
+
+def test_of_lengths_from_a_series_the_best_pair_of_all_is_found():
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "vary: {r: {from: 55, to: 75, step: 5}, l: {among: [180, 200, 220, 250]}}\n"
+        "  objective: moment\n  constraints: [{of: pressure, most: 17 deg}, {of: stroke, least: 119}]",
+    )  # fmt: skip
+    found, results = best_of(text)
+    values = {}
+    for r, length in itertools.product((55, 60, 65, 70, 75), (180, 200, 220, 250)):
+        one = with_numbers(text, r=r, l=length)
+        if measure(Goal("pressure"), one) <= np.radians(17) and measure(Goal("stroke"), one) >= 0.119:
+            values[r, length] = measure(Goal("moment"), one)
+    assert len(values) > 2
+    best = min(values, key=values.get)
+    assert (1000 * found["r"], 1000 * found["l"]) == pytest.approx(best, rel=1e-15)
+    assert measure(Goal("moment"), results) == pytest.approx(values[best], rel=1e-12)
+
+
+def test_what_may_have_all_values_is_polished_beside_what_may_not():
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "vary: {r: [50, 80], l: {from: 150, to: 300, step: 25}}\n  objective: length\n"
+        "  constraints: [{of: stroke, least: 130}, {of: pressure, most: 20 deg}]\n  population: 30\n  generations: 40",
+    )  # fmt: skip
+    found, _ = best_of(text)
+    assert (found["r"], found["l"]) == pytest.approx((0.065, 0.2), rel=1e-12)  # r/sin 20 is 190 mm: 200 is the next
+
+
+FIVE_BAR = (("speed: 120 rpm", "speed: n2"), ("l: 180, ", ""))
+SPEEDS = ("60 rpm", "80 rpm", "90 rpm", "120 rpm")
+
+
+def test_each_candidate_has_the_cycle_of_its_own_ratio():
+    """Speeds 60 to 80 rpm come round again after three turns, 60 to 90 after two: over these each is measured."""
+    text = text_of(
+        "five-bar", FIVE_BAR,
+        f"vary: {{n2: {{among: [{', '.join(SPEEDS)}]}}, l: {{among: [180, 200]}}}}\n  objective: moment",
+    )  # fmt: skip
+    problem = read_text(text, "x.yaml")
+    search = Search(search_of(problem))
+    for speed, turns in zip(SPEEDS, (1, 3, 2, 1), strict=True):
+        x = search.shares(np.array([2 * np.pi * float(speed.split()[0]) / 60, 0.2]))
+        ordinary = with_numbers(text, n2=speed, l=200)
+        assert (search.own(x).turns, ordinary.way.turns) == (turns, turns)
+        assert search.exactly(x)[0] == pytest.approx(measure(Goal("moment"), ordinary), rel=1e-12)
+    found, results = best_of(text)
+    assert found["n2"] == pytest.approx(2 * np.pi) and results.way.turns == 1
+
+
+def test_a_ratio_that_may_be_any_number_leaves_a_rocking_wheel_its_cycle():
+    """Its partner swings, so all is back after a turn; bare bounds of a ratio are no lengths."""
+    text = text_of(
+        "gear-doubling", (("teeth: [120, 40], module: 2", "ratio: i"),),
+        "vary: {i: [2, 4]}\n  objective: {of: stroke, target: 80}\n  population: 8\n  generations: 12",
+    )  # fmt: skip
+    found, results = best_of(text)
+    assert 2 <= found["i"] <= 4 and results.strokes.travel == pytest.approx(0.08, rel=1e-9)
+
+
+def test_bare_bounds_are_what_the_file_takes_them_for():
+    text = text_of(
+        "crank-slider", (("{on: AB, at: 0.35}", "{on: AB, at: share}"), ("r: 60, ", "")),
+        "vary: {r: [50, 70], share: [0.2, 0.8]}\n  objective: moment",
+    )  # fmt: skip
+    assert search_of(read_text(text, "x.yaml")).kinds == {"r": "length", "share": "number"}
+
+
+def test_the_longest_of_many_strokes_may_lie_between_neither_of_the_extremes():
+    ends = np.array([[0.0, 3.0, 1.0, 2.0, -1.0, 1.5]])
+    run = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise([*ends[0], ends[0, 0]])])[None]
+    assert np.ptp(run) == 4.0
+    for shift in range(0, run.shape[1], 5):
+        assert longest(np.roll(run, shift, axis=1), np.array([4.0]), turns=False)[0] == pytest.approx(3.0, abs=1e-15)
+
+
+FREE = "n2: [60 rpm, 180 rpm]"
+STEPS = "allowed: steps, {from: 18, to: 40, step: 1}, or values, {among: [18, 20, 25]}, since all comes round again"
+MESSAGES = {
+    "any ratio": (FREE, "after how many turns all comes round again rests on this parameter", STEPS),
+    "no small ratio": (
+        "n2: {among: [61.3 rpm, 60.7 rpm, 59.3 rpm]}", "with none of these values all comes round", "small common",
+    ),
+    "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "the key `step` is missing", "allowed: from, to and step; or among"),
+    "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "steps or values, not both", "from, to and step; or among"),
+    "one value": ("n2: {among: [60 rpm]}", "with one value nothing varies", "found:   '60 rpm'"),
+    "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),
+    "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
+    "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
+    "too many": ("l: {from: 1, to: 3e9, step: 1}", "these are too many steps", "found:   3000000000 values"),
+    "too large a step": ("l: {from: 1, to: 3, step: 5}", "not one step lies between these bounds", "found:   5"),
+    "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
+    "refused by the file": ("l: {among: [0, 180, 200]}", "with this bound the file is refused", "vary.l.among[0]"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", MESSAGES)
+def test_what_varies_is_refused_at_its_place(case):
+    varies, *said = MESSAGES[case]
+    other = "l: [180, 200]" if varies.startswith("n2") else "n2: {among: [60 rpm, 120 rpm]}"
+    text = text_of("five-bar", FIVE_BAR, f"vary: {{{varies}, {other}}}\n  objective: moment")
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    assert all(words in str(caught.value) for words in said), str(caught.value)
