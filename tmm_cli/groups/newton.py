@@ -128,8 +128,9 @@ class Newton(Kernel):
         """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
         shape = np.shape(poses[self.group.links[0]].x)
         rows: list[Real] = []
+        nothing = np.zeros(shape)
         for constraint in self.constraints:
-            total: list[Real] = [np.zeros(shape) for _ in constraint.lengths]
+            total: list[Real] = [nothing] * len(constraint.lengths)
             outer = [link for link in constraint.links if link not in self.order]
             grips = constraint.grips(poses) if outer else {}
             for link, lines in grips.items():
@@ -147,9 +148,8 @@ class Newton(Kernel):
 
     def poses_of(self, state: State) -> dict[str, Pose]:
         """A state as poses."""
-        return {
-            link: Pose(state.x[..., k], unit(state.turn[..., k]), state.turn[..., k]) for link, k in self.order.items()
-        }
+        x, z, turn = state.x, unit(state.turn), state.turn
+        return {link: Pose(x[..., k], z[..., k], turn[..., k]) for link, k in self.order.items()}
 
     def close(
         self, start: State, poses: Mapping[str, Pose], drives: Drives, rounds: int = ROUNDS
@@ -306,7 +306,8 @@ class Newton(Kernel):
 
 def _stacked(values: Sequence[Any]) -> Real:
     """Numbers, or arrays of them, on a last axis."""
-    shapes = {np.shape(value) for value in values}
+    values = [np.asarray(value) for value in values]
+    shapes = {value.shape for value in values}
     shape = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
     found = np.empty((*shape, len(values)), dtype=np.result_type(*values))
     for k, value in enumerate(values):
