@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import functools
 import gc
 import io
 import json
@@ -19,6 +20,7 @@ from unittest import mock
 
 import pytest
 
+from tmm_cli import load, solve
 from tmm_cli.cli.app import main
 
 ROOT = Path(__file__).parent.parent
@@ -59,6 +61,18 @@ def process(*arguments, cwd=None):
         capture_output=True, encoding="utf-8", cwd=cwd or ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8"},
     )  # fmt: skip
+
+
+@functools.cache
+def problem(path):
+    """A problem of the bank, read (and what it searches for found) once for all the tests that only look at it."""
+    return load(str(path))
+
+
+@functools.cache
+def moved(path):
+    """Its kinematics, likewise."""
+    return solve(problem(path), "kinematics")
 
 
 def leaves(value):
@@ -324,7 +338,6 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
     from rich.console import Console
 
-    from tmm_cli import load, solve
     from tmm_cli.results.reports import tables
     from tmm_cli.results.terminal import show
 

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, ROOT, SHAPER, subprocess, sys, tmm
+from test_commands import PROBLEMS, ROOT, SHAPER, moved, subprocess, sys, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
@@ -88,7 +88,7 @@ HAND_MADE = {
 
 
 def of_file(path):
-    results = solve(load(str(path)), "structure")
+    results = moved(path)
     motion, k = at_sketch(results)
     return Scene(results.linkage, results.structure, motion.poses, k)
 

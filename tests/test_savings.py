@@ -10,7 +10,8 @@ import sys
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, ROOT, SHAPER, tmm
+from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
+from test_commands import problem as read
 
 from tmm_cli import load, solve
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
@@ -52,7 +53,7 @@ def into_numpy(work):
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
-    problem = load(str(path))
+    problem = read(path)
     with counted() as count:
         called = into_numpy(lambda: solve(problem, "structure").structure.formula)
     if analyse(problem.linkage).sound:
@@ -84,8 +85,7 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(path):
-    problem = load(str(path))
-    whole = solve(problem, "kinematics")
+    problem, whole = read(path), moved(path)
     for link in problem.linkage.moving:
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
@@ -142,8 +142,8 @@ def test_only_positions_asked_for_are_solved():
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(path):
-    problem = load(str(path))
-    if any(kernel.followed for kernel in solve(problem, "structure").kernels):
+    problem = read(path)
+    if any(kernel.followed for kernel in moved(path).kernels):
         return  # a group is followed by its accelerations
 
     def quality():
