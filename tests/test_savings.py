@@ -198,14 +198,16 @@ def test_closed_form_and_newton_give_the_same_places():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("command", ["structure", "kinematics", "forces", "explain"])
-def test_what_shows_tables_imports_no_drawing(command):
+def test_what_shows_tables_imports_no_drawing():
+    commands = ("structure", "kinematics", "forces", "explain")
     code = (
-        "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\n"
-        "except SystemExit: print([m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
+        "import sys\nfrom tmm_cli.cli.app import application\nfor command in sys.argv[2:]:\n"
+        " try: application()([command, sys.argv[1]])\n except SystemExit as end: print(command, end.code, "
+        "[m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
     )
-    done = subprocess.run([sys.executable, "-c", code, command, str(SHAPER)], capture_output=True, text=True, cwd=ROOT)
-    assert done.stderr.strip().splitlines()[-1] == "[]"
+    call = [sys.executable, "-c", code, str(SHAPER), *commands]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
+    assert done.stderr.strip().splitlines()[-4:] == [f"{command} 0 []" for command in commands]
 
 
 def test_explain_says_of_every_stage_what_the_stage_does():
