@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from models import PARALLELOGRAM
-from test_commands import ROOT, tmm
+from test_commands import ROOT, process, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.problem.build import build
@@ -199,7 +199,7 @@ def test_nothing_is_written_and_there_is_no_traceback(tmp_path):
     file = tmp_path / "bad.yaml"
     text = changed("DE: 210", "DE: 2")
     file.write_text(text, encoding="utf-8")
-    done = tmm("run", file, "-o", tmp_path / "out")
+    done = process("run", file, "-o", tmp_path / "out")
     assert done.returncode == 2
     assert done.stderr.startswith(f"error: {file}:{place(text, '30 deg')}: sketch.at: ")
     assert "Traceback" not in done.stderr

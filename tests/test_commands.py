@@ -1,8 +1,11 @@
-"""The commands as a user runs them: processes, their output, exit codes and files."""
+"""The commands as a user runs them: their output, exit codes and files; what belongs to a process, in one."""
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import functools
+import gc
 import io
 import json
 import os
@@ -10,10 +13,15 @@ import re
 import shutil
 import subprocess
 import sys
+import warnings
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from unittest import mock
 
 import pytest
+
+from tmm_cli import load, solve
+from tmm_cli.cli.app import main
 
 ROOT = Path(__file__).parent.parent
 PROBLEMS = sorted(
@@ -23,12 +31,48 @@ SHAPER = ROOT / "problems" / "shaper.yaml"
 
 
 def tmm(*arguments, cwd=None):
-    """Run `tmm`."""
+    """Run `tmm` without a process of its own; what would be a traceback is raised, warnings are printed as in one."""
+    out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
+    call = ["tmm", *map(str, arguments)]
+    often = gc.get_threshold()
+
+    def show(message, category, filename, lineno, file=None, line=None):
+        err.write(warnings.formatwarning(message, category, filename, lineno, line))
+
+    with (
+        mock.patch.dict(os.environ, {"NO_COLOR": "1"}), mock.patch.object(sys, "argv", call),
+        contextlib.chdir(cwd or ROOT), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err),
+        warnings.catch_warnings(), pytest.raises(SystemExit) as ended,
+    ):  # fmt: skip
+        warnings.showwarning = show
+        main()
+    gc.set_threshold(*often)
+    told = []
+    for stream in (out, err):
+        stream.flush()
+        told.append(stream.buffer.getvalue().decode("utf-8"))
+    return subprocess.CompletedProcess(call, ended.value.code or 0, *told)
+
+
+def process(*arguments, cwd=None):
+    """Run `tmm` in a process of its own."""
     return subprocess.run(
         [sys.executable, "-m", "tmm_cli", *map(str, arguments)],
         capture_output=True, encoding="utf-8", cwd=cwd or ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8"},
     )  # fmt: skip
+
+
+@functools.cache
+def problem(path):
+    """A problem of the bank, read (and what it searches for found) once for all the tests that only look at it."""
+    return load(str(path))
+
+
+@functools.cache
+def moved(path):
+    """Its kinematics, likewise."""
+    return solve(problem(path), "kinematics")
 
 
 def leaves(value):
@@ -42,7 +86,7 @@ def leaves(value):
 @pytest.fixture(scope="module")
 def shaper(tmp_path_factory):
     out = tmp_path_factory.mktemp("out")
-    done = tmm("run", SHAPER, "-o", out)
+    done = process("run", SHAPER, "-o", out)
     assert done.returncode == 0, done.stderr
     return done, out / "shaper"
 
@@ -108,7 +152,7 @@ def test_two_files_of_one_name_do_not_take_each_others_folder(tmp_path):
 
 
 def test_a_second_run_is_the_same_to_the_byte(shaper, tmp_path):
-    assert tmm("run", SHAPER, "-o", tmp_path).returncode == 0
+    assert process("run", SHAPER, "-o", tmp_path).returncode == 0
     for path in shaper[1].iterdir():
         assert path.read_bytes() == (tmp_path / "shaper" / path.name).read_bytes(), path.name
 
@@ -125,7 +169,7 @@ def test_a_run_takes_away_what_an_earlier_one_left_and_nothing_else(shaper, tmp_
 
 @pytest.mark.parametrize("command", ["structure", "kinematics", "forces"])
 def test_json_is_pure_and_each_stage_computes_no_more_than_it_says(command):
-    result = json.loads(tmm(command, SHAPER, "--json").stdout)
+    result = json.loads(process(command, SHAPER, "--json").stdout)
     assert ("kinematics" in result) == (command != "structure")
     assert ("forces" in result) == ("lever" in result) == (command == "forces")
 
@@ -183,7 +227,7 @@ def test_a_command_makes_no_other_one_and_no_masked_arrays():
         [sys.executable, "-c", code, "structure", str(SHAPER)], capture_output=True, text=True, cwd=ROOT
     )
     assert done.stderr.strip().splitlines()[-1] == "['tmm_cli.cli.structure']"
-    slip = tmm("structre", SHAPER)
+    slip = process("structre", SHAPER)
     assert slip.returncode == 2 and "Did you mean 'structure'?" in slip.stderr
 
 
@@ -191,7 +235,7 @@ def test_several_files_at_once_and_one_bad_among_them(tmp_path):
     bad = tmp_path / "bad.yaml"
     bad.write_text("tmm: 1\n", encoding="utf-8")
     good = [ROOT / "problems" / f"{name}.yaml" for name in ("sine", "slotted-lever")]
-    done = tmm("run", good[0], bad, good[1], "-o", tmp_path / "out", "--no-drawings")
+    done = process("run", good[0], bad, good[1], "-o", tmp_path / "out", "--no-drawings")
     assert done.returncode == 2
     assert "links: the key `links` is missing" in done.stderr
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"sine", "slotted-lever"}
@@ -201,7 +245,7 @@ def test_above_the_limit_of_the_lever_the_run_says_so_and_exits_1(tmp_path):
     problem = tmp_path / "strict.yaml"
     text = SHAPER.read_text(encoding="utf-8").replace("lever: 5 %", "lever: 1e-20 %")
     problem.write_text(text, encoding="utf-8")
-    done = tmm("run", problem, "-o", tmp_path, "--no-drawings")
+    done = process("run", problem, "-o", tmp_path, "--no-drawings")
     assert done.returncode == 1
     assert re.search(
         r"the lever differs from the force plan by .* % at position \d+, more than the limit of 1e-20 %", done.stderr
@@ -294,7 +338,6 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
     from rich.console import Console
 
-    from tmm_cli import load, solve
     from tmm_cli.results.reports import tables
     from tmm_cli.results.terminal import show
 

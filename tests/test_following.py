@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from random_linkages import any_linkage
@@ -21,6 +23,7 @@ CASES = [
 ]  # fmt: skip
 
 
+@cache
 def followed(seed, kinds, driver):
     it = any_linkage(seed, kinds, driver)
     kernels = assemble(it, analyse(it))

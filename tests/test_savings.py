@@ -10,7 +10,8 @@ import sys
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, ROOT, SHAPER, tmm
+from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
+from test_commands import problem as read
 
 from tmm_cli import load, solve
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
@@ -52,7 +53,7 @@ def into_numpy(work):
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
-    problem = load(str(path))
+    problem = read(path)
     with counted() as count:
         called = into_numpy(lambda: solve(problem, "structure").structure.formula)
     if analyse(problem.linkage).sound:
@@ -84,8 +85,7 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(path):
-    problem = load(str(path))
-    whole = solve(problem, "kinematics")
+    problem, whole = read(path), moved(path)
     for link in problem.linkage.moving:
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
@@ -142,8 +142,8 @@ def test_only_positions_asked_for_are_solved():
 
 @pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
 def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(path):
-    problem = load(str(path))
-    if any(kernel.followed for kernel in solve(problem, "structure").kernels):
+    problem = read(path)
+    if any(kernel.followed for kernel in moved(path).kernels):
         return  # a group is followed by its accelerations
 
     def quality():
@@ -198,14 +198,16 @@ def test_closed_form_and_newton_give_the_same_places():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("command", ["structure", "kinematics", "forces", "explain"])
-def test_what_shows_tables_imports_no_drawing(command):
+def test_what_shows_tables_imports_no_drawing():
+    commands = ("structure", "kinematics", "forces", "explain")
     code = (
-        "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\n"
-        "except SystemExit: print([m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
+        "import sys\nfrom tmm_cli.cli.app import application\nfor command in sys.argv[2:]:\n"
+        " try: application()([command, sys.argv[1]])\n except SystemExit as end: print(command, end.code, "
+        "[m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
     )
-    done = subprocess.run([sys.executable, "-c", code, command, str(SHAPER)], capture_output=True, text=True, cwd=ROOT)
-    assert done.stderr.strip().splitlines()[-1] == "[]"
+    call = [sys.executable, "-c", code, str(SHAPER), *commands]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
+    assert done.stderr.strip().splitlines()[-4:] == [f"{command} 0 []" for command in commands]
 
 
 def test_explain_says_of_every_stage_what_the_stage_does():

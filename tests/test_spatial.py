@@ -8,9 +8,9 @@ import json
 import numpy as np
 import pytest
 import random_linkages
-from test_commands import PROBLEMS, ROOT, tmm
+from test_commands import PROBLEMS, ROOT, moved, problem, tmm
 
-from tmm_cli import load, solve
+from tmm_cli import load
 from tmm_cli.chain import count_chain
 from tmm_cli.linkage import FRAME
 from tmm_cli.problem.build import build
@@ -251,13 +251,13 @@ def proposal(found):
 
 def lower_only(file):
     """Without higher pairs (see test_higher_pairs_in_space) and without constraints that are passive in the plane."""
-    linkage = load(str(file)).linkage
+    linkage = problem(file).linkage
     return not linkage.meshes and analyse(linkage).sound
 
 
 @pytest.mark.parametrize("file", [file for file in PROBLEMS if lower_only(file)], ids=lambda p: p.stem)
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(file):
-    results = solve(load(str(file)), "kinematics")
+    results = moved(file)
     linkage, structure, motion = results.linkage, results.structure, results.motion
     found = space(linkage, structure)
     kinds = proposal(found)
@@ -395,7 +395,7 @@ def test_every_random_linkage_gets_a_proposal_unless_a_part_of_it_is_a_truss_on_
 
 
 def test_words_of_the_classification():
-    words = {file.stem: classification(analyse(load(str(file)).linkage)) for file in PROBLEMS}
+    words = {file.stem: classification(analyse(problem(file).linkage)) for file in PROBLEMS}
     assert words["crank-slider"] == ("closed", "simple")
     assert words["shaper"] == ("closed", "complex", "several types")
     alone = "tmm: 1\npoints: {O: [0, 0]}\nlinks: {1: {points: [O, A], length: 1}}\ndriver: {link: 1, speed: 1 rad/s}\n"

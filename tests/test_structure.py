@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from models import SI, results_of
-from test_commands import PROBLEMS, ROOT, SHAPER
+from test_commands import PROBLEMS, ROOT, SHAPER, problem
 
 from tmm_cli import load, solve
 from tmm_cli.pipeline import at_places
@@ -196,7 +196,7 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
     from tmm_cli.results.warnings import warnings
 
     for file in PROBLEMS:
-        alone = solve(load(str(file)), positions=[0])
+        alone = solve(problem(file), positions=[0])
         assert alone.lever_holds, file.stem
         assert not any("drives" in w for w in warnings(alone)), file.stem
 

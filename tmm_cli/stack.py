@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,42 @@ def numbers(record: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield path, record
 
 
+@cache
+def _sort(kind: Any) -> tuple[str, ...] | type | None:
+    """Names of the fields of a class of records, Mapping, tuple, or None for what is a value itself."""
+    if is_dataclass(kind):
+        return tuple(f.name for f in fields(kind) if f.name not in LEFT)
+    return Mapping if issubclass(kind, Mapping) else tuple if issubclass(kind, tuple | list) else None
+
+
+def _leaves(record: Any) -> tuple[list[Any], list[Any]]:
+    """The numbers of a record without their paths, as `numbers` has them, and its shape: of one shape, one order."""
+    found: list[Any] = []
+    shape: list[Any] = []
+
+    def walk(part: Any) -> None:
+        kind: Any = type(part)
+        sort = _sort(kind)
+        if sort is None:
+            found.append(part)
+            return
+        if isinstance(sort, tuple):
+            shape.append(kind)
+            inner: Iterable[Any] = [getattr(part, name) for name in sort]
+        elif sort is Mapping:
+            shape.append(tuple(part))
+            inner = part.values()
+        else:
+            shape.append(len(part))
+            inner = part
+        shape.append(len(found))
+        for one in inner:
+            walk(one)
+
+    walk(record)
+    return found, shape
+
+
 def changed(record: Any, new: Mapping[str, Any], path: str = "") -> Any:
     """A record with the numbers at some paths exchanged."""
     if is_dataclass(record) and not isinstance(record, type):
@@ -59,15 +96,17 @@ def changed(record: Any, new: Mapping[str, Any], path: str = "") -> Any:
 def varying(linkages: Sequence[Linkage]) -> dict[str, Real]:
     """Numbers that are not the same in all linkages, (variants, 1), by path. Raises NotAlikeError."""
     first = dict(numbers(linkages[0]))
-    columns: dict[str, list[Any]] = {path: [value] for path, value in first.items()}
+    rows, shape = [list(first.values())], _leaves(linkages[0])[1]
     for linkage in linkages[1:]:
-        here = dict(numbers(linkage))
-        if here.keys() != first.keys():
-            raise NotAlikeError(next(iter(here.keys() ^ first.keys())))
-        for path, value in here.items():
-            columns[path].append(value)
+        row, own = _leaves(linkage)
+        if own != shape:  # their mappings may be in another order
+            here = dict(numbers(linkage))
+            if here.keys() != first.keys():
+                raise NotAlikeError(next(iter(here.keys() ^ first.keys())))
+            row = [here[path] for path in first]
+        rows.append(row)
     found = {}
-    for path, values in columns.items():
+    for path, values in zip(first, zip(*rows, strict=True), strict=True):
         if any(value != values[0] for value in values):
             if not all(isinstance(value, (int, float, complex)) and not isinstance(value, bool) for value in values):
                 raise NotAlikeError(path)

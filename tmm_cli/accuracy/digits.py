@@ -206,29 +206,33 @@ def _judge(
     start = of(base)
     exactly = start if wide is base else {} if wide is None else of(wide)
 
-    def slope(linkage: Linkage, q: Real, by: float) -> Cells:
-        moved = of(at(base, linkage, q, first))
+    nothing = np.zeros(len(chosen))
+    turns_round, there = (np.array([[told(key)] for key in values]) for told in (turning, start.__contains__))
+
+    def stacked(cells: Cells) -> Real:
+        return np.stack([cells.get(key, nothing) for key in values])
+
+    rows = stacked(start)
+
+    def slope(linkage: Linkage, q: Real, by: float) -> Real:
+        """How fast every value changes, (values, chosen)."""
+        moved = stacked(of(at(base, linkage, q, first)))
         with np.errstate(invalid="ignore"):
-            return {key: _gap(moved.get(key, nothing), value, turning(key)) / by for key, value in start.items()}
+            away = np.where(turns_round, _gap(moved, rows, True), _gap(moved, rows, False))
+            return np.where(there, away / by, 0.0).astype(float)
 
     step = _step(base, near)
-    nothing = np.zeros(len(chosen))
-    response = {key: np.zeros(len(chosen)) for key in values}
-    share, paper = ({key: np.zeros(len(chosen)) for key in values} for _ in range(2))
+    response, share, paper = np.zeros((3, len(values), len(chosen)))
     data = lengths(results.linkage)
     size = max((abs(length.value) for length in data), default=1.0)
     for length in (*data, *(angles(results.linkage) if near else ())):
         turns = not isinstance(length.along, complex)
         by = base.motion.q.dtype.type(step * (1.0 if turns else max(abs(length.value), _size(data, length.link))))
         slopes = slope(changed(base.linkage, length, by), base.motion.q, float(by))
-        for key in values:
-            if key in slopes:
-                here = slopes[key].astype(float)
-                response[key] += here * abs(length.value)
-                if turns:
-                    continue
-                share[key] += here * (SHARE * abs(length.value))
-                paper[key] += here * (PAPER * found.mu)
+        response += slopes * abs(length.value)
+        if not turns:
+            share += slopes * (SHARE * abs(length.value))
+            paper += np.where(there, slopes * (PAPER * found.mu), 0.0)
     spread, largest = (dict.fromkeys(keys, nothing) for keys in (values, map(kind, values)))
     for key, value in start.items():
         largest[kind(key)] = np.fmax(largest[kind(key)], np.abs(value).astype(float))
@@ -238,10 +242,10 @@ def _judge(
             spread[key] = np.maximum(spread[key], _gap(moved.get(key, nothing), value, turning(key)))
     reach = 1.0 if results.linkage.driver.kind == "turn" else size
     by_place = slope(base.linkage, base.motion.q + base.motion.q.dtype.type(step * reach), step * reach)
-    for key, value in values.items():
+    for row, (key, value) in enumerate(values.items()):
         y = np.abs(np.asarray(value[..., chosen], float))
-        by_q = by_place.get(key, nothing).astype(float)
-        kappa = response[key] + by_q * (np.abs(motion.q[chosen].astype(float)) + reach * near)
+        by_q = by_place[row]
+        kappa = response[row] + by_q * (np.abs(motion.q[chosen].astype(float)) + reach * near)
         if wider:
             fine = float(np.finfo(np.longdouble).eps) / 2
             away = _gap(np.asarray(value[chosen]), exactly.get(key, nothing), turning(key)).astype(float)
@@ -252,8 +256,8 @@ def _judge(
         with np.errstate(invalid="ignore"):
             bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         found.bound[key][chosen] = np.where(np.isfinite(y), bound, np.nan)
-        found.lengths[key][chosen] = share[key]
-        found.paper[key][chosen] = paper[key]
+        found.lengths[key][chosen] = share[row]
+        found.paper[key][chosen] = paper[row]
 
 
 def _gap(one: Real, other: Real, turns: bool) -> Real:

@@ -16,7 +16,7 @@ import numpy as np
 from tmm_cli.groups.crossing import EDGE, Crossings, Node, alive, predicted
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import CONVERGED, NEAR, Newton
-from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate
+from tmm_cli.groups.state import Accel, Drives, Pose, Rate
 from tmm_cli.groups.track import State, Track
 from tmm_cli.vectors import Real
 
@@ -78,11 +78,9 @@ class Walker:
             matrix = kernel.matrix(everything)
             det = np.ones(1) if kernel.passive else np.linalg.det(matrix)
             side = np.sign(det)
-            one = np.ones(1)
-            at = Placement(tuple(own[n] for n in kernel.group.links), side, one, -one, 0 * one)
-            rates = kernel.rates(at, before.poses, before.rates, before.drives)
+            rates = kernel.rates_at(everything, matrix, side, before.rates, before.drives)
             both = {**before.rates, **dict(zip(kernel.group.links, rates, strict=True))}
-            accels = kernel.accelerations(at, before.poses, both, before.accels, before.drives)
+            accels = kernel.accelerations_at(everything, matrix, side, both, before.accels, before.drives)
         first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
         second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
         return Node(q, state, first, second, float(det[0]), float(side[0])), self.apart(state, start)
@@ -111,16 +109,17 @@ class Walker:
     def leg(self, start: Node, end: float) -> tuple[list[Node], Literal["reached", "limit", "lost", "edge"]]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node. edge: `end` is dead."""
         nodes: list[Node] = []
-        here, failures = start, 0
+        here, failures, largest = start, 0, 0.0
         way = end - start.q
         least = LEAST_STEP * abs(way)
         step = FIRST_STEP * way / np.pi
         while here.q != end:
+            largest = max(largest, abs(here.det))
             step = float(np.sign(way)) * min(abs(step), LARGEST_STEP * abs(way) / np.pi)
             q = end if abs(end - here.q) <= abs(step) * (1 + 1e-9) else here.q + step
             found = self.node(q, predicted(here, q))
             close = found is not None and found[1] < CORRECTION
-            dead = self.crossings.between([start, *nodes], found[0]) if found is not None and close else None
+            dead = self.crossings.between([start, *nodes], found[0], largest) if found is not None and close else None
             if dead is not None and abs(dead.q - end) < EDGE * self.scale:
                 return nodes, "edge"
             if dead is not None and (dead.q - end) * way < 0:

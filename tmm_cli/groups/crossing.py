@@ -98,12 +98,15 @@ class Crossings:
         self.kernel, self.source, self.correct, self.scale = kernel, source, correct, scale
         self.refused: list[tuple[float, float]] = []
 
-    def between(self, nodes: list[Node], beyond: Node) -> Node | None:
-        """A dead position between the last node and the next one that the group passes smoothly."""
+    def between(self, nodes: list[Node], beyond: Node, largest: float) -> Node | None:
+        """A dead position between the last node and the next one that the group passes smoothly.
+
+        largest: size of the determinant in one of the nodes.
+        """
         here = nodes[-1]
         if self.kernel.passive or here.dead:
             return None
-        if beyond.side == here.side and not self._touches(nodes, beyond):
+        if beyond.side == here.side and not self._touches(here, beyond, largest):
             return None
         middle, span = (here.q + beyond.q) / 2, abs(beyond.q - here.q)
         if any(abs(middle - q) < 2 * old and span > old / CLOSER for q, old in self.refused):
@@ -127,13 +130,12 @@ class Crossings:
         state = State(state.x.astype(complex), state.turn.astype(float))
         return replace(node, state=state, det=float(np.linalg.det(matrix.astype(float))[0]))
 
-    def _touches(self, nodes: list[Node], beyond: Node) -> bool:
+    def _touches(self, here: Node, beyond: Node, largest: float) -> bool:
         """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.
 
         From both of them it is so at twice the way that the tangent leads to.
         """
-        here = nodes[-1]
-        if max(abs(here.det), abs(beyond.det)) > SMALL * max(abs(n.det) for n in nodes):
+        if max(abs(here.det), abs(beyond.det)) > SMALL * largest:
             return False
         way, middle = beyond.q - here.q, (here.q + beyond.q) / 2
         with np.errstate(all="ignore"):

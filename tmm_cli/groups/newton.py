@@ -84,6 +84,7 @@ class Newton(Kernel):
     def _scale(self) -> Real:
         return _stacked([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
+    @cached_property
     def _columns(self) -> Real:
         return _stacked([self.size, self.size, 1.0] * len(self.group.links))
 
@@ -101,47 +102,54 @@ class Newton(Kernel):
                 if link in self.order:
                     at = 3 * self.order[link]
                     for k, (c, m) in enumerate(lines):
-                        matrix[..., row + k, at] = c.real
-                        matrix[..., row + k, at + 1] = c.imag
+                        constant = isinstance(c, complex)  # along an axis, or nothing
+                        if not constant or c.real:
+                            matrix[..., row + k, at] = c.real
+                        if not constant or c.imag:
+                            matrix[..., row + k, at + 1] = c.imag
                         matrix[..., row + k, at + 2] = m
             row += len(constraint.lengths)
-        matrix *= self._scale.astype(kind)[..., :, None] * self._columns()[..., None, :]  # rounded as the matrix is
+        matrix *= self._scale.astype(kind)[..., :, None] * self._columns[..., None, :]  # rounded as the matrix is
         return matrix
 
     def matrix(self, poses: Mapping[str, Pose]) -> Real:
         """The Jacobian without dimension, (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
-        return self._fill([c.grips(poses) for c in self.constraints], np.shape(x), x.real.dtype.type)
+        return self._fill(self._grips(poses), np.shape(x), x.real.dtype.type)
+
+    def _grips(self, poses: Mapping[str, Pose]) -> list[Mapping[str, Sequence[Grip]]]:
+        return [c.grips(poses) for c in self.constraints]
 
     def gaps(self, poses: Mapping[str, Pose], drives: Drives) -> Real:
         """What is short of closing, without dimension, (..., rows)."""
-        rows = np.broadcast_arrays(*[gap for c in self.constraints for gap in c.gaps(poses, drives)])
-        return np.stack(rows, axis=-1) * self._scale
+        return _stacked([gap for c in self.constraints for gap in c.gaps(poses, drives)]) * self._scale
 
     def known(self, poses: Mapping[str, Pose], motion: Mapping[str, tuple[object, Real]]) -> Real:
         """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
         shape = np.shape(poses[self.group.links[0]].x)
         rows: list[Real] = []
+        nothing = np.zeros(shape)
         for constraint in self.constraints:
-            total: list[Real] = [np.zeros(shape) for _ in constraint.lengths]
-            for link, lines in constraint.grips(poses).items():
+            total: list[Real] = [nothing] * len(constraint.lengths)
+            outer = [link for link in constraint.links if link not in self.order]
+            grips = constraint.grips(poses) if outer else {}
+            for link, lines in grips.items():
                 if link not in self.order:
                     v, w = motion[link]
                     total = [t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
                              for t, (c, m) in zip(total, lines, strict=True)]  # fmt: skip
             rows += total
-        return np.stack(rows, axis=-1) * self._scale
+        return _stacked(rows) * self._scale
 
     def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
         """Derivative of each row that the drivers ask for, without dimension."""
-        rows = [np.broadcast_to(value, shape) for c in self.constraints for value in c.asked(drives, order)]
-        return np.stack(rows, axis=-1) * self._scale
+        rows = [value for c in self.constraints for value in c.asked(drives, order)]
+        return _stacked([np.zeros(shape), *rows])[..., 1:] * self._scale
 
     def poses_of(self, state: State) -> dict[str, Pose]:
         """A state as poses."""
-        return {
-            link: Pose(state.x[..., k], unit(state.turn[..., k]), state.turn[..., k]) for link, k in self.order.items()
-        }
+        x, z, turn = state.x, unit(state.turn), state.turn
+        return {link: Pose(x[..., k], z[..., k], turn[..., k]) for link, k in self.order.items()}
 
     def close(
         self, start: State, poses: Mapping[str, Pose], drives: Drives, rounds: int = ROUNDS
@@ -201,9 +209,15 @@ class Newton(Kernel):
         self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
     ) -> tuple[Rate, ...]:
         everything = self._all_poses(at, poses)
+        return self.rates_at(everything, self.matrix(everything), at.det, rates, drives)
+
+    def rates_at(
+        self, everything: Mapping[str, Pose], matrix: Real, det: Real, rates: Mapping[str, Rate], drives: Drives
+    ) -> tuple[Rate, ...]:
+        """Velocities of its links from the poses of all links and the matrix there; nan where det is."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
-        found = solve(self.matrix(everything), self.asked(drives, 1, np.shape(at.det)) - known)
-        found = np.where(np.isfinite(at.det)[..., None], found * self._columns(), np.nan)
+        found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
+        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
         return tuple(
             Rate(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
             for k in range(len(self.group.links))
@@ -218,11 +232,22 @@ class Newton(Kernel):
         drives: Drives,
     ) -> tuple[Accel, ...]:
         everything = self._all_poses(at, poses)
+        return self.accelerations_at(everything, self.matrix(everything), at.det, rates, accels, drives)
+
+    def accelerations_at(
+        self,
+        everything: Mapping[str, Pose],
+        matrix: Real,
+        det: Real,
+        rates: Mapping[str, Rate],
+        accels: Mapping[str, Accel],
+        drives: Drives,
+    ) -> tuple[Accel, ...]:
+        """Accelerations of its links, likewise; rates holds those of its own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
-        rows = np.broadcast_arrays(*[bend for c in self.constraints for bend in c.bends(everything, rates)])
-        bend = np.stack(rows, axis=-1) * self._scale
-        found = solve(self.matrix(everything), self.asked(drives, 2, np.shape(at.det)) - known - bend)
-        found = np.where(np.isfinite(at.det)[..., None], found * self._columns(), np.nan)
+        bend = _stacked([bend for c in self.constraints for bend in c.bends(everything, rates)]) * self._scale
+        found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
+        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
         return tuple(
             Accel(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
             for k in range(len(self.group.links))
@@ -256,7 +281,7 @@ class Newton(Kernel):
 
         def under(wrenches: Sequence[Wrench]) -> Real:
             borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
-            found = solve(turned, -np.stack(np.broadcast_arrays(*borne), axis=-1) * self._columns())
+            found = solve(turned, -_stacked(borne) * self._columns)
             return np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
 
         found = under(on)
@@ -281,7 +306,13 @@ class Newton(Kernel):
 
 def _stacked(values: Sequence[Any]) -> Real:
     """Numbers, or arrays of them, on a last axis."""
-    return np.stack(np.broadcast_arrays(*values), axis=-1)
+    values = [np.asarray(value) for value in values]
+    shapes = {value.shape for value in values}
+    shape = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+    found = np.empty((*shape, len(values)), dtype=np.result_type(*values))
+    for k, value in enumerate(values):
+        found[..., k] = value
+    return found
 
 
 def _nothing(shape: tuple[int, ...]) -> Wrench:

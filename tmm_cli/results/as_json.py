@@ -5,7 +5,7 @@ Arrays have one entry a position, null where a position cannot be reached or is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
@@ -64,14 +64,16 @@ def sections(results: Results | ChainResults, digits: Trusted | None = None) -> 
     yield "warnings", list(warnings(results))
 
 
-def numbers(results: Results) -> Iterator[tuple[str, Any]]:
-    """What was computed, part by part, as arrays."""
+def numbers(results: Results, parts: Collection[str] | None = None) -> Iterator[tuple[str, Any]]:
+    """What was computed, part by part, as arrays; with `parts` these of the large ones alone."""
     if results.motion is not None:
         yield from _range(results).items()
         yield "positions", _positions(results.motion, results)
-        yield "kinematics", _kinematics(results.motion, results)
+        if parts is None or "kinematics" in parts:
+            yield "kinematics", _kinematics(results.motion, results)
     if results.reactions is not None and results.lever is not None:
-        yield "forces", _forces(results.reactions, results)
+        if parts is None or "forces" in parts:
+            yield "forces", _forces(results.reactions, results)
         yield "lever", {
             "balancing": results.lever.balancing,
             "difference": results.lever.difference,

@@ -7,8 +7,9 @@ lengths too, and compared number by number; so no quantity can be forgotten, and
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -29,6 +30,7 @@ from tmm_cli.vectors import Real
 from tmm_cli.words import say
 
 COMPUTED = ("motion", "reactions", "lever", "energy")  # parts whose tables hold computed numbers
+COMPUTED_REPORTS = tuple(name for name, part, _ in REPORTS if part in COMPUTED)
 DENSE = 361  # places of a trajectory
 LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
 BETWEEN = 4.0  # times the largest bound of the judged positions about: what holds for those between them
@@ -136,7 +138,7 @@ def trusted(results: Results) -> Trusted:
     assert results.motion is not None
     with np.errstate(all="ignore"):
         mu = _mu(results)
-        found = searched(results, _single, mu)
+        found = searched(results, _reader(results), mu)
         blur = found.blur + 3 * U * np.abs(results.motion.q)
         digits = judged(results, cells, mu=mu, blur=blur, turning=_turning)
     for key, bound in digits.bound.items():
@@ -167,25 +169,34 @@ def cells(results: Results) -> Mapping[Hashable, Real]:
     return found
 
 
-def _single(results: Results) -> Mapping[Hashable, Real]:
+def _reader(results: Results) -> Callable[[Results], Mapping[Hashable, Real]]:
+    """What reads the numbers of searches out of results like these; reports and parts that hold none are left out."""
+    count = len(results.numbers)
+    reports = [name for name in COMPUTED_REPORTS
+               if any(_keys(table, count) is None for table in computed_tables(results, (name,)))]  # fmt: skip
+    parts = {path[0] for path, value in _leaves(dict(numbers(results)), ()) if isinstance(value, float)}
+    return partial(_single, reports=reports, parts=parts)
+
+
+def _single(results: Results, reports: Collection[str], parts: Collection[str]) -> Mapping[Hashable, Real]:
     """Every number that belongs to no position: those of searches."""
     found: dict[Hashable, Real] = {}
-    for table in computed_tables(results):
+    for table in computed_tables(results, reports):
         if _keys(table, len(results.numbers)) is None:
             for column in table.columns:
                 if column.dimension is not None:
                     found[False, table.name, column.header] = _array(column)
-    for path, value in _leaves(dict(numbers(results)), ()):
+    for path, value in _leaves(dict(numbers(results, parts)), ()):
         if isinstance(value, float):
             found[(False, *path)] = np.array([value])
     return found
 
 
-def computed_tables(results: Results) -> Iterator[Table]:
-    """Tables with computed numbers."""
+def computed_tables(results: Results, reports: Collection[str] = COMPUTED_REPORTS) -> Iterator[Table]:
+    """Tables with computed numbers, of these reports."""
     for name, part, _ in REPORTS:
         wanted = name == "kinematics" or not results.of  # else the rest is not there
-        if part in COMPUTED and wanted and getattr(results, part) is not None:
+        if name in reports and wanted and getattr(results, part) is not None:
             yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
 
 

@@ -30,7 +30,7 @@ from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.varied import Varied
 from tmm_cli.variants.sketch import sketch_of
 from tmm_cli.variants.start import start_of
-from tmm_cli.variants.strokes import find_strokes, spread
+from tmm_cli.variants.strokes import Elements, find_strokes, spread
 from tmm_cli.variants.walk import Step, Walked, kernels_of, walk
 from tmm_cli.variants.way import Make, Places, Variant, Way
 from tmm_cli.vectors import Real, Vector
@@ -186,12 +186,12 @@ class Together:
         return walk(self.linkage, self.first, columns, self.kernels, self.home, road) if self.walks else None
 
     def _found(self, columns: Real, places: Places, walked: Walked | None) -> dict[str, Real]:
-        varied = self.varied(columns)
+        varied, elements = self.varied(columns), self._elements(columns, walked)
         way, strokes, working = Way.of(varied, len(columns), self.turns), None, None
         begins = self.forces and varied.accelerated and varied.begins
         if (self.by_strokes or begins) and way.closed:
             link = output_link(self.ordinary, self.structure.groups)
-            strokes = find_strokes(lambda q: self._elements(columns, q, walked), way, self.ordinary, link)
+            strokes = find_strokes(elements, way, self.ordinary, link)
             working = _first_of(strokes, len(columns))
         start = start_of(varied, working) if self.forces else None  # nothing else hangs on where its law begins
         if start is not None:
@@ -199,7 +199,7 @@ class Together:
             way = Way.of(varied, len(columns), self.turns, np.where(lost, self.ordinary.sketch.at, start))
             start = np.repeat(np.broadcast_to(start, len(columns)), places.count)
         q = way.at(places)
-        flat, kernels = self._elements(columns, q, walked)
+        flat, kernels = elements(q)
         with np.errstate(all="ignore"):
             found = solved(
                 flat, self.structure.again(flat), kernels, q.ravel(), self.asked, self.forces,
@@ -207,12 +207,24 @@ class Together:
             )  # fmt: skip
         return {name: np.broadcast_to(value, q.size).reshape(q.shape) for name, value in found.items()}
 
-    def _elements(self, columns: Real, q: Real, walked: Walked | None) -> tuple[Linkage, tuple[Kernel, ...]]:
-        """The linkage and its groups with an element for each of the places q (variants, places)."""
-        flat = self.linkage(np.repeat(columns, q.shape[1], axis=0))
-        kernels = kernels_of(flat, self.kernels)
-        if walked is None:
-            return flat, kernels
+    def _elements(self, columns: Real, walked: Walked | None) -> Elements:
+        """The linkage and its groups with an element for each of some places q (variants, places).
+
+        For another look at as many places the linkage is not made anew.
+        """
+        made: dict[int, tuple[Linkage, tuple[Kernel, ...]]] = {}
+
+        def elements(q: Real) -> tuple[Linkage, tuple[Kernel, ...]]:
+            if q.shape[1] not in made:
+                flat = self.linkage(np.repeat(columns, q.shape[1], axis=0))
+                made[q.shape[1]] = flat, kernels_of(flat, self.kernels)
+            flat, kernels = made[q.shape[1]]
+            return flat, kernels if walked is None else self._from(walked, kernels, q)
+
+        return elements
+
+    def _from(self, walked: Walked, kernels: tuple[Kernel, ...], q: Real) -> tuple[Kernel, ...]:
+        """The groups, each starting from the nearest of the places where it was met on its way."""
         x, turn, lost = walked.near(q)
         share = np.mean(walked.lost, axis=1, keepdims=True)
         gap = np.where(lost, share, -1.0).ravel()
@@ -230,7 +242,7 @@ class Together:
                 found.append(replace(own, winding=Followed({n: turn[n].ravel() for n in links})))
             else:
                 found.append(own)
-        return flat, tuple(found)
+        return tuple(found)
 
 
 def _first_of(strokes: Strokes | None, variants: int) -> Real:
