@@ -15,7 +15,7 @@ import numpy as np
 from tmm_cli.synthesis import guidance, loop
 from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
-from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
+from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_point, refuse_turn
 from tmm_cli.synthesis.nearest_positions import told
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
@@ -90,9 +90,10 @@ def _solves(asked: Asked) -> bool:
 
 def _solved(asked: Asked) -> Outcome:
     one, other = both(asked)
-    for key, names, gap in (("C", "B and C", one.pin - other.pin), ("D", "A and D", one.pivot - other.pivot)):
+    ends = [("B and C", one.pin - other.pin), ("A and D", one.pivot - other.pivot)]
+    for names, gap in ends[:: -1 if any(side.pivot is not None for side in asked.sides.values()) else 1]:
         if not abs(gap) > SAME * asked.size:
-            raise Infeasible(key, f"{W}.one_point", f"{W}.two_points", {"names": (names, "word")})
+            refuse_point(asked, one, other, names)
     mark = marks(asked.poses, one, other)
     defect = DEFECTS[int(mark.defect)]
     if defect and not asked.keep:

@@ -18,6 +18,7 @@ from tmm_cli.synthesis.functions import ANGLES
 from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.nearest_pairs import refuse_found, refuse_inputs
+from tmm_cli.synthesis.pair_changes import fit, length
 from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, real, through
 from tmm_cli.synthesis.parallelogram import parallelogram
 from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
@@ -30,6 +31,9 @@ PARAMETERS: Final = {
     "phi0": "angle", "psi0": "angle", "phi1": "angle", "psi1": "angle",
 }  # fmt: skip
 W: Final = "synthesis_four_bar_by_angles"
+ANY: Final = 0.1  # m: a length, where any will do
+STEP: Final = np.radians(10)  # of the input, from a neighbour that it must leave, or less than a turn
+HALVINGS: Final = 30
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
@@ -37,19 +41,74 @@ def refuse(asked: Asked) -> None:
     """Raises Infeasible for lengths that are none and inputs that turn back, or round."""
     for name, value in asked.lengths.items():
         if not value > 0:
-            words = "at_least" if len(asked.lengths) == 1 else "more_than_zero"
-            raise Infeasible(name, f"{W}.positive", f"{W}.{words}", {"least": (SMALLEST, "length")})
+            _refuse_length(asked, name)
     steps = np.diff(asked.phi)
     if not asked.function and not (np.all(steps > 0) or np.all(steps < 0)):
         sense = np.sign(steps[0]) or 1.0
         bad = int(np.argmax(steps * sense <= 0)) + 1
         error = Infeasible(("pairs", bad), f"{W}.order", f"{W}.in_order", {
-            "this": (str(bad + 1), "word"), "last": (str(bad), "word"), "phi": (asked.phi[bad - 1], "angle"),
+            "this": (str(bad + 1), "word"), "last": (str(bad), "word"),
         })  # fmt: skip
-        refuse_inputs(asked, (bad, bad - 1), error)
+        _refuse_inputs(asked, (bad, bad - 1), error)
     if abs(asked.span[1] - asked.span[0]) >= 2 * np.pi:
         error = Infeasible("input" if asked.function else "pairs", f"{W}.turn", f"{W}.one_turn")
-        refuse_inputs(asked, (1, 0) if asked.function else (len(asked.phi) - 1, 0), error)
+        _refuse_inputs(asked, (1, 0) if asked.function else (len(asked.phi) - 1, 0), error)
+
+
+def _refuse_length(asked: Asked, name: str) -> None:
+    """A length that is none: with two of them the least with which a sound four-bar passes, and that of the best."""
+    rest = {key: value for key, value in asked.lengths.items() if key != name}
+    if not all(value > 0 for value in rest.values()):
+        raise Infeasible(name, f"{W}.positive", f"{W}.any_length", {"one": (ANY, "length")})
+    if not rest:
+        raise Infeasible(name, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
+    best = float(solve(replace(asked, lengths=rest)).parameters[name].value)
+    change = length(replace(asked, lengths=rest | {name: best}))
+    moves = -change.step * np.arange(change.count + 1)
+    good = fit(change, moves).sensible
+    inside = float(moves[np.flatnonzero(good)[-1]]) if np.any(good) else 0.0
+    outside = inside - change.step
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if fit(change, [middle], closely=True).sensible[0] else (inside, middle)
+    values = {"least": (float(change.value(inside + SMALLEST)), "length", "least"), "best": (best, "length")}
+    raise Infeasible(name, f"{W}.positive", f"{W}.length_least", values)
+
+
+def _refuse_inputs(asked: Asked, which: tuple[int, int], error: Infeasible) -> None:
+    """Raises Infeasible with an input angle that mends it; where no one alone does, with one that leaves it less to
+    mend, and what else must change then."""
+    try:
+        refuse_inputs(asked, which, error)
+    except Infeasible as told:
+        if told is not error:
+            raise
+    ends = asked.function.phi if asked.function else asked.phi
+    bad, sense = which[0], float(np.sign(ends[1] - ends[0]) or 1.0)
+    near = float(ends[bad - 1])
+    if error.path[-1] in ("pairs", "input"):  # less than a turn from the first to the last
+        bad, at = len(ends) - 1, float(ends[0]) + sense * (2 * np.pi - STEP)
+    elif bad + 1 < len(ends) and sense * (ends[bad + 1] - near) > 0:
+        at = (near + float(ends[bad + 1])) / 2
+    else:
+        at = near + sense * STEP
+    error.nearest, error.values = f"{W}.input_alone", error.values | {
+        "which": (str(bad + 1), "word"), "phi": (at, "angle"),
+    }  # fmt: skip
+    try:
+        solve(_with_input(asked, bad, at))
+    except Infeasible as then:
+        error.then = then
+    raise error
+
+
+def _with_input(asked: Asked, which: int, at: float) -> Asked:
+    """The same with another input angle (rad), of a function with another end of the input."""
+    if asked.function:
+        function = replace(asked.function, phi=(asked.function.phi[0], at))
+        phi, psi = function.precision(len(asked.phi))
+        return replace(asked, function=function, phi=tuple(phi), psi=tuple(psi))
+    return replace(asked, phi=(*asked.phi[:which], at, *asked.phi[which + 1 :]))
 
 
 def solve(asked: Asked) -> Outcome:
