@@ -317,7 +317,7 @@ REFUSED = {
         "task)\n  found:   a list of 4\n  allowed: other positions",
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
-        "  allowed: different positions",
+        "  allowed: any other position, as one turned by 20 deg",
 }  # fmt: skip
 
 

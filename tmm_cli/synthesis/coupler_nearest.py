@@ -32,6 +32,7 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 GRID: Final = np.radians(0.1)  # of turns that are tried
 COARSE: Final = np.radians(0.5)  # the same, where the other link is free
 INWARDS: Final = 1e-6  # rad, or a share of a length, from where there is a sound four-bar first
+ROUNDED: Final = 1e-5  # what six digits may add to a length
 SHARE: Final = 0.02  # by which a length is changed, and
 TIMES: Final = 20.0  # how far
 SWAPPED: Final = ("sides", "length", "point", "turn", "turns", "turns_no_box")  # words that name DC as driver too
@@ -212,4 +213,5 @@ def _length(asked: Asked, name: str, sign: float, share: float, sound: Callable[
         middle = (inside + outside) / 2
         inside, outside = (middle, outside) if good(middle) else (inside, middle)
     value = float(side.length) * float(np.exp(sign * (inside + INWARDS)))
-    return value, "length", "least" if sign > 0 else "most"
+    whole = good(inside + INWARDS + ROUNDED)
+    return value, "length", "exact" if not whole else "least" if sign > 0 else "most"

@@ -85,7 +85,10 @@ def parted(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Shown
         near = _nearest(asked, name, good)
         if near is not None:
             return "elsewhere_at", near[1] | {"point": (_letter(asked.sides[name], name), "word")}
-    return "other_points", {}
+    side = asked.sides["DC"]
+    place = complex(side.pin if side.pin is not None else side.pivot) + 2 * SHORTEST * asked.size
+    values: dict[str, Shown] = {"x": (place.real, "length"), "y": (place.imag, "length")}
+    return "elsewhere_at", values | {"point": (_letter(side, "DC"), "word")}
 
 
 def _moves(asked: Asked, side: Side, points: Any) -> Any:

@@ -226,7 +226,7 @@ def refuse(asked: Asked) -> None:
     if k is not None and not k >= 1:
         _refuse_small(asked)
     if nu is not None and not nu >= 0:
-        raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least")
+        raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least", {"nu": (0.0, "number")})
     if length is not None and not length > 1:
         values: dict[str, Shown] = {"ratio": (1 + (nu or 0.0), "number", "above")}
         raise Infeasible("ratio", f"{W}.ratio_below", f"{W}.ratio_least", values)

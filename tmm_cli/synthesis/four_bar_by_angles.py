@@ -18,10 +18,10 @@ from tmm_cli.synthesis.functions import ANGLES
 from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.nearest_pairs import refuse_found, refuse_inputs
-from tmm_cli.synthesis.pair_changes import fit, length
+from tmm_cli.synthesis.pair_changes import LINKS, fit, length
 from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, real, through
 from tmm_cli.synthesis.parallelogram import parallelogram
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Shown, Value
 from tmm_cli.synthesis.structural_error import errors, extremes
 from tmm_cli.vectors import settled
 
@@ -71,8 +71,13 @@ def _refuse_length(asked: Asked, name: str) -> None:
     for _ in range(HALVINGS):
         middle = (inside + outside) / 2
         inside, outside = (middle, outside) if fit(change, [middle], closely=True).sensible[0] else (inside, middle)
-    values = {"least": (float(change.value(inside + SMALLEST)), "length", "least"), "best": (best, "length")}
-    raise Infeasible(name, f"{W}.positive", f"{W}.length_least", values)
+    values: dict[str, Shown] = {
+        "least": (float(change.value(inside + SMALLEST)), "length", "least"),
+        "best": (best, "length"),
+    }
+    long = "_long" if fit(change, [inside - SMALLEST], closely=True).good[0] else ""
+    values["links"] = (f"{LINKS:g}", "word")
+    raise Infeasible(name, f"{W}.positive", f"{W}.length_least{long}", values)
 
 
 def _refuse_inputs(asked: Asked, which: tuple[int, int], error: Infeasible) -> None:
@@ -116,13 +121,16 @@ def solve(asked: Asked) -> Outcome:
     refuse(asked)
     found = through(asked)
     at = chosen(asked, found)
-    if at < 0:
+    if at < 0 or not found:
         refuse_found(replace(asked, keep=False), found)
+    fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
     if at >= len(found):
-        raise Infeasible("choose", f"{W}.number", f"{W}.numbers", {"count": (str(len(found)), "word")})
+        words, count = "numbers" if asked.keep else "numbers_fair" if fair else "numbers_keep", str(len(found))
+        raise Infeasible(
+            "choose", f"{W}.number", f"{W}.{words}", {"count": (count, "word"), "numbers": (fair, "word")}, whole=True
+        )
     one, mark = found[at], quality(found[at], asked)
     if mark.defect and not asked.keep:
-        fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
         words = "another" if fair else "keep"
         raise Infeasible("choose", f"{W}.its_{mark.defect}", f"{W}.{words}", {"numbers": (fair, "word")})
     name, size = next(iter(asked.lengths)), _size(asked, one)

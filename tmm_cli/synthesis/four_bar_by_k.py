@@ -182,10 +182,11 @@ def _not_there(asked: Asked) -> None:
     if asked.k == 1:
         raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_line", _within(asked, l3))
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
-    values = _within(asked, *ends)
+    values = _within(asked, *ends) | {"l3": (l3, "length")}
     inner = min(ends) < l3 < max(ends)  # there A would be C1
-    if inner:
-        values |= {"before": _within(asked, min(ends), l3)["high"], "after": _within(asked, l3, max(ends))["low"]}
+    before, after = _within(asked, min(ends), l3)["high"], _within(asked, l3, max(ends))["low"]
+    if inner and before[0] < asked.l4 < after[0]:
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_beside", {"before": before, "after": after})
     raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
 
 
@@ -208,6 +209,8 @@ def refuse(asked: Asked) -> None:
         ends: dict[str, Shown] = {}
         if asked.choose != "best" and (psi2 := nearest_end(_plain(asked), ranges, _chooses)):
             raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_{psi2[2]}", {"psi2": psi2})
+        if asked.choose != "best" or asked.k == 1:  # more than the swing must change
+            raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_as", {"psi2": (sum(ranges[0]) / 2, "angle")})
         for n, (near, far) in enumerate(ranges):
             sides = ("least", "most") if near < far else ("most", "least")
             ends |= {f"near{n}": (near, "angle", sides[0]), f"far{n}": (far, "angle", sides[1])}
@@ -243,12 +246,12 @@ def _refuse_sense(asked: Asked, theta: float, half: float) -> None:
     way, most, other = 1 if asked.psi2 > asked.psi1 else -1, np.pi / 2 - half - ARC, np.pi / 2 + half - ARC
     if asked.sense != -way or theta <= most:
         return
-    values: dict[str, Shown] = {
-        "other": (float(k_of(other)), "number", "most"), "turn": ("cw" if asked.sense > 0 else "ccw", "word"),
-    }  # fmt: skip
+    values: dict[str, Shown] = {"other": (float(k_of(other)), "number", "most")}
     turned = _chooses(replace(asked, sense=-asked.sense))
     if (k := _most_k(asked, float(k_of(most)) if most > 0 else 1.0)) is not None:
         values["k"] = k
+    if turned or not k:
+        values["turn"] = ("cw" if asked.sense > 0 else "ccw", "word")
     words = "sense_most" if turned and k else "k_most_alone" if k else "sense_both" if theta > other else "sense_other"
     raise Infeasible("turns", f"{W}.sense", f"{W}.{words}", values)
 

@@ -161,7 +161,13 @@ def _longer(asked: Asked, error: Infeasible) -> Infeasible:
         if soluble(with_length(share)):
             found = share if n == 0 else edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
             error.values["length"] = (least * float(np.exp(found + INWARDS)), "length", "least" if n else "above")
-            break
+            return error
+    try:
+        for other in ("AB", "DC"):
+            dyad(longer := with_length(2 * ROUNDED), other)
+    except Infeasible as then:
+        if then.nearest == error.nearest and then.path != error.path:
+            error.then = _longer(longer, then)
     return error
 
 

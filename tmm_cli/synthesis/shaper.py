@@ -86,6 +86,7 @@ def refuse(asked: Asked) -> None:
         _refuse_small(asked)
     half = float(theta_of(asked.k)) / 2
     if not np.pi - 2 * half > slotted_lever.STRAIGHT:
+        refuse(replace(asked, k=float(k_of(SHORT))))  # what no k would mend is told first
         raise Infeasible("k", f"{W}.straight", f"{W}.k_most", {"k": (_largest_k(asked), "number", "below")})
     most, share = 1 / (1 + np.sin(half)), np.sin(half / 2) ** 2 / np.cos(half)
     if not asked.stroke > 0:
@@ -97,7 +98,10 @@ def refuse(asked: Asked) -> None:
         raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.{words}", values)
     f = find(asked)
     lever = float(f.lever)
-    short: dict[str, Shown] = {"rod": (lever * share, "length", "above"), "rod_ratio": (share, "number", "above")}
+    short: dict[str, Shown] = {
+        name: (limit, kind, "above") if limit > SMALLEST else (SMALLEST, kind)
+        for name, limit, kind in (("rod", lever * share, "length"), ("rod_ratio", share, "number"))
+    }
     for name, limit in short.items():
         if getattr(asked, name) is not None and not getattr(asked, name) > 0:
             raise Infeasible(names[name], f"{W}.positive", f"{W}.rod_least", {"least": limit})

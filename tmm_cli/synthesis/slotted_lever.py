@@ -23,6 +23,7 @@ from tmm_cli.vectors import settled
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
 FAMILY: Final = 61  # lengths of OC within bounds that are listed
+ANY: Final = 0.1  # m: a distance, where any will do
 STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
 
 
@@ -118,7 +119,8 @@ def refuse(asked: Asked) -> None:
                 raise Infeasible(name, f"{W}.positive", f"{W}.{words}", values)
             raise Infeasible(name, f"{W}.positive", f"{W}.at_least", values)
     if asked.length is None and abs(asked.b2 - asked.b1) == 0:
-        way = max(SMALLEST, _shortest_lever(asked) * 2 * float(np.sin(asked.theta / 2)))  # so the stone is on CB
+        way = _shortest_lever(asked) * 2 * float(np.sin(asked.theta / 2))  # so that the stone is on CB
+        way = way if way > SMALLEST else ANY
         values = {"x": (asked.b1.real + way, "length", "least"), "y": (asked.b1.imag, "length")}
         raise Infeasible("B2", f"{W}.same", f"{W}.other_place", values)
     if asked.within is not None:

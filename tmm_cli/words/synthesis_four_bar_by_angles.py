@@ -60,6 +60,8 @@ WORDS: dict[str, str] = {
     f"{_W}.one_turn": "less than a turn from the first to the last input angle",
     f"{_W}.positive": "there is no such link",
     f"{_W}.any_length": "any length, as {one}",
+    f"{_W}.length_least_long": "{least} or more, with no link {links} times as long as another; {best} for the best "
+    "transmission",
     f"{_W}.length_least": "{least} or more; {best} for the best transmission",
     f"{_W}.at_least": "{least} or more",
     f"{_W}.none": "no four-bar passes through these pairs",
@@ -81,6 +83,8 @@ WORDS: dict[str, str] = {
     f"{_W}.keep": "defects: keep; every other solution has a defect too",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
+    f"{_W}.numbers_fair": "{numbers}; or choose: transmission",
+    f"{_W}.numbers_keep": "1 to {count} with defects: keep; every solution has a defect",
 }
 WORDS |= {f"{_W}.column_{key}": text for key, text in _COLUMNS.items()}
 _NEAREST = {

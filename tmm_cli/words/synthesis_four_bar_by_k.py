@@ -63,6 +63,7 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.k_zero": "{least} or more",
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
     "synthesis_four_bar_by_k.swing_least": "psi2 {psi2} or more",
+    "synthesis_four_bar_by_k.swing_as": "psi2 {psi2}, as one between the bounds",
     "synthesis_four_bar_by_k.swing_most": "psi2 {psi2} or less",
     "synthesis_four_bar_by_k.swing_range1": "psi2 from {near0} to {far0}",
     "synthesis_four_bar_by_k.swing_range2": "psi2 from {near0} to {far0}, or {near1} to {far1}",
@@ -96,7 +97,8 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "{low} to {high}",
     "synthesis_four_bar_by_k.l4_range_line": "{low} or more",
-    "synthesis_four_bar_by_k.l4_range_but": "{low} to {before}, or {after} to {high}",
+    "synthesis_four_bar_by_k.l4_range_but": "{low} to {high}, other than {l3}",
+    "synthesis_four_bar_by_k.l4_beside": "{before} or less, or {after} or more",
 }
 for _where in ("higher", "lower"):
     _key = f"synthesis_four_bar_by_k.level_{_where}"

@@ -22,7 +22,7 @@ from tmm_cli.words import say
 
 Parameters = dict[str, Quantity]
 SLOW = ("coupler-positions",)  # tasks whose refusals are told once: another costs too much
-TOLD = ("least", "low", "most", "high", "lever", "one")  # values of a refusal that may stand in the place of its key's
+TOLD = ("least", "low", "most", "high", "lever", "one", "turn", "near0")  # values that may stand in a key's place
 Variant = Callable[[Parameters, UnitSystem], Problem]
 
 
@@ -208,11 +208,13 @@ def _beside(
     values, key = shown(error.values, units), str(error.path[0]) if len(error.path) == 1 else ""
     listed = isinstance(getattr(block, key, None), list | tuple)
     tries: list[Any] = [values[name] for name in (key, *TOLD) if name in values and not listed]
-    if not tries and {"x", "y"} <= set(values):
+    if listed and {"x", "y"} <= set(values):
         tries = [[values["x"], values["y"]]]
+    both: tuple[str, ...] = ("psi1", "psi2")
+    several: dict[str, Any] = {name: values[name] for name in both if "turn" in values and name in values}
     then: list[tuple[Infeasible, Block]] = []
     for text in tries if key not in done and not error.whole and error.then is None else ():
-        changed = block.model_copy(update={key: text})
+        changed = block.model_copy(update=several or {key: text})
         try:
             with np.errstate(all="ignore"):
                 task(block.task).solve(reader(block.task).asked(changed, Bounded(_parts(block, raw, units)[2], units)))
@@ -226,7 +228,7 @@ def _beside(
         return ""
     other, changed = then[0]
     told, name = say(other.nearest, **shown(other.values, units)), str(other.path[0]) if other.path else ""
-    named = told.startswith(f"{name} ") or len(other.path) != 1
+    named = told.split()[0].rstrip(":") in type(block).model_fields or len(other.path) != 1
     return f"; and {told if named else f'{name}: {told}'}" + _beside(other, changed, raw, units, (*done, key))
 
 

@@ -72,7 +72,7 @@ def asked(shape: Shape, sense: Sense) -> Asked:
         if same:
             raise ProblemError(
                 "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",
-                allowed="different positions",
+                allowed="any other position, as one turned by 20 deg",
             )  # fmt: skip
     sides = {name: side for name in DYADS if (side := _side(shape, sense, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
