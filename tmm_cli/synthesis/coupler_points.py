@@ -18,8 +18,10 @@ HALVINGS: Final = 40
 ROUNDS: Final = 24  # of directions, each half as far apart as in the one before,
 FAN: Final = np.linspace(-1, 1, 9)
 INWARDS: Final = 1e-6  # of the size, from where there is a sound four-bar first
+SURELY: Final = 1e-9  # of the size: so far around what is told there is one
 ROUNDED: Final = 1e-5  # what six digits may add to a value
 GRID: Final = np.linspace(-1.4, 1.4, 15)  # over that size: points of both links that are tried, along both axes
+PLAIN: Final = np.radians(5)  # of transmission: where any place will do, one that is on no edge
 USABLE: Final = np.radians(30)  # a transmission angle that will do for them
 SENSIBLE: Final = 2.0  # the longest link of theirs, over the size
 MOVES: Final = 0.05  # over the size: so far a point must move at least that is told for a pole
@@ -61,11 +63,11 @@ def moved(asked: Asked, name: str, far: float = LONGEST) -> dict[str, Shown] | N
         rest = dyad(asked, "DC" if name == "AB" else "AB")
     except Infeasible:
         rest = None
-    fair = _with(asked, name, rest, far)
+    usable = _with(asked, name, rest, far, PLAIN if far == FAR else 0.0)
 
     def good(points: Any) -> Any:
         with np.errstate(all="ignore"):
-            return fair(points) & (_moves(asked, asked.sides[name], points) > MOVES * asked.size)
+            return usable(points) & (_moves(asked, asked.sides[name], points) > MOVES * asked.size)
 
     near = _nearest(asked, name, good)
     if near is None:
@@ -77,7 +79,7 @@ def parted(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Shown
     """Where both pins, or both pivots, are one: the nearest place of a point that makes a sound four-bar with a frame
     and a coupler of sensible length."""
     for name, rest in (("DC", one), ("AB", other)):
-        alone = _with(asked, name, rest)
+        alone = _with(asked, name, rest, least=PLAIN)
 
         def good(points: Any, name: str = name, rest: Dyads = rest, alone: Any = alone) -> Any:
             return alone(points) & fair(asked, *pair(name, _links(asked, name, points), rest))
@@ -145,7 +147,7 @@ def _letter(side: Side, name: str) -> str:
     return name[1] if side.pin is not None else name[0]
 
 
-def _with(asked: Asked, name: str, rest: Dyads | None, far: float = FAR) -> Callable[[Any], Any]:
+def _with(asked: Asked, name: str, rest: Dyads | None, far: float = FAR, least: float = 0.0) -> Callable[[Any], Any]:
     """Whether the four-bar of other places of the point (m) is sound."""
 
     def good(points: Any) -> Any:
@@ -153,7 +155,7 @@ def _with(asked: Asked, name: str, rest: Dyads | None, far: float = FAR) -> Call
         if rest is None or asked.keep:
             gaps = np.inf if rest is None else np.minimum(abs(own.pin - rest.pin), abs(own.pivot - rest.pivot))
             return exists(asked, own, far) & (gaps > SAME * asked.size)
-        return sound(asked, *pair(name, own, rest), far)
+        return sound(asked, *pair(name, own, rest), far, least)
 
     return good
 
@@ -174,18 +176,21 @@ def _nearest(asked: Asked, name: str, good: Callable[[Any], Any]) -> tuple[float
     angles = angles[here[ring]]
     reach = _drawn(good, given, angles, outer, inner)
     angle, radius = float(angles[np.argmin(reach)]), float(np.min(reach))
-    step = 2 * np.pi / ROUND
+    step, tried = 2 * np.pi / ROUND, [(float(angles[0]), float(outer)), (angle, radius)]
     for _ in range(ROUNDS):
         fan = angle + step * FAN
         fan = fan[good(given + radius * np.exp(1j * fan))]
         if len(fan):
             reach = _drawn(good, given, fan, radius, 0.0)
             angle, radius = float(fan[np.argmin(reach)]), float(np.min(reach))
+            tried.append((angle, radius))
         step /= 2
-    for inwards in INWARDS * np.array([1.0, 4.0, 16.0, 64.0]):
-        place = given + (radius + inwards * asked.size) * np.exp(1j * angle)
-        if good(place):
-            break
+    surely = SURELY * asked.size * np.array([0, 1, 1j, -1, -1j])  # the nearest may lie in a spike of no width
+    every = (
+        given + (radius + inwards * asked.size) * np.exp(1j * angle)
+        for angle, radius in tried[::-1] for inwards in INWARDS * np.array([1.0, 4.0, 16.0, 64.0])
+    )  # fmt: skip
+    place = next((place for place in every if np.all(good(place + surely))), given + outer * np.exp(1j * angles[0]))
     way = np.array([place.real - given.real, place.imag - given.imag])
     signs = np.where(way < 0, -1.0, 1.0)
     more = ROUNDED * np.array([abs(place.real), abs(place.imag)]) * signs

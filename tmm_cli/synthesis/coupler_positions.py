@@ -7,6 +7,7 @@ a pivot, or those of best transmission. Positions must be on one assembly, reach
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -26,6 +27,7 @@ PARAMETERS: Final = {
     "phi1": "angle",
 }
 W: Final = "synthesis_coupler_positions"
+ROUNDED: Final = 2e-6  # by which a length may grow when it is told
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
@@ -77,7 +79,20 @@ def solve(asked: Asked) -> Outcome:
     try:
         return _solved(asked)
     except Infeasible as error:
-        raise told(asked, error, _solves) from None
+        raise _told(asked, error) from None
+
+
+def _told(asked: Asked, error: Infeasible) -> Infeasible:
+    """The refusal with what is solved; of a link that is too short and not all that must change, with the rest too."""
+    found = told(asked, error, _solves)
+    if found.nearest == f"{W}.longer" and found.then is None:
+        name, length = found.values["name"][0], found.values["length"][0]
+        longer = replace(asked, sides={**asked.sides, name: replace(asked.sides[name], length=length * (1 + ROUNDED))})
+        try:
+            _solved(longer)
+        except Infeasible as then:
+            found.then = _told(longer, then)
+    return found
 
 
 def _solves(asked: Asked) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from tmm_cli.synthesis.coupler_dyads import (
 from tmm_cli.synthesis.coupler_points import LONGEST, both_points, moved
 from tmm_cli.synthesis.record import Infeasible, Shown
 from tmm_cli.synthesis.whole_position import whole_position
+from tmm_cli.vectors import settled
 
 FARTHEST: Final = 0.3  # change of a position: rad, or a share of the size of the task
 NEAREST: Final = 0.03  # of that: the least change that is tried first
@@ -42,17 +43,12 @@ STRIDE: Final = 6.0  # from a step towards the limit to the next
 LESS: Final = 1e-4  # a change that is less by this share is surely refused
 INWARDS: Final = 1e-6  # rad, or a share of the size, from where there is a four-bar first
 ROUNDED: Final = 1e-5  # what six digits may add to a value
-ENDS: Final = (
-    "other_positions",
-    "other_points",
-    "still_slider",
-    "wider",
-    "roomy",
-    "off_line",
-    "elsewhere",
-)  # without a value
+ENDS: Final = (  # refusals without a value
+    "other_positions", "other_points", "still_slider", "wider", "roomy", "off_line", "elsewhere",
+)  # fmt: skip
 MOVED: Final = {"off_line": LONGEST, "elsewhere": FAR}  # refusals of a point, and how far its link may reach
 LARGEST: Final = 50.0  # radius, over the size of the task, on which places are told that lie on a line
+BEYOND: Final = 1.05  # of the length at which a link only just reaches both places
 SHARE: Final = 0.02  # by which a length is changed, and
 TIMES: Final = 20.0  # how far
 PARTS: Final = {"x": 1.0, "y": 1j, "angle": 0.0}
@@ -101,6 +97,9 @@ def _accepted(asked: Asked, one: Dyads, other: Dyads) -> bool:
 
 def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> Infeasible:
     """The same refusal with the nearest box, or position, that is solved, where it is what must change."""
+    if (pole := _pole(asked)) is not None:
+        hinge = {"x": (pole.real, "length"), "y": (pole.imag, "length")}
+        return Infeasible("positions", f"{W}.one_pole", f"{W}.hinge", hinge)
     if asked.within is not None and (found := _box(asked, error, solves)) is not None:
         return found
     words = error.nearest.removeprefix(f"{W}.")
@@ -110,10 +109,6 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
         values = moved(asked, "AB" if error.path[0] in ("A", "B") else "DC", MOVED[words])
         if values is not None:
             return Infeasible(error.path, error.reason, f"{W}.{words}_at", values)
-    if words == "elsewhere":
-        pole = complex(asked.poses.on_frame(_point(asked, error))[0])
-        values = {"x": (pole.real, "length"), "y": (pole.imag, "length")}
-        return Infeasible(error.path, error.reason, f"{W}.hinge", error.values | values)
     if words not in ENDS:
         return error
     keep = "_or_keep" if error.reason.startswith(f"{W}.has_") else ""
@@ -142,10 +137,15 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
     return Infeasible(error.path, error.reason, f"{W}.{words}_far{keep}", error.values | far)
 
 
-def _point(asked: Asked, error: Infeasible) -> Any:
-    """The coupler's point that does not move: a pin, or where a pivot is seen from it."""
-    side = asked.sides["AB" if error.path[0] in ("A", "B") else "DC"]
-    return side.pin if side.pin is not None else asked.poses.in_plane(side.pivot)[0]
+def _pole(asked: Asked) -> complex | None:
+    """The point (m) about which three or four positions are turns of the coupler; None: there is none."""
+    turns = np.exp(1j * (np.asarray(asked.angles[1:], float) - float(asked.angles[0])))
+    places = np.asarray(asked.places, complex)
+    if len(turns) < 2 or np.min(np.abs(turns - 1)) < SAME:
+        return None
+    poles = (places[1:] - places[0] * turns) / (1 - turns)
+    size = float(np.max(np.abs(places))) + abs(poles[0])
+    return complex(settled(poles[0], size)) if np.max(np.abs(poles - poles[0])) <= SAME * size else None
 
 
 def _longer(asked: Asked, error: Infeasible) -> Infeasible:
@@ -162,12 +162,7 @@ def _longer(asked: Asked, error: Infeasible) -> Infeasible:
             found = share if n == 0 else edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
             error.values["length"] = (least * float(np.exp(found + INWARDS)), "length", "least" if n else "above")
             return error
-    try:
-        for other in ("AB", "DC"):
-            dyad(longer := with_length(2 * ROUNDED), other)
-    except Infeasible as then:
-        if then.nearest == error.nearest and then.path != error.path:
-            error.then = _longer(longer, then)
+    error.values["length"] = (least * BEYOND, "length")  # more must change
     return error
 
 

@@ -36,7 +36,8 @@ WORDS: dict[str, str] = {
     f"{_W}.curves": "red: centre points m (pivots); dashed: circle points k1 (pins), in position 1",
     f"{_W}.still": "{point} does not move between these positions, or not against the coupler: it is the pole",
     f"{_W}.elsewhere": "another {point}",
-    f"{_W}.hinge": "other positions: these are turns about one point, and a hinge at [{x}, {y}] does it alone",
+    f"{_W}.one_pole": "the coupler only turns about one point: every pivot would be there",
+    f"{_W}.hinge": "a hinge at [{x}, {y}] in the place of a four-bar; or positions that are no turns about one point",
     f"{_W}.elsewhere_at": "another {point}, as [{x}, {y}]",
     f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",
     f"{_W}.off_line": "another {point}, or a slider instead of the link",
@@ -118,6 +119,7 @@ _FAR = "; no change of one position by up to {turn}, or {share} of the size of t
 for _key, _text in {
     "other_positions": "other positions",
     "other_points": "other points",
+    "elsewhere": "another {point}",
     "off_line": "another {point}, or a slider instead of the link",
     "still_slider": "places on a circle, or a slider",
     "no_box": "other positions: without this box there is no such four-bar either",
