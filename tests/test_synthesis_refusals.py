@@ -77,6 +77,17 @@ TOLD = {
         ["choose", "defects"]),
     "one pin": (GUIDED | {"positions": TURNING, "B": [0, 0], "C": [0, 0], "AB": 200, "DC": 200},
                 rf"another C, as {PLACE}", [("C", 2)]),
+    "both links too short": (
+        GUIDED | {"positions": [[0, 0, 0], [100, 50, 30]], "B": [-34, 73], "C": [25, -22], "AB": 0, "DC": 0},
+        rf"^AB {NUMBER} or more; and DC {NUMBER} or more", ["AB", "DC"]),
+    "the other link as the driver": (
+        GUIDED | {"positions": [[0, 0, 0], [60, 40, 75]], "B": [0, 0], "AB": 70, "C": [50, 0], "DC": 150,
+                  "DC_side": "right"},
+        r"or DC as the driver \((C) as (B) is now, (DC) as (AB) is now, (DC_side) as (AB_side) is now, "
+        r"(B) as (C) is now, (AB) as (DC) is now, (AB_side) as (DC_side) is now\)", None),
+    "turns of a coupler that does not turn": (
+        GUIDED | {"positions": [[0, 0, 0], [100, 50, 0], [200, 50, 0], [300, 0, 0]], "AB_turn": -65, "DC_turn": -14},
+        rf"^AB_turn and DC_turn {NUMBER}$", ["AB_turn"], ["DC_turn"]),
     "one pivot": (GUIDED | {"positions": [*TURNING, [150, 120, 70]], "A": [0, 0], "D": [0, 0]},
                   rf"another D, as {PLACE}", [("D", 2)]),
     "a pin in the pole": (
@@ -86,7 +97,10 @@ TOLD = {
 
 
 def typed(block, told, keys, dropped=()):
-    """The block with the values that a message tells."""
+    """The block with the values that a message tells, or, without keys, its own under the other names."""
+    if keys is None:
+        whole = {"AB_side": "left", "DC_side": "left"} | block
+        return block | {new: whole[old] for new, old in zip(told[::2], told[1::2], strict=True)}
     block = {key: value for key, value in block.items() if key not in dropped}
     values = list(told)
     for key in keys:

@@ -90,12 +90,12 @@ def _exchanged(asked: Asked) -> str:
     """Which keys of AB and DC are to be exchanged that DC drives."""
     keys = []
     for name, other in (("AB", "DC"), ("DC", "AB")):
-        side = asked.sides.get(name, Side())
+        side, rest = asked.sides.get(name, Side()), asked.sides.get(other, Side())
         given = {
             (name[1], other[1]): side.pin is not None, (name[0], other[0]): side.pivot is not None,
-            (name, other): side.length is not None, (f"{name}_side", f"{other}_side"): side.side != Side().side,
+            (name, other): side.length is not None, (f"{name}_side", f"{other}_side"): side.side != rest.side,
             (f"{name}_turn", f"{other}_turn"): side.turn is not None,
-            (f"{name}_branch", f"{other}_branch"): side.branch != Side().branch,
+            (f"{name}_branch", f"{other}_branch"): side.branch != rest.branch,
             (f"{name[0]}_near", f"{other[0]}_near"): side.near is not None,
         }  # fmt: skip
         keys += [f"{new} as {old} is now" for (old, new), here in given.items() if here]

@@ -159,8 +159,9 @@ def _longer(asked: Asked, error: Infeasible) -> Infeasible:
     shares = np.concatenate([[INWARDS], SHARE * np.arange(1, round(np.log(TIMES) / SHARE))])
     for n, share in enumerate(map(float, shares)):
         if soluble(with_length(share)):
-            found = share if n == 0 else edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
-            error.values["length"] = (least * float(np.exp(found + INWARDS)), "length", "least" if n else "above")
+            if n > 0:
+                share = edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
+                error.values["length"] = (least * float(np.exp(share + INWARDS)), "length", "least")
             return error
     error.values["length"] = (least * BEYOND, "length")  # more must change
     return error

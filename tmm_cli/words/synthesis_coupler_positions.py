@@ -56,6 +56,8 @@ WORDS: dict[str, str] = {
     f"{_W}.still_off": "the coupler does not turn: all its points go on equal circles, and the fourth place is not on "
     "that through the others",
     f"{_W}.still_on": "x = {x}, y = {y}; or a coupler that turns",
+    f"{_W}.still_on_turn": "x = {x}, y = {y} with {names} {turn}; or a coupler that turns",
+    f"{_W}.still_turns": "{names} {turn}",
     f"{_W}.still_turn": "the coupler does not turn: both links turn as its places do on their circle",
     f"{_W}.any_parallelogram": "the coupler does not turn: any parallelogram with these arms does it; AD is free in "
     "length and direction, taken across the arms in the middle of their way",
