@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import pytest
 from test_synthesis_limits import refused, solved
@@ -139,6 +140,16 @@ def test_an_input_that_turns_back_is_put_right_with_the_output_that_it_needs():
     match = re.search(rf"^input angle 2: {NUMBER}; and output angle 3: {NUMBER}", told)
     assert match, told
     solved(PAIRS | {"pairs": [pairs[0], [match[1], 60], [20, match[2]], pairs[3]]})
+
+
+def test_where_no_input_can_stay_all_are_told():
+    pairs = [[200, 20], [150, 60], [700, 10], [30, 55], [900, 80]]
+    told = refused(PAIRS | {"pairs": pairs}).allowed
+    match = re.search(rf"^input angles {NUMBER}, {NUMBER}, {NUMBER}, {NUMBER}, {NUMBER}; and output angle", told)
+    assert match, told
+    inputs = [float(angle.split()[0]) for angle in match.groups()]
+    steps = [b - a for a, b in pairwise(inputs)]
+    assert (min(steps) > 0 or max(steps) < 0) and abs(inputs[-1] - inputs[0]) < 360
 
 
 def test_between_the_value_that_is_told_and_the_one_asked_there_is_nothing():

@@ -260,10 +260,10 @@ def refuse(asked: Asked) -> None:
 
 def _refuse_small(asked: Asked) -> None:
     """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
-    given: dict[str, Shown] = {"k": (1 / asked.k if asked.k > 0 else 1.0, "number", "most")}
-    given["least"] = (1.0, "number", "above")
+    given: dict[str, Shown] = {"least": (1.0, "number", "above")}
     words = "least_offset" if asked.e is not None else "least"
     if asked.k > 0:
+        given["k"] = (1 / asked.k, "number", "most")
         try:
             refuse(replace(asked, k=1 / asked.k))
         except Infeasible as error:

@@ -33,6 +33,7 @@ PARAMETERS: Final = {
 W: Final = "synthesis_four_bar_by_angles"
 ANY: Final = 0.1  # m: a length, where any will do
 STEP: Final = np.radians(10)  # of the input, from a neighbour that it must leave, or less than a turn
+SPREAD: Final = np.radians(30)  # between inputs of which none can stay
 HALVINGS: Final = 30
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
@@ -88,32 +89,35 @@ def _refuse_inputs(asked: Asked, which: tuple[int, int], error: Infeasible) -> N
     except Infeasible as told:
         if told is not error:
             raise
-    ends = asked.function.phi if asked.function else asked.phi
-    bad, sense = which[0], float(np.sign(ends[1] - ends[0]) or 1.0)
-    near = float(ends[bad - 1])
+    row = np.asarray(asked.function.phi if asked.function else asked.phi, dtype=float)
+    bad, sense = which[0], float(np.sign(row[1] - row[0]) or 1.0)
     if error.path[-1] in ("pairs", "input"):  # less than a turn from the first to the last
-        bad, at = len(ends) - 1, float(ends[0]) + sense * (2 * np.pi - STEP)
-    elif bad + 1 < len(ends) and sense * (ends[bad + 1] - near) > 0:
-        at = (near + float(ends[bad + 1])) / 2
+        bad = len(row) - 1
+        row[bad] = row[0] + sense * (2 * np.pi - STEP)
+    elif bad + 1 < len(row) and sense * (row[bad + 1] - row[bad - 1]) > 0:
+        row[bad] = (row[bad - 1] + row[bad + 1]) / 2
     else:
-        at = near + sense * STEP
-    error.nearest, error.values = f"{W}.input_alone", error.values | {
-        "which": (str(bad + 1), "word"), "phi": (at, "angle"),
+        row[bad] = row[bad - 1] + sense * STEP
+    error.nearest, error.values["which"] = f"{W}.input_alone", (str(bad + 1), "word")
+    if not np.all(sense * np.diff(row) > 0) or abs(row[-1] - row[0]) >= 2 * np.pi:
+        row, error.nearest = row[0] + sense * SPREAD * np.arange(len(row)), f"{W}.inputs_{len(row)}"
+    error.values |= {"phi": (float(row[bad]), "angle")} | {
+        f"phi{k + 1}": (float(x), "angle") for k, x in enumerate(row)
     }  # fmt: skip
     try:
-        solve(_with_input(asked, bad, at))
+        solve(_with_inputs(asked, tuple(map(float, row))))
     except Infeasible as then:
         error.then = then
     raise error
 
 
-def _with_input(asked: Asked, which: int, at: float) -> Asked:
-    """The same with another input angle (rad), of a function with another end of the input."""
+def _with_inputs(asked: Asked, row: tuple[float, ...]) -> Asked:
+    """The same with other input angles (rad), of a function with other ends of the input."""
     if asked.function:
-        function = replace(asked.function, phi=(asked.function.phi[0], at))
+        function = replace(asked.function, phi=(row[0], row[1]))
         phi, psi = function.precision(len(asked.phi))
         return replace(asked, function=function, phi=tuple(phi), psi=tuple(psi))
-    return replace(asked, phi=(*asked.phi[:which], at, *asked.phi[which + 1 :]))
+    return replace(asked, phi=row)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -122,7 +126,12 @@ def solve(asked: Asked) -> Outcome:
     found = through(asked)
     at = chosen(asked, found)
     if at < 0 or not found:
-        refuse_found(replace(asked, keep=False), found)
+        try:
+            refuse_found(replace(asked, keep=False), found)
+        except Infeasible as told:
+            if asked.choose.isdigit():  # other pairs have other solutions
+                told.then = Infeasible("choose", told.reason, f"{W}.choose_best")
+            raise
     fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
     if at >= len(found):
         words, count = "numbers" if asked.keep else "numbers_fair" if fair else "numbers_keep", str(len(found))

@@ -195,7 +195,7 @@ def _within(asked: Asked, *ends: float) -> dict[str, Shown]:
     low, high = min(ends), max(ends)
     width = low if asked.k == 1 else high - low
     first, last = INSIDE * min(low, width), INSIDE * width
-    return {"low": (low + first, "length", "least"), "high": (high - last, "length", "most")}
+    return {"low": (max(low + first, SMALLEST), "length", "least"), "high": (high - last, "length", "most")}
 
 
 def refuse(asked: Asked) -> None:

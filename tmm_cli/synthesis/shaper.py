@@ -162,7 +162,8 @@ def _refuse_stroke(asked: Asked, chord: float, most: float, share: float) -> Non
     fits = asked.rod is None or asked.rod * chord > least * share
     values: dict[str, Shown] = {"least": (least, "length", *(("above",) if frame else ()))}
     if not fits:
-        values["rod"] = (least / chord * share * (1 + ROUNDED), "length", "above")
+        rod = least / chord * share * (1 + ROUNDED)
+        values["rod"] = (rod, "length", "above") if rod > SMALLEST else (SMALLEST, "length")
     raise Infeasible("stroke", f"{W}.positive", f"{W}.at_least" if fits else f"{W}.with_rod", values, whole=not fits)
 
 

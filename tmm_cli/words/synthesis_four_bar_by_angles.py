@@ -83,6 +83,7 @@ WORDS: dict[str, str] = {
     f"{_W}.keep": "defects: keep; every other solution has a defect too",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
+    f"{_W}.choose_best": "choose: transmission",
     f"{_W}.numbers_fair": "{numbers}; or choose: transmission",
     f"{_W}.numbers_keep": "1 to {count} with defects: keep; every solution has a defect",
 }
@@ -97,6 +98,8 @@ for _key, _text in _NEAREST.items():
         for _plain, _number in _USABLE.items():
             for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
                 WORDS[f"{_W}.{_key}{_bound}{_plain}{_left}"] = f"{_text}{_number}{_why}{_or}"
+for _count in range(2, 6):
+    WORDS[f"{_W}.inputs_{_count}"] = "input angles " + ", ".join(f"{{phi{k}}}" for k in range(1, _count + 1))
 for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
     WORDS[f"{_W}.points_fewer{_left}"] = f"points: {{count}}{_or}"
     for _count in range(2, 6):
