@@ -59,10 +59,11 @@ REFUSED = {
         "synthesis.e: the crank does not turn fully: the offset is too large for this stroke and k\n  found:   80\n"
         "  allowed: e 68.8184 mm or less, or k 1.43251 or less",
     "{task: crank-slider, stroke: 50, e: 20, k: 1}":
-        "synthesis.k: with an offset k is more than 1\n  found:   1\n  allowed: more than 1; or ratio and nu: 0",
+        "synthesis.k: with an offset k is more than 1\n  found:   1\n  allowed: 1.00001 to 2.21999; 1.09203 for a "
+        "largest pressure angle of 30 deg; or, without an offset, nu: 0 and ratio: 2 in the place of e and k",
     "{task: crank-slider, stroke: 50, e: 0, k: 1}":
         "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n"
-        "  allowed: more than zero; or ratio and nu: 0",
+        "  allowed: nu: 0 and ratio: 2 in the place of e and k (a largest pressure angle of 30 deg)",
     "{task: crank-slider, stroke: 20, k: 1.1}":
         "synthesis: these keys do not determine a crank-slider\n  found:   k\n"
         "  allowed: ratio and nu; or ratio and k; or pressure and nu; or pressure and k; or e and k",

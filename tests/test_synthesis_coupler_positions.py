@@ -280,7 +280,7 @@ def test_the_place_that_is_told_for_a_coupler_that_does_not_turn_is_on_its_circl
 REFUSED = {
     f"positions: [{ON_CIRCLE}], AB_turn: 31":
         "synthesis.AB_turn: the coupler does not turn: both links turn as its places do on their circle\n"
-        "  found:   31\n  allowed: 30",
+        "  found:   31\n  allowed: AB_turn 30 deg",
     "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]":
         "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long",
     f"positions: {FOUR}, AB_turn: 15":
@@ -303,21 +303,24 @@ REFUSED = {
         "  found:   [0, 0]\n  allowed: another B",
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 2\n  allowed: AB_side: left, DC_side: left; or DC as the driver; or defects: keep",
+        "  found:   a list of 2\n  allowed: AB_side: left, DC_side: left; or DC as the driver "
+        "(C as B is now, DC as AB is now, DC_side as AB_side is now, B as C is now, AB as DC is now, "
+        "AB_side as DC_side is now); or defects: keep",
     f"positions: {FOUR}, AB_turn: -60":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
         "  found:   a list of 4\n"
         "  allowed: AB_turn 0.001397 deg (6 deg for a least transmission angle of 31 deg); or defects: keep",
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
-        "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n  allowed: two points",
+        "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n"
+        "  allowed: another C, as [14.5613 mm, -3.90168 mm]",
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
-        "synthesis.C: B and C are one point: that is no four-bar\n",
+        "synthesis.D: A and D are one point: that is no four-bar\n",
     "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]":
-        "synthesis.positions: Burmester's curves have no links of sensible length (0.15 to 2 times the size of the "
-        "task)\n  found:   a list of 4\n  allowed: other positions",
+        "synthesis.positions: the coupler only turns about one point: every pivot would be there\n"
+        "  found:   a list of 4\n  allowed: a hinge at [0 mm, 0 mm] in the place of a four-bar; or positions",
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
         "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
-        "  allowed: different positions",
+        "  allowed: any other position, as one turned by 20 deg",
 }  # fmt: skip
 
 

@@ -296,7 +296,7 @@ REFUSED = {
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l4: 100, phi0: 10":
         "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2":
-        "synthesis.choose: there is no solution of this number\n  found:   2\n  allowed: 1 to 1",
+        "synthesis.choose: there is no solution of this number\n  found:   2\n  allowed: 1; or choose: transmission",
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2":
         "synthesis.choose: branch defect: this solution has some pairs on its other assembly\n"
         "  found:   2\n  allowed: 1; or choose: transmission; or defects: keep",

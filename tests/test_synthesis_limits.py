@@ -132,7 +132,7 @@ CASES = {  # a task that cannot be, and where the limit of each key stands in th
     "no lever": (lever(OC=between(1, 9), CB=between(-9, 0)), {"CB": ALONE_MORE}),
     "swing of half a turn": (
         lambda r: {"task": "slotted-lever", "CB": 500, "OC": 90, "swing": r.uniform(181, 300)},
-        {"swing": r"([^ ]+ deg) or less"}),
+        {"swing": r" to ([^ ]+ deg)$"}),
     "no frame": (ram(k=between(1.1, 4), OC=between(-9, 0), DE=between(5e3, 9e3)), {"OC": ALONE_MORE}),
     "no rod": (ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), DE=between(-9, 0)), {"DE": ALONE_MORE}),
     "no rod, ratio": (

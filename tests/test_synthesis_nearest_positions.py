@@ -71,10 +71,16 @@ def test_a_task_that_is_solved_without_the_turns_is_told_so():
     solved({key: value for key, value in block.items() if not key.endswith("turn")})
 
 
-def test_where_no_change_of_one_position_helps_that_is_said_with_how_far_was_looked():
-    error = refused(task([[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]))
-    assert "links of sensible length" in error.message
-    assert "no change of one position by up to 17.1887 deg, or 0.3 of the size of the task" in error.allowed
+@pytest.mark.parametrize("count", [3, 4])
+def test_where_the_coupler_only_turns_about_one_point_that_point_is_told(count):
+    pole, turned = 30 + 40j, [0, 10, 30, 60][:count]
+    places = [pole + (20 - pole) * np.exp(1j * np.radians(angle)) for angle in turned]
+    block = task([[z.real, z.imag, angle] for z, angle in zip(places, turned, strict=True)])
+    if count == 3:
+        block |= {"B": [5, 8], "C": [60, -10]}
+    error = refused(block)
+    assert "only turns about one point" in error.message
+    assert error.allowed.startswith("a hinge at [30 mm, 40 mm] in the place of a four-bar")
 
 
 def test_a_box_is_told_grown_by_the_least_that_helps():

@@ -231,15 +231,15 @@ REFUSED_LEVERS = {
     ),
     "CB: 500, k: 1, OC: 200": (
         ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   1\n  allowed: more than 1"
+        "\n  found:   1\n  allowed: 1.00001 or more"
     ),
     "CB: 500, k: 0.8, OC: 200": (
         ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   0.8\n  allowed: more than 1; 1.25 for the same strokes"
+        "\n  found:   0.8\n  allowed: 1.00001 or more; 1.25 for the same strokes"
     ),
     "CB: 500, swing: 190 deg, OC: 200": (
         ".swing: the lever of a crank that turns fully swings by less than 180 deg"
-        "\n  found:   '190 deg'\n  allowed: more than zero, 179.999 deg or less"
+        "\n  found:   '190 deg'\n  allowed: 5.72958e-05 deg to 179.999 deg"
     ),
     "CB: 500, k: 1.3, OC: -2": (".OC: there is no such link\n  found:   -2\n  allowed: 0.001 mm or more"),
     "CB: 500, k: 1.3, OA: -2": (".OA: there is no such link\n  found:   -2\n  allowed: 0.001 mm or more"),
@@ -247,7 +247,8 @@ REFUSED_LEVERS = {
         ": these keys do not determine a slotted lever\n  found:   OC, OA\n  allowed: OC; or OA; or within"
     ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (
-        ".B2: B1 and B2 are the same place\n  found:   [1, 2]\n  allowed: a place other than B1"
+        ".B2: B1 and B2 are the same place\n  found:   [1, 2]"
+        "\n  allowed: any place other than B1, as [10.7941 mm, 2 mm]"
     ),
     "CB: 500, k: 1.5, within: [450, 600]": (
         ".within: within these bounds the stone always passes B"
@@ -274,7 +275,7 @@ REFUSED_LEVERS = {
 REFUSED_SHAPERS = {
     "stroke: 400, k: 1, OC: 350, DE: 200": (
         ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   1\n  allowed: more than 1"
+        "\n  found:   1\n  allowed: 1.00001 or more"
     ),
     "stroke: -400, k: 1.5, OC: 350, DE: 200": (
         ".stroke: there is no such motion\n  found:   -400\n  allowed: 283.157 mm or more"

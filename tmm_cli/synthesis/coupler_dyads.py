@@ -13,7 +13,7 @@ from tmm_cli.roots import least
 from tmm_cli.synthesis import burmester_search
 from tmm_cli.synthesis.burmester import Dyads, Poses, beside, by_turn, centre, unit
 from tmm_cli.synthesis.burmester_search import Effort, Limits
-from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.synthesis.record import Infeasible, Shown
 
 W: Final = "synthesis_coupler_positions"
 SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
@@ -211,11 +211,12 @@ def parallel(asked: Asked) -> tuple[Dyads, Dyads]:
         other = centre(places[:3])
         on = other + abs(places[0] - other) * (places[3] - other) / abs(places[3] - other)
         values = {"x": (float(on.real), "length", "exact"), "y": (float(on.imag), "length", "exact")}
-        raise Infeasible(("positions", 3), f"{W}.still_off", f"{W}.still_on", values)
-    turn = float(np.angle(complex(arms[1] / arms[0])))
-    for name, side in asked.sides.items():
-        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
-            raise Infeasible(f"{name}_turn", f"{W}.still_turn", f"{W}.nearest_turn", {"turn": (turn, "angle", "exact")})
+        turns = _other_turns(asked, (places[1] - other) / (places[0] - other))
+        words = "still_on_turn" if turns else "still_on"
+        raise Infeasible(("positions", 3), f"{W}.still_off", f"{W}.{words}", values | turns)
+    if turns := _other_turns(asked, arms[1] / arms[0]):
+        first = turns["names"][0].split()[0]
+        raise Infeasible(first, f"{W}.still_turn", f"{W}.still_turns", turns)
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
     way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
     frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, asked.size)
@@ -231,6 +232,17 @@ def parallel(asked: Asked) -> tuple[Dyads, Dyads]:
     ]
     one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
     return one, other
+
+
+def _other_turns(asked: Asked, arm: Any) -> dict[str, Shown]:
+    """The turn (rad) that brings an arm of a coupler that does not turn on to its second place, and the keys of links
+    that are asked to turn otherwise; {}: there is none."""
+    turn = float(np.angle(complex(arm)))
+    names = [
+        f"{name}_turn" for name, side in asked.sides.items()
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME
+    ]  # fmt: skip
+    return {"names": (" and ".join(names), "word"), "turn": (turn, "angle", "exact")} if names else {}
 
 
 def rows(

@@ -23,7 +23,7 @@ from tmm_cli.synthesis.coupler_dyads import (
     reach,
     rows,
 )  # fmt: skip
-from tmm_cli.synthesis.coupler_points import by_points, pair, sound
+from tmm_cli.synthesis.coupler_points import by_points, pair, parted, sound
 from tmm_cli.synthesis.coupler_usable import usable_turn
 from tmm_cli.synthesis.nearest_positions import LESS, limit, soluble
 from tmm_cli.synthesis.nearest_turns import by_both_turns
@@ -32,6 +32,7 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 GRID: Final = np.radians(0.1)  # of turns that are tried
 COARSE: Final = np.radians(0.5)  # the same, where the other link is free
 INWARDS: Final = 1e-6  # rad, or a share of a length, from where there is a sound four-bar first
+ROUNDED: Final = 1e-5  # what six digits may add to a length
 SHARE: Final = 0.02  # by which a length is changed, and
 TIMES: Final = 20.0  # how far
 SWAPPED: Final = ("sides", "length", "point", "turn", "turns", "turns_no_box")  # words that name DC as driver too
@@ -55,7 +56,18 @@ def refuse_turn(asked: Asked, name: str, given: Mapping[str, Dyads]) -> None:
         usable = {} if asked.keep else _usable(asked, name, rest, told)
         raise Infeasible(key, reason, f"{W}.nearest_turn{'_usable' * bool(usable)}", values | {"turn": told} | usable)
     words, told_values = by_both_turns(asked)
-    raise Infeasible(key, reason, f"{W}.{words}{'_usable' * ('usable' in told_values)}", values | told_values)
+    words += "_usable" * ("usable" in told_values) + "_alone" * (words == "turns")
+    raise Infeasible(key, reason, f"{W}.{words}", values | told_values)
+
+
+def refuse_point(asked: Asked, one: Dyads, other: Dyads, names: str) -> None:
+    """Both pins, or both pivots, are one: raises Infeasible with the nearest choice of one link that parts them."""
+    words, values = (_by_turns if len(asked.places) == 4 else parted)(asked, one, other)
+    words += "_usable" * ("usable" in values) + "_alone" * (words in SWAPPED)
+    side = asked.sides.get("DC", Side())
+    key = "positions" if side == Side() else "DC_turn" if side.turn is not None else "D_near"
+    key = "C" if side.pin is not None else "D" if side.pivot is not None else key
+    raise Infeasible(key, f"{W}.one_point", f"{W}.{words}", values | {"names": (names, "word")})
 
 
 def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
@@ -63,14 +75,31 @@ def refuse_defect(asked: Asked, one: Dyads, other: Dyads, defect: str) -> None:
     count = len(asked.places)
     find = {2: _by_lengths, 3: by_points, 4: _by_turns}[count]
     words, values = find(asked, one, other)
-    swap = int(marks(asked.poses, other, one).defect) == 0
+    swap = bool(asked.sides) and int(marks(asked.poses, other, one).defect) == 0
     if asked.within is not None and words == "turns":
         words = "turns_no_box"
     if "usable" in values:
         words = f"{words}_usable"
     if swap:
         words = f"{words}_swap" if words.removesuffix("_usable") in SWAPPED else "swap"
+        values = values | {"swap": (_exchanged(asked), "word")}
     raise Infeasible("positions", f"{W}.has_{defect}", f"{W}.{words}", values)
+
+
+def _exchanged(asked: Asked) -> str:
+    """Which keys of AB and DC are to be exchanged that DC drives."""
+    keys = []
+    for name, other in (("AB", "DC"), ("DC", "AB")):
+        side, rest = asked.sides.get(name, Side()), asked.sides.get(other, Side())
+        given = {
+            (name[1], other[1]): side.pin is not None, (name[0], other[0]): side.pivot is not None,
+            (name, other): side.length is not None, (f"{name}_side", f"{other}_side"): side.side != rest.side,
+            (f"{name}_turn", f"{other}_turn"): side.turn is not None,
+            (f"{name}_branch", f"{other}_branch"): side.branch != rest.branch,
+            (f"{name[0]}_near", f"{other[0]}_near"): side.near is not None,
+        }  # fmt: skip
+        keys += [f"{new} as {old} is now" for (old, new), here in given.items() if here]
+    return ", ".join(keys)
 
 
 def _nearest(good: Callable[[Any], Any], given: Any, step: float) -> Shown | None:
@@ -184,4 +213,5 @@ def _length(asked: Asked, name: str, sign: float, share: float, sound: Callable[
         middle = (inside + outside) / 2
         inside, outside = (middle, outside) if good(middle) else (inside, middle)
     value = float(side.length) * float(np.exp(sign * (inside + INWARDS)))
-    return value, "length", "least" if sign > 0 else "most"
+    whole = good(inside + INWARDS + ROUNDED)
+    return value, "length", "exact" if not whole else "least" if sign > 0 else "most"

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.burmester import Dyads, beside, centre, marks
-from tmm_cli.synthesis.coupler_dyads import FAR, SAME, SIDES, Asked, Side, dyad, exists
+from tmm_cli.synthesis.coupler_dyads import FAR, SAME, SHORTEST, SIDES, Asked, Side, dyad, exists, fair
 from tmm_cli.synthesis.record import Infeasible, Shown
 
 RINGS: Final = np.geomspace(0.01, 3.0, 80)  # about a given point, over the size of the task, and
@@ -18,7 +18,13 @@ HALVINGS: Final = 40
 ROUNDS: Final = 24  # of directions, each half as far apart as in the one before,
 FAN: Final = np.linspace(-1, 1, 9)
 INWARDS: Final = 1e-6  # of the size, from where there is a sound four-bar first
+SURELY: Final = 1e-9  # of the size: so far around what is told there is one
 ROUNDED: Final = 1e-5  # what six digits may add to a value
+GRID: Final = np.linspace(-1.4, 1.4, 15)  # over that size: points of both links that are tried, along both axes
+PLAIN: Final = np.radians(5)  # of transmission: where any place will do, one that is on no edge
+USABLE: Final = np.radians(30)  # a transmission angle that will do for them
+SENSIBLE: Final = 2.0  # the longest link of theirs, over the size
+MOVES: Final = 0.05  # over the size: so far a point must move at least that is told for a pole
 LONGEST: Final = 50.0  # reach, over the size of the task, that is told for a point whose places lie on a line
 
 
@@ -49,34 +55,107 @@ def by_points(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Sh
     return "point", values | {"point": (letter, "word")}
 
 
-def off_line(asked: Asked, name: str) -> dict[str, Shown] | None:
-    """The nearest place of a point, whose places lie on a line, with a sound four-bar that reaches LONGEST sizes."""
+def moved(asked: Asked, name: str, far: float = LONGEST) -> dict[str, Shown] | None:
+    """The nearest place of a point of a link that is not to be had, with a sound four-bar that reaches `far` sizes;
+    with such a link at all where the other one is not to be had either.
+    """
     try:
         rest = dyad(asked, "DC" if name == "AB" else "AB")
     except Infeasible:
-        return None
-    near = _nearest(asked, name, _with(asked, name, rest, LONGEST))
+        rest = None
+    usable = _with(asked, name, rest, far, PLAIN if far == FAR else 0.0)
+
+    def good(points: Any) -> Any:
+        with np.errstate(all="ignore"):
+            return usable(points) & (_moves(asked, asked.sides[name], points) > MOVES * asked.size)
+
+    near = _nearest(asked, name, good)
     if near is None:
         return None
-    return near[1] | {"point": (_letter(asked.sides[name], name), "word"), "sizes": (f"{LONGEST:g}", "word")}
+    return near[1] | {"point": (_letter(asked.sides[name], name), "word"), "sizes": (f"{far:g}", "word")}
+
+
+def parted(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, Shown]]:
+    """Where both pins, or both pivots, are one: the nearest place of a point that makes a sound four-bar with a frame
+    and a coupler of sensible length."""
+    for name, rest in (("DC", one), ("AB", other)):
+        alone = _with(asked, name, rest, least=PLAIN)
+
+        def good(points: Any, name: str = name, rest: Dyads = rest, alone: Any = alone) -> Any:
+            return alone(points) & fair(asked, *pair(name, _links(asked, name, points), rest))
+
+        near = _nearest(asked, name, good)
+        if near is not None:
+            return "elsewhere_at", near[1] | {"point": (_letter(asked.sides[name], name), "word")}
+    side = asked.sides["DC"]
+    place = complex(side.pin if side.pin is not None else side.pivot) + 2 * SHORTEST * asked.size
+    values: dict[str, Shown] = {"x": (place.real, "length"), "y": (place.imag, "length")}
+    return "elsewhere_at", values | {"point": (_letter(side, "DC"), "word")}
+
+
+def _moves(asked: Asked, side: Side, points: Any) -> Any:
+    """How far (m) points move from the first position to another, or pivots against the coupler."""
+    places = _places(asked, side, points)
+    return np.max(np.abs(places - places[..., :1]), axis=-1)
+
+
+def _places(asked: Asked, side: Side, points: Any) -> Any:
+    return asked.poses.on_frame(points) if side.pin is not None else asked.poses.in_plane(points)
+
+
+def _links(asked: Asked, name: str, points: Any) -> Dyads:
+    """Links of a name with their point at these places (m)."""
+    side, points = asked.sides[name], np.asarray(points, np.clongdouble)
+    places = _places(asked, side, points)
+    with np.errstate(all="ignore"):
+        end = centre(places) if len(asked.places) == 3 else beside(places, side.length, SIDES[side.side])
+    return Dyads(end, points) if side.pin is not None else Dyads(points, end)
+
+
+def both_points(asked: Asked) -> dict[str, Shown] | None:
+    """Places of the points of both links with a sound four-bar of sensible size, as near to those given as some tried
+    over the whole task are; with two positions beside the given lengths."""
+    links, away, letters = [], [], []
+    middle = np.mean(np.asarray(asked.places, complex))
+    for name in ("AB", "DC"):
+        side = asked.sides[name]
+        points = asked.size * (GRID[:, None] + 1j * GRID).ravel() + (0 if side.pin is not None else middle)
+        own = _links(asked, name, points)
+        with np.errstate(all="ignore"):
+            length = np.abs(asked.poses.on_frame(own.pin)[..., 0] - own.pivot) / asked.size
+            here = exists(asked, own) & (length > SHORTEST) & ((length < SENSIBLE) | (len(asked.places) == 2))
+        links.append(own[here])
+        away.append(np.abs(points[here] - complex(side.pin if side.pin is not None else side.pivot)))
+        letters.append(_letter(side, name))
+    one, other = links[0][:, None], links[1][None, :]
+    with np.errstate(all="ignore"):
+        least = np.where(sound(asked, one, other), marks(asked.poses, one, other).least, 0.0)
+    if not np.max(least, initial=0.0) > 0:
+        return None
+    good = least >= min(USABLE, float(np.max(least)))
+    cost = np.where(good, away[0][:, None] + away[1][None, :], np.inf)
+    rows = np.unravel_index(int(np.argmin(cost)), cost.shape)
+    values: dict[str, Shown] = {"first": (letters[0], "word"), "second": (letters[1], "word")}
+    for n, (own, row) in enumerate(zip(links, rows, strict=True)):
+        side = asked.sides[("AB", "DC")[n]]
+        place = complex((own.pin if side.pin is not None else own.pivot)[row])
+        values |= {f"x{n}": (place.real, "length"), f"y{n}": (place.imag, "length")}
+    return values
 
 
 def _letter(side: Side, name: str) -> str:
     return name[1] if side.pin is not None else name[0]
 
 
-def _with(asked: Asked, name: str, rest: Dyads, far: float = FAR) -> Callable[[Any], Any]:
+def _with(asked: Asked, name: str, rest: Dyads | None, far: float = FAR, least: float = 0.0) -> Callable[[Any], Any]:
     """Whether the four-bar of other places of the point (m) is sound."""
-    side = asked.sides[name]
 
     def good(points: Any) -> Any:
-        points = np.asarray(points, np.clongdouble)
-        places = asked.poses.on_frame(points) if side.pin is not None else asked.poses.in_plane(points)
-        with np.errstate(all="ignore"):
-            end = centre(places) if len(asked.places) == 3 else beside(places, side.length, SIDES[side.side])
-        own = Dyads(end, points) if side.pin is not None else Dyads(points, end)
-        found = sound(asked, *pair(name, own, rest), far)
-        return found if not asked.keep else exists(asked, own, far)
+        own = _links(asked, name, points)
+        if rest is None or asked.keep:
+            gaps = np.inf if rest is None else np.minimum(abs(own.pin - rest.pin), abs(own.pivot - rest.pivot))
+            return exists(asked, own, far) & (gaps > SAME * asked.size)
+        return sound(asked, *pair(name, own, rest), far, least)
 
     return good
 
@@ -97,18 +176,21 @@ def _nearest(asked: Asked, name: str, good: Callable[[Any], Any]) -> tuple[float
     angles = angles[here[ring]]
     reach = _drawn(good, given, angles, outer, inner)
     angle, radius = float(angles[np.argmin(reach)]), float(np.min(reach))
-    step = 2 * np.pi / ROUND
+    step, tried = 2 * np.pi / ROUND, [(float(angles[0]), float(outer)), (angle, radius)]
     for _ in range(ROUNDS):
         fan = angle + step * FAN
         fan = fan[good(given + radius * np.exp(1j * fan))]
         if len(fan):
             reach = _drawn(good, given, fan, radius, 0.0)
             angle, radius = float(fan[np.argmin(reach)]), float(np.min(reach))
+            tried.append((angle, radius))
         step /= 2
-    for inwards in INWARDS * np.array([1.0, 4.0, 16.0, 64.0]):
-        place = given + (radius + inwards * asked.size) * np.exp(1j * angle)
-        if good(place):
-            break
+    surely = SURELY * asked.size * np.array([0, 1, 1j, -1, -1j])  # the nearest may lie in a spike of no width
+    every = (
+        given + (radius + inwards * asked.size) * np.exp(1j * angle)
+        for angle, radius in tried[::-1] for inwards in INWARDS * np.array([1.0, 4.0, 16.0, 64.0])
+    )  # fmt: skip
+    place = next((place for place in every if np.all(good(place + surely))), given + outer * np.exp(1j * angles[0]))
     way = np.array([place.real - given.real, place.imag - given.imag])
     signs = np.where(way < 0, -1.0, 1.0)
     more = ROUNDED * np.array([abs(place.real), abs(place.imag)]) * signs

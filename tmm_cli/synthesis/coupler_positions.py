@@ -7,6 +7,7 @@ a pivot, or those of best transmission. Positions must be on one assembly, reach
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -15,7 +16,7 @@ import numpy as np
 from tmm_cli.synthesis import guidance, loop
 from tmm_cli.synthesis.burmester import DEFECTS, Dyads, Marks, by_turn, marks
 from tmm_cli.synthesis.coupler_dyads import SAME, Asked, Side, best, dyad, exists, of_near, of_turn, parallel, still
-from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_turn
+from tmm_cli.synthesis.coupler_nearest import refuse_defect, refuse_point, refuse_turn
 from tmm_cli.synthesis.nearest_positions import told
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
@@ -26,6 +27,7 @@ PARAMETERS: Final = {
     "phi1": "angle",
 }
 W: Final = "synthesis_coupler_positions"
+ROUNDED: Final = 2e-6  # by which a length may grow when it is told
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
@@ -77,7 +79,20 @@ def solve(asked: Asked) -> Outcome:
     try:
         return _solved(asked)
     except Infeasible as error:
-        raise told(asked, error, _solves) from None
+        raise _told(asked, error) from None
+
+
+def _told(asked: Asked, error: Infeasible) -> Infeasible:
+    """The refusal with what is solved; of a link that is too short and not all that must change, with the rest too."""
+    found = told(asked, error, _solves)
+    if found.nearest == f"{W}.longer" and found.then is None:
+        name, length = found.values["name"][0], found.values["length"][0]
+        longer = replace(asked, sides={**asked.sides, name: replace(asked.sides[name], length=length * (1 + ROUNDED))})
+        try:
+            _solved(longer)
+        except Infeasible as then:
+            found.then = _told(longer, then)
+    return found
 
 
 def _solves(asked: Asked) -> bool:
@@ -90,9 +105,10 @@ def _solves(asked: Asked) -> bool:
 
 def _solved(asked: Asked) -> Outcome:
     one, other = both(asked)
-    for key, names, gap in (("C", "B and C", one.pin - other.pin), ("D", "A and D", one.pivot - other.pivot)):
+    ends = [("B and C", one.pin - other.pin), ("A and D", one.pivot - other.pivot)]
+    for names, gap in ends[:: -1 if any(side.pivot is not None for side in asked.sides.values()) else 1]:
         if not abs(gap) > SAME * asked.size:
-            raise Infeasible(key, f"{W}.one_point", f"{W}.two_points", {"names": (names, "word")})
+            refuse_point(asked, one, other, names)
     mark = marks(asked.poses, one, other)
     defect = DEFECTS[int(mark.defect)]
     if defect and not asked.keep:

@@ -24,6 +24,7 @@ PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 W: Final = "synthesis_crank_slider"
 INSIDE: Final = 1 - 1e-5  # of the largest offset, at which the crank all but does not turn
 DRAWN: Final = 0.01  # rad: the least theta that shows on a drawing
+USUAL: Final = np.radians(30)  # the largest pressure angle that is usual for a sliding link
 
 
 @dataclass(frozen=True)
@@ -179,16 +180,40 @@ def _stroke(asked: Asked) -> Any:
 
 def _refuse_offset(e: float, height: float, theta: float) -> None:
     """The crank's pivot lies on the circle between B2 and the normal through B2: 0 < e < H cot(theta)."""
+    values: dict[str, Shown] = {"usual": (USUAL, "angle"), "straight": (1 / np.sin(USUAL), "number")}
     if not e > 0:
-        raise Infeasible("e", f"{W}.e_zero", f"{W}.e_more")
-    if theta == 0:
-        raise Infeasible("k", f"{W}.e_without", f"{W}.e_needs")
+        if theta == 0:
+            raise Infeasible("e", f"{W}.e_zero", f"{W}.e_instead", values, whole=True)
+        values["e"] = (SMALLEST, "length")
+        if not (theta < np.pi / 2 and np.tan(theta) * SMALLEST < height):
+            values["k"] = (float(k_of(np.arctan2(height, SMALLEST))), "number", "below")
+            raise Infeasible("e", f"{W}.e_zero", f"{W}.e_and_k", values, whole=True)
+        usual = max(USUAL, float(least_pressure(theta)) * (1 + SMALLEST))
+        one = find(Asked(stroke=height, k=float(k_of(theta)), pressure=usual))
+        values |= {"usable": (float(one.e), "length"), "usual": (usual, "angle")}
+        raise Infeasible("e", f"{W}.e_zero", f"{W}.e_more", values)
     most = float(k_of(np.arctan2(height, e)))
+    if theta == 0:
+        values |= {"least": (1.0, "number", "above"), "most": (most, "number", "below")}
+        values["k"] = (_k_of_offset(e, height), "number")
+        raise Infeasible("k", f"{W}.e_without", f"{W}.e_needs", values)
     if theta >= np.pi / 2:
         raise Infeasible("k", f"{W}.k_never", f"{W}.k_most_alone", {"k": (most, "number", "below")})
     if not np.tan(theta) * e < height:
         values = {"e": (height / np.tan(theta) * INSIDE, "length", "most"), "k": (most, "number", "below")}
         raise Infeasible("e", f"{W}.e_above", f"{W}.e_most", values)
+
+
+def _k_of_offset(e: float, height: float) -> float:
+    """The k of an offset at which the largest pressure angle is the usual one: it grows with theta up to 90 degrees."""
+
+    def excess(theta: Any) -> Any:
+        length, half = ratio_of_offset(height, e, theta), np.sin(theta / 2)
+        nu = e / height * 2 * np.sqrt(1 + (length - 1) * (length + 1) * half * half)
+        return (1 + nu) / length - np.sin(USUAL)
+
+    most = np.array([np.arctan2(height, e)])
+    return float(k_of(roots(excess, most * SMALLEST, most * INSIDE)[0]))
 
 
 def refuse(asked: Asked) -> None:
@@ -201,7 +226,7 @@ def refuse(asked: Asked) -> None:
     if k is not None and not k >= 1:
         _refuse_small(asked)
     if nu is not None and not nu >= 0:
-        raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least")
+        raise Infeasible("nu", f"{W}.nu_below", f"{W}.nu_least", {"nu": (0.0, "number")})
     if length is not None and not length > 1:
         values: dict[str, Shown] = {"ratio": (1 + (nu or 0.0), "number", "above")}
         raise Infeasible("ratio", f"{W}.ratio_below", f"{W}.ratio_least", values)
@@ -235,15 +260,16 @@ def refuse(asked: Asked) -> None:
 
 def _refuse_small(asked: Asked) -> None:
     """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
-    given: dict[str, Shown] = {"k": (1 / asked.k if asked.k > 0 else 1.0, "number", "most")}
+    given: dict[str, Shown] = {"least": (1.0, "number", "above")}
     words = "least_offset" if asked.e is not None else "least"
     if asked.k > 0:
+        given["k"] = (1 / asked.k, "number", "most")
         try:
             refuse(replace(asked, k=1 / asked.k))
         except Infeasible as error:
             if "k" not in error.values:
                 raise
-            given, words = {"k": error.values["k"]}, words.replace("least", "range")
+            given["k"], words = error.values["k"], words.replace("least", "range")
     else:
         words = words.replace("least", "zero")
     raise Infeasible("k", f"{W}.k_below", f"{W}.k_{words}", given)

@@ -18,9 +18,10 @@ from tmm_cli.synthesis.functions import ANGLES
 from tmm_cli.synthesis.inversion import construction
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.nearest_pairs import refuse_found, refuse_inputs
+from tmm_cli.synthesis.pair_changes import LINKS, fit, length
 from tmm_cli.synthesis.pairs import LONGEST, Asked, chosen, of_ratio, quality, real, through
 from tmm_cli.synthesis.parallelogram import parallelogram
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Shown, Value
 from tmm_cli.synthesis.structural_error import errors, extremes
 from tmm_cli.vectors import settled
 
@@ -30,6 +31,10 @@ PARAMETERS: Final = {
     "phi0": "angle", "psi0": "angle", "phi1": "angle", "psi1": "angle",
 }  # fmt: skip
 W: Final = "synthesis_four_bar_by_angles"
+ANY: Final = 0.1  # m: a length, where any will do
+STEP: Final = np.radians(10)  # of the input, from a neighbour that it must leave, or less than a turn
+SPREAD: Final = np.radians(30)  # between inputs of which none can stay
+HALVINGS: Final = 30
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
@@ -37,19 +42,82 @@ def refuse(asked: Asked) -> None:
     """Raises Infeasible for lengths that are none and inputs that turn back, or round."""
     for name, value in asked.lengths.items():
         if not value > 0:
-            words = "at_least" if len(asked.lengths) == 1 else "more_than_zero"
-            raise Infeasible(name, f"{W}.positive", f"{W}.{words}", {"least": (SMALLEST, "length")})
+            _refuse_length(asked, name)
     steps = np.diff(asked.phi)
     if not asked.function and not (np.all(steps > 0) or np.all(steps < 0)):
         sense = np.sign(steps[0]) or 1.0
         bad = int(np.argmax(steps * sense <= 0)) + 1
         error = Infeasible(("pairs", bad), f"{W}.order", f"{W}.in_order", {
-            "this": (str(bad + 1), "word"), "last": (str(bad), "word"), "phi": (asked.phi[bad - 1], "angle"),
+            "this": (str(bad + 1), "word"), "last": (str(bad), "word"),
         })  # fmt: skip
-        refuse_inputs(asked, (bad, bad - 1), error)
+        _refuse_inputs(asked, (bad, bad - 1), error)
     if abs(asked.span[1] - asked.span[0]) >= 2 * np.pi:
         error = Infeasible("input" if asked.function else "pairs", f"{W}.turn", f"{W}.one_turn")
-        refuse_inputs(asked, (1, 0) if asked.function else (len(asked.phi) - 1, 0), error)
+        _refuse_inputs(asked, (1, 0) if asked.function else (len(asked.phi) - 1, 0), error)
+
+
+def _refuse_length(asked: Asked, name: str) -> None:
+    """A length that is none: with two of them the least with which a sound four-bar passes, and that of the best."""
+    rest = {key: value for key, value in asked.lengths.items() if key != name}
+    if not all(value > 0 for value in rest.values()):
+        raise Infeasible(name, f"{W}.positive", f"{W}.any_length", {"one": (ANY, "length")})
+    if not rest:
+        raise Infeasible(name, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
+    best = float(solve(replace(asked, lengths=rest)).parameters[name].value)
+    change = length(replace(asked, lengths=rest | {name: best}))
+    moves = -change.step * np.arange(change.count + 1)
+    good = fit(change, moves).sensible
+    inside = float(moves[np.flatnonzero(good)[-1]]) if np.any(good) else 0.0
+    outside = inside - change.step
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if fit(change, [middle], closely=True).sensible[0] else (inside, middle)
+    values: dict[str, Shown] = {
+        "least": (float(change.value(inside + SMALLEST)), "length", "least"),
+        "best": (best, "length"),
+    }
+    long = "_long" if fit(change, [inside - SMALLEST], closely=True).good[0] else ""
+    values["links"] = (f"{LINKS:g}", "word")
+    raise Infeasible(name, f"{W}.positive", f"{W}.length_least{long}", values)
+
+
+def _refuse_inputs(asked: Asked, which: tuple[int, int], error: Infeasible) -> None:
+    """Raises Infeasible with an input angle that mends it; where no one alone does, with one that leaves it less to
+    mend, and what else must change then."""
+    try:
+        refuse_inputs(asked, which, error)
+    except Infeasible as told:
+        if told is not error:
+            raise
+    row = np.asarray(asked.function.phi if asked.function else asked.phi, dtype=float)
+    bad, sense = which[0], float(np.sign(row[1] - row[0]) or 1.0)
+    if error.path[-1] in ("pairs", "input"):  # less than a turn from the first to the last
+        bad = len(row) - 1
+        row[bad] = row[0] + sense * (2 * np.pi - STEP)
+    elif bad + 1 < len(row) and sense * (row[bad + 1] - row[bad - 1]) > 0:
+        row[bad] = (row[bad - 1] + row[bad + 1]) / 2
+    else:
+        row[bad] = row[bad - 1] + sense * STEP
+    error.nearest, error.values["which"] = f"{W}.input_alone", (str(bad + 1), "word")
+    if not np.all(sense * np.diff(row) > 0) or abs(row[-1] - row[0]) >= 2 * np.pi:
+        row, error.nearest = row[0] + sense * SPREAD * np.arange(len(row)), f"{W}.inputs_{len(row)}"
+    error.values |= {"phi": (float(row[bad]), "angle")} | {
+        f"phi{k + 1}": (float(x), "angle") for k, x in enumerate(row)
+    }  # fmt: skip
+    try:
+        solve(_with_inputs(asked, tuple(map(float, row))))
+    except Infeasible as then:
+        error.then = then
+    raise error
+
+
+def _with_inputs(asked: Asked, row: tuple[float, ...]) -> Asked:
+    """The same with other input angles (rad), of a function with other ends of the input."""
+    if asked.function:
+        function = replace(asked.function, phi=(row[0], row[1]))
+        phi, psi = function.precision(len(asked.phi))
+        return replace(asked, function=function, phi=tuple(phi), psi=tuple(psi))
+    return replace(asked, phi=row)
 
 
 def solve(asked: Asked) -> Outcome:
@@ -57,13 +125,21 @@ def solve(asked: Asked) -> Outcome:
     refuse(asked)
     found = through(asked)
     at = chosen(asked, found)
-    if at < 0:
-        refuse_found(replace(asked, keep=False), found)
+    if at < 0 or not found:
+        try:
+            refuse_found(replace(asked, keep=False), found)
+        except Infeasible as told:
+            if asked.choose.isdigit():  # other pairs have other solutions
+                told.then = Infeasible("choose", told.reason, f"{W}.choose_best")
+            raise
+    fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
     if at >= len(found):
-        raise Infeasible("choose", f"{W}.number", f"{W}.numbers", {"count": (str(len(found)), "word")})
+        words, count = "numbers" if asked.keep else "numbers_fair" if fair else "numbers_keep", str(len(found))
+        raise Infeasible(
+            "choose", f"{W}.number", f"{W}.{words}", {"count": (count, "word"), "numbers": (fair, "word")}, whole=True
+        )
     one, mark = found[at], quality(found[at], asked)
     if mark.defect and not asked.keep:
-        fair = " or ".join(str(k + 1) for k, other in enumerate(found) if not quality(other, asked).defect)
         words = "another" if fair else "keep"
         raise Infeasible("choose", f"{W}.its_{mark.defect}", f"{W}.{words}", {"numbers": (fair, "word")})
     name, size = next(iter(asked.lengths)), _size(asked, one)

@@ -11,8 +11,17 @@ import numpy as np
 
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider import k_of
-from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bound, places, whole, widest
-from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing
+from tmm_cli.synthesis.four_bar_arcs import ARC, END, Asked, Found, arcs, at, bound, places, whole
+from tmm_cli.synthesis.four_bar_family import construction, diagrams, listing, on_arcs
+from tmm_cli.synthesis.four_bar_instead import (
+    SOUND,
+    frame_on_line,
+    largest_k,
+    length_and_k,
+    nearest_end,
+    nearest_frame,
+    swings,
+)
 from tmm_cli.synthesis.four_bar_level import level_places, nearest_sound
 from tmm_cli.synthesis.four_bar_nearest import nearest_k, not_level
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
@@ -23,7 +32,7 @@ PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), 
 W: Final = "synthesis_four_bar_by_k"
 STEP: Final = 1e-14  # the least step of a derivative, relative
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
-SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
+OVER: Final = 1 + 1e-5  # k: the least that is told as more than 1
 INSIDE: Final = 4e-5  # of a range of lengths: how far from its ends a length is told
 CHOSEN: Final = ("level", "l1", "l2", "l4")  # ways to choose A that not every arc offers
 
@@ -155,10 +164,13 @@ def _dead_end(asked: Asked, support: Any) -> None:
 def _not_there(asked: Asked) -> None:
     """No pivot of the arcs is what was asked for: says what there is."""
     if asked.choose == "level":
-        raise not_level(asked, EQUATIONS["level"])
+        error = not_level(asked, EQUATIONS["level"])
+        if not {"k", "turn"} & set(error.values):
+            error.nearest, error.values = f"{error.nearest}_near", error.values | nearest_frame(asked)
+        raise error
     h, name = float(asked.l3 * np.sin(asked.swing / 2)), asked.choose
     if name == "l1" and asked.k == 1:
-        values = {"l1": (h, "length")}
+        values = {"l1": (h, "length"), **frame_on_line(asked)}
         if (k := nearest_k(asked, EQUATIONS["l1"])) is not None:
             raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_above", values | {"k": k})
         raise Infeasible("l1", f"{W}.l1_same", f"{W}.l1_others", values)
@@ -172,6 +184,9 @@ def _not_there(asked: Asked) -> None:
     ends = [l3, *(float(at(asked, places(asked, side)[-1], side).l4) for side in arcs(asked))]
     values = _within(asked, *ends) | {"l3": (l3, "length")}
     inner = min(ends) < l3 < max(ends)  # there A would be C1
+    before, after = _within(asked, min(ends), l3)["high"], _within(asked, l3, max(ends))["low"]
+    if inner and before[0] < asked.l4 < after[0]:
+        raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_beside", {"before": before, "after": after})
     raise Infeasible("l4", f"{W}.l4_none", f"{W}.l4_range_but" if inner else f"{W}.l4_range", values)
 
 
@@ -180,7 +195,7 @@ def _within(asked: Asked, *ends: float) -> dict[str, Shown]:
     low, high = min(ends), max(ends)
     width = low if asked.k == 1 else high - low
     first, last = INSIDE * min(low, width), INSIDE * width
-    return {"low": (low + first, "length", "least"), "high": (high - last, "length", "most")}
+    return {"low": (max(low + first, SMALLEST), "length", "least"), "high": (high - last, "length", "most")}
 
 
 def refuse(asked: Asked) -> None:
@@ -189,27 +204,41 @@ def refuse(asked: Asked) -> None:
         raise Infeasible("l3", f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
     if not asked.k >= 1:
         _refuse_small(asked)
-    psi1, widest_swing = float(asked.psi1), np.pi - 2 * ARC
-    if not 0 < asked.swing <= widest_swing:
-        ends = {"low": (psi1 - widest_swing, "angle", "least"), "high": (psi1 + widest_swing, "angle", "most")}
-        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range", {"psi1": (psi1, "angle"), **ends})
+    psi1 = float(asked.psi1)
+    if not 0 < asked.swing <= np.pi - 2 * ARC and (ranges := swings(asked)):
+        ends: dict[str, Shown] = {}
+        if asked.choose != "best" and (psi2 := nearest_end(_plain(asked), ranges, _chooses)):
+            raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_{psi2[2]}", {"psi2": psi2})
+        if asked.choose != "best" or asked.k == 1:  # more than the swing must change
+            raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_as", {"psi2": (sum(ranges[0]) / 2, "angle")})
+        for n, (near, far) in enumerate(ranges):
+            sides = ("least", "most") if near < far else ("most", "least")
+            ends |= {f"near{n}": (near, "angle", sides[0]), f"far{n}": (far, "angle", sides[1])}
+        raise Infeasible("psi2", f"{W}.swing", f"{W}.swing_range{len(ranges)}", ends)
     theta, half = float(asked.theta), float(asked.swing) / 2
     _refuse_sense(asked, theta, half)
     if theta > np.pi / 2 + half - ARC:
         way = 1 if asked.psi2 > asked.psi1 else -1
         swing = psi1 + way * (2 * theta - np.pi + 2 * ARC)
-        values = {
+        values: dict[str, Shown] = {
             "k": (float(k_of(np.pi / 2 + half - ARC)), "number", "most"),
             "psi2": (swing, "angle", "least" if way > 0 else "most"),
         }
         if asked.choose in CHOSEN:
-            k = nearest_k(_centred(asked), EQUATIONS[asked.choose])
-            words = "k_most_other" if k is None else "k_most_alone"
-            raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", {"k": k or values["k"]})
+            if (k := nearest_k(_centred(asked), EQUATIONS[asked.choose])) is not None:
+                raise Infeasible("k", f"{W}.k_above", f"{W}.k_most_alone", {"k": k})
+            pair = {} if asked.choose == "level" else length_and_k(_plain(_centred(asked)))
+            words = "k_most_length" if pair else "k_most_best"
+            raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", {"k": values["k"], **pair}, whole=True)
+        if asked.choose == "near":
+            if (largest := largest_k(_plain(asked), _chooses)) is None:
+                raise Infeasible("k", f"{W}.k_above", f"{W}.k_most_best", values, whole=True)
+            raise Infeasible("k", f"{W}.k_above", f"{W}.k_most_alone", {"k": (largest, "number", "most")})
         words = "k_most_alone" if theta > np.pi - 2 * ARC else "k_most" if way > 0 else "k_most_down"
         raise Infeasible("k", f"{W}.k_above", f"{W}.{words}", values)
     if theta == 0 and asked.choose == "best":
-        raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", {"pressure": (half, "angle")})
+        values = {"pressure": (half, "angle"), "k": (1.0, "number", "above"), **frame_on_line(asked)}
+        raise Infeasible("k", f"{W}.best_none", f"{W}.best_others", values)
 
 
 def _refuse_sense(asked: Asked, theta: float, half: float) -> None:
@@ -217,27 +246,57 @@ def _refuse_sense(asked: Asked, theta: float, half: float) -> None:
     way, most, other = 1 if asked.psi2 > asked.psi1 else -1, np.pi / 2 - half - ARC, np.pi / 2 + half - ARC
     if asked.sense != -way or theta <= most:
         return
-    values: dict[str, Shown] = {
-        "k": (float(k_of(most)), "number", "most"),
-        "other": (float(k_of(other)), "number", "most"),
-    }
-    words = ("k_most_alone" if theta > other else "sense_most") if most > 0 else (
-        "sense_both" if theta > other else "sense_other")  # fmt: skip
+    values: dict[str, Shown] = {"other": (float(k_of(other)), "number", "most")}
+    turned = _chooses(replace(asked, sense=-asked.sense))
+    if (k := _most_k(asked, float(k_of(most)) if most > 0 else 1.0)) is not None:
+        values["k"] = k
+    if turned or not k:
+        values["turn"] = ("cw" if asked.sense > 0 else "ccw", "word")
+    words = "sense_most" if turned and k else "k_most_alone" if k else "sense_both" if theta > other else "sense_other"
     raise Infeasible("turns", f"{W}.sense", f"{W}.{words}", values)
 
 
+def _most_k(asked: Asked, most: float) -> Shown | None:
+    """The k nearest to a larger one, `most` or less, with which A is what it was chosen to be; None: there is none."""
+    if asked.choose in CHOSEN:
+        return nearest_k(_plain(_centred(asked)), EQUATIONS[asked.choose])
+    if asked.choose == "best":
+        return None if most < 2 * OVER - 1 else (most, "number", "most")
+    k = largest_k(_plain(replace(asked, k=most)), _chooses)
+    return None if k is None else (k, "number", "most")
+
+
+def _chooses(asked: Asked) -> bool:
+    """Whether the task is solved."""
+    one = _plain(_centred(asked))
+    if not (one.l3 > 0 and one.k >= 1 and 0 < one.swing <= np.pi - 2 * ARC) or (one.k == 1 and one.choose == "best"):
+        return False
+    if one.choose in LEAST:
+        places_by = [(_best(one, side, one.choose), side) for side in arcs(one)]
+        w, side = min(places_by, key=lambda place: LEAST[one.choose](at(one, *place), one), default=(None, 0))
+        return w is not None and (one.choose == "best" or inside(one, w, side))
+    return any(len(_crossings(one, side, EQUATIONS[one.choose])) for side in arcs(one))
+
+
 def _refuse_small(asked: Asked) -> None:
-    """k below 1: the same strokes the other way round, where they are possible, or the largest k that is."""
-    above = "_above" if asked.choose == "best" else ""
-    if not asked.k > 0:
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero{above}")
+    """k below 1: the same strokes the other way round, where they are possible, or the nearest k that is."""
+    least = next((k for k in (1.0, OVER) if _chooses(replace(asked, k=k))), None)
+    values: dict[str, Shown] = {"least": (1.0, "number", "above" if least == OVER else "least")}
+    turned = replace(asked, k=1 / asked.k if asked.k > 0 else OVER)
+    if asked.k > 0 and _chooses(turned):
+        values["k"] = (1 / asked.k, "number", "most")
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if least else f"{W}.k_same", values)
+    if least and not asked.k > 0:
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_zero", values)
     try:
-        refuse(replace(asked, k=1 / asked.k))
+        refuse(turned)
+        choose(turned)
     except Infeasible as error:
-        if "k" not in error.values:
+        k = _most_k(turned, float(turned.k)) if asked.choose in CHOSEN else error.values.get("k")
+        if k is None:  # what no k would mend is told first
             raise
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_range{above}", {"k": error.values["k"]}) from None
-    raise Infeasible("k", f"{W}.k_below", f"{W}.k_least", {"k": (1 / asked.k, "number", "most")})
+        words = "k_range" if least else "k_most_alone" if k[2] == "most" else "k_more"
+        raise Infeasible("k", f"{W}.k_below", f"{W}.{words}", values | {"k": k}) from None
 
 
 def solve(asked: Asked) -> Outcome:
@@ -262,7 +321,7 @@ def solve(asked: Asked) -> Outcome:
     if asked.choose == "near":
         found.append(Value("", np.abs(f.a - asked.near), "length", f"{W}.away"))
     if asked.k > 1:
-        found += _on_arcs(asked, f)
+        found += on_arcs(asked, _plain(asked), f)
     demands = [
         Demand(f"{W}.crank_turns", 1.0, "number", crank_turns, asked=False),
         Demand(f"{W}.k", float(asked.k), "number", ratio),
@@ -277,18 +336,3 @@ def solve(asked: Asked) -> Outcome:
     drawings = (construction(plain, chosen, family), *diagrams(plain, chosen, family))
     notes = () if asked.k > 1 else (f"{W}.line",)
     return Outcome(tuple(given), tuple(found), f"{W}.source", tuple(demands), drawings, notes, (listing(family),))
-
-
-def _on_arcs(asked: Asked, f: Found) -> list[Value]:
-    """Where the pivot stands, what that means for the crank, and how far the admissible arcs reach."""
-    values = [
-        Value("", f.beta, "angle", f"{W}.beta"),
-        Value("", None, "word", f"{W}.side", f"{W}.side_{'beyond' if f.side > 0 else 'inside'}"),
-        Value("", None, "word", f"{W}.sense_is", f"{W}.{'ccw' if f.sense > 0 else 'cw'}"),
-    ]
-    for side in arcs(asked):
-        name = "beyond" if side > 0 else "inside"
-        last = at(_plain(asked), places(asked, side)[-1], side)
-        values.append(Value("", widest(asked, side), "angle", f"{W}.arc_{name}"))
-        values.append(Value("", last.l4, "length", f"{W}.end_{name}"))
-    return values

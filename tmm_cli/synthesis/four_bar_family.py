@@ -8,12 +8,29 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
-from tmm_cli.synthesis.record import Listing
+from tmm_cli.synthesis.four_bar_arcs import arcs, at, places, widest
+from tmm_cli.synthesis.record import Listing, Value
 
 W: Final = "synthesis_four_bar_by_k"
 LINKS: Final = ("l1", "l2", "l3", "l4")
 LONGEST: Final = 20.0  # the whole family is on the diagrams when no rod is longer than this many of the chosen one
 CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
+
+
+def on_arcs(asked: Any, plain: Any, found: Any) -> list[Value]:
+    """Where the pivot stands, what that means for the crank, and how far the admissible arcs reach. plain: the same in
+    ordinary precision."""
+    values = [
+        Value("", found.beta, "angle", f"{W}.beta"),
+        Value("", None, "word", f"{W}.side", f"{W}.side_{'beyond' if found.side > 0 else 'inside'}"),
+        Value("", None, "word", f"{W}.sense_is", f"{W}.{'ccw' if found.sense > 0 else 'cw'}"),
+    ]
+    for side in arcs(asked):
+        name = "beyond" if side > 0 else "inside"
+        last = at(plain, places(asked, side)[-1], side)
+        values.append(Value("", widest(asked, side), "angle", f"{W}.arc_{name}"))
+        values.append(Value("", last.l4, "length", f"{W}.end_{name}"))
+    return values
 
 
 def construction(asked: Any, found: Any, family: Sequence[Any]) -> Construction:

@@ -159,10 +159,8 @@ def _closing(
     asked: FourBar | CrankSlider | SlottedLever, lengths: dict[str, Any], name: str
 ) -> tuple[str, dict[str, Shown]]:
     """Words of the least length of a link that is none: with it the links of a four-bar close."""
-    rest = sorted(float(value) for other, value in lengths.items() if other != name)
+    rest = sorted(max(0.0, float(value)) for other, value in lengths.items() if other != name)
     gap = rest[-1] - sum(rest[:-1]) if isinstance(asked, FourBar) else 0.0
-    if isinstance(asked, FourBar) and not rest[0] > 0:
-        return f"{W}.more_than_zero", {}
     open_end = gap >= SMALLEST  # where the links would lie in one line
     return f"{W}.at_least", {"least": (max(gap, SMALLEST), "length", *(("above",) if open_end else ()))}
 

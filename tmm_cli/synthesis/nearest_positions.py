@@ -12,6 +12,7 @@ from tmm_cli.synthesis.burmester import Dyads, marks
 from tmm_cli.synthesis.burmester_search import Effort
 from tmm_cli.synthesis.coupler_dyads import (
     EFFORTS,
+    FAR,
     QUICK,
     SAME,
     SURE,
@@ -26,9 +27,10 @@ from tmm_cli.synthesis.coupler_dyads import (
     searched,
     still,
 )  # fmt: skip
-from tmm_cli.synthesis.coupler_points import off_line
+from tmm_cli.synthesis.coupler_points import LONGEST, both_points, moved
 from tmm_cli.synthesis.record import Infeasible, Shown
 from tmm_cli.synthesis.whole_position import whole_position
+from tmm_cli.vectors import settled
 
 FARTHEST: Final = 0.3  # change of a position: rad, or a share of the size of the task
 NEAREST: Final = 0.03  # of that: the least change that is tried first
@@ -41,7 +43,14 @@ STRIDE: Final = 6.0  # from a step towards the limit to the next
 LESS: Final = 1e-4  # a change that is less by this share is surely refused
 INWARDS: Final = 1e-6  # rad, or a share of the size, from where there is a four-bar first
 ROUNDED: Final = 1e-5  # what six digits may add to a value
-ENDS: Final = ("other_positions", "other_points", "still_slider", "wider", "roomy")  # refusals without a value
+ENDS: Final = (  # refusals without a value
+    "other_positions", "other_points", "still_slider", "wider", "roomy", "off_line", "elsewhere",
+)  # fmt: skip
+MOVED: Final = {"off_line": LONGEST, "elsewhere": FAR}  # refusals of a point, and how far its link may reach
+LARGEST: Final = 50.0  # radius, over the size of the task, on which places are told that lie on a line
+BEYOND: Final = 1.05  # of the length at which a link only just reaches both places
+SHARE: Final = 0.02  # by which a length is changed, and
+TIMES: Final = 20.0  # how far
 PARTS: Final = {"x": 1.0, "y": 1j, "angle": 0.0}
 
 Change = tuple[int, str, float]  # number of the position, what of it, and the sense
@@ -88,13 +97,18 @@ def _accepted(asked: Asked, one: Dyads, other: Dyads) -> bool:
 
 def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> Infeasible:
     """The same refusal with the nearest box, or position, that is solved, where it is what must change."""
+    if (pole := _pole(asked)) is not None:
+        hinge = {"x": (pole.real, "length"), "y": (pole.imag, "length")}
+        return Infeasible("positions", f"{W}.one_pole", f"{W}.hinge", hinge)
     if asked.within is not None and (found := _box(asked, error, solves)) is not None:
         return found
     words = error.nearest.removeprefix(f"{W}.")
-    if words == "off_line":
-        name = "AB" if error.path[0] in ("A", "B") else "DC"
-        values = off_line(asked, name)
-        return error if values is None else Infeasible(error.path, error.reason, f"{W}.{words}_at", values)
+    if words == "longer":
+        return _longer(asked, error)
+    if words in MOVED:
+        values = moved(asked, "AB" if error.path[0] in ("A", "B") else "DC", MOVED[words])
+        if values is not None:
+            return Infeasible(error.path, error.reason, f"{W}.{words}_at", values)
     if words not in ENDS:
         return error
     keep = "_or_keep" if error.reason.startswith(f"{W}.has_") else ""
@@ -114,9 +128,59 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
         values = whole_position(asked, solves, soluble)
         if values is not None:
             return Infeasible(error.path, error.reason, f"{W}.whole{keep}", error.values | values)
+    if len(asked.places) < 4 and (values := both_points(asked)) is not None:
+        return Infeasible(error.path, error.reason, f"{W}.both_points{keep}", error.values | values)
+    if words == "still_slider" and (values := _on_circle(asked)):
+        return Infeasible(error.path, error.reason, f"{W}.on_circle", error.values | values)
     words = words if asked.within is None else "no_box"
     far: dict[str, Shown] = {"share": (f"{FARTHEST:g}", "word"), "turn": (FARTHEST, "angle")}
     return Infeasible(error.path, error.reason, f"{W}.{words}_far{keep}", error.values | far)
+
+
+def _pole(asked: Asked) -> complex | None:
+    """The point (m) about which three or four positions are turns of the coupler; None: there is none."""
+    turns = np.exp(1j * (np.asarray(asked.angles[1:], float) - float(asked.angles[0])))
+    places = np.asarray(asked.places, complex)
+    if len(turns) < 2 or np.min(np.abs(turns - 1)) < SAME:
+        return None
+    poles = (places[1:] - places[0] * turns) / (1 - turns)
+    size = float(np.max(np.abs(places))) + abs(poles[0])
+    return complex(settled(poles[0], size)) if np.max(np.abs(poles - poles[0])) <= SAME * size else None
+
+
+def _longer(asked: Asked, error: Infeasible) -> Infeasible:
+    """A link that reaches both places, as the error tells, and so long that the four-bar is sound."""
+    name, least = error.values["name"][0], float(error.values["length"][0])
+
+    def with_length(share: float) -> Asked:
+        side = replace(asked.sides[name], length=least * float(np.exp(share)))
+        return replace(asked, sides={**asked.sides, name: side})
+
+    shares = np.concatenate([[INWARDS], SHARE * np.arange(1, round(np.log(TIMES) / SHARE))])
+    for n, share in enumerate(map(float, shares)):
+        if soluble(with_length(share)):
+            if n > 0:
+                share = edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
+                error.values["length"] = (least * float(np.exp(share + INWARDS)), "length", "least")
+            return error
+    error.values["length"] = (least * BEYOND, "length")  # more must change
+    return error
+
+
+def _on_circle(asked: Asked) -> dict[str, Shown]:
+    """Places on a line: the second and third on the circle through the others that is as large as a link may be."""
+    first, *between, last = (complex(place) for place in asked.places)
+    radius, half = LARGEST * asked.size, abs(last - first) / 2
+    if half == 0:
+        return {}
+    along = (last - first) / (2 * half)
+    values: dict[str, Shown] = {"radius": (radius, "length"), "sizes": (f"{LARGEST:g}", "word")}
+    for n, place in enumerate(between):
+        at = ((place - first) * along.conjugate()).real
+        rise = at * (2 * half - at) / (np.sqrt(radius**2 - (at - half) ** 2) + np.sqrt(radius**2 - half**2))
+        on = first + along * complex(at, rise)
+        values |= {f"x{n}": (on.real, "length", "exact"), f"y{n}": (on.imag, "length", "exact")}
+    return values
 
 
 def _keys(asked: Asked) -> list[str]:

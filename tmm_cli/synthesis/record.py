@@ -96,8 +96,11 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
     `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind) or
     (number, kind, side): `most`, `least` allowed, or `below`, `above` for limits that are not allowed themselves; they
-    are rounded to that side, so that what is printed can be typed in; `exact`: nothing beside it will do.
+    are rounded to that side, so that what is printed can be typed in; `exact`: nothing beside it will do. whole:
+    the words tell all that must change; then: what must change beside them.
     """
+
+    then: Infeasible | None = None
 
     def __init__(
         self,
@@ -105,9 +108,10 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
         reason: str,
         nearest: str,
         values: Mapping[str, Shown] | None = None,
+        whole: bool = False,
     ) -> None:
         self.path = (key,) if isinstance(key, str) else key
-        self.reason, self.nearest, self.values = reason, nearest, dict(values or {})
+        self.reason, self.nearest, self.values, self.whole = reason, nearest, dict(values or {}), whole
         super().__init__(reason)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_cli.synthesis import slotted_lever
 from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
-from tmm_cli.synthesis.crank_slider import k_of, theta_of
+from tmm_cli.synthesis.crank_slider import USUAL, k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
 from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
 
@@ -23,6 +23,7 @@ PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 W: Final = "synthesis_shaper"
 SHORT: Final = 1e-3  # rad: a swing that leaves room for all that can be asked; a share of one so near to half a turn
 HALVINGS: Final = 60
+ROUNDED: Final = 2e-5  # by which a stroke may grow when it is told
 
 
 @dataclass(frozen=True)
@@ -82,20 +83,25 @@ def refuse(asked: Asked) -> None:
             kind = "number" if name == "frame_ratio" else "length"
             raise Infeasible(key, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, kind)})
     if not asked.k > 1:
-        values: dict[str, Shown] = {"k": (1 / asked.k if 0 < asked.k < 1 else 1.0, "number", "most")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if 0 < asked.k < 1 else f"{W}.k_more", values)
+        _refuse_small(asked)
     half = float(theta_of(asked.k)) / 2
     if not np.pi - 2 * half > slotted_lever.STRAIGHT:
+        refuse(replace(asked, k=float(k_of(SHORT))))  # what no k would mend is told first
         raise Infeasible("k", f"{W}.straight", f"{W}.k_most", {"k": (_largest_k(asked), "number", "below")})
     most, share = 1 / (1 + np.sin(half)), np.sin(half / 2) ** 2 / np.cos(half)
     if not asked.stroke > 0:
         _refuse_stroke(asked, 2 * float(np.sin(half)), most, share)
     if asked.pressure is not None and not 0 < asked.pressure < np.pi / 2:
-        values = {"low": (SMALLEST, "angle"), "high": (np.pi / 2 - half, "angle", "below")}
-        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.pressure_allowed", values)
+        values: dict[str, Shown] = {"low": (SMALLEST, "angle"), "high": (np.pi / 2 - half, "angle", "below")}
+        values["usual"] = (USUAL, "angle")
+        words = "pressure_allowed" if np.pi / 2 - half > USUAL else "pressure_steep"
+        raise Infeasible("pressure", f"{W}.pressure_range", f"{W}.{words}", values)
     f = find(asked)
     lever = float(f.lever)
-    short: dict[str, Shown] = {"rod": (lever * share, "length", "above"), "rod_ratio": (share, "number", "above")}
+    short: dict[str, Shown] = {
+        name: (limit, kind, "above") if limit > SMALLEST else (SMALLEST, kind)
+        for name, limit, kind in (("rod", lever * share, "length"), ("rod_ratio", share, "number"))
+    }
     for name, limit in short.items():
         if getattr(asked, name) is not None and not getattr(asked, name) > 0:
             raise Infeasible(names[name], f"{W}.positive", f"{W}.rod_least", {"least": limit})
@@ -112,6 +118,20 @@ def refuse(asked: Asked) -> None:
             raise Infeasible("pressure", f"{W}.turns_back", f"{W}.pressure_most", values)
         name = "rod" if asked.rod_ratio is None else "rod_ratio"
         raise Infeasible(names[name], f"{W}.turns_back", f"{W}.rod_least", {"least": short[name]})
+
+
+def _refuse_small(asked: Asked) -> None:
+    """k of 1 or less: the same strokes the other way round, or the largest k that the other numbers allow."""
+    values: dict[str, Shown] = {"least": (1.0, "number", "above")}
+    words = "k_more"
+    if 0 < asked.k < 1:
+        try:
+            refuse(replace(asked, k=1 / asked.k))
+            values["k"], words = (1 / asked.k, "number", "most"), "k_least"
+        except Infeasible:
+            refuse(replace(asked, k=float(k_of(SHORT))))  # what no k would mend is told first
+            values["k"], words = (_largest_k(asked), "number", "below"), "k_range"
+    raise Infeasible("k", f"{W}.k_below", f"{W}.{words}", values)
 
 
 def _largest_k(asked: Asked) -> float:
@@ -141,7 +161,10 @@ def _refuse_stroke(asked: Asked, chord: float, most: float, share: float) -> Non
     least = max(SMALLEST, frame / most * chord)
     fits = asked.rod is None or asked.rod * chord > least * share
     values: dict[str, Shown] = {"least": (least, "length", *(("above",) if frame else ()))}
-    raise Infeasible("stroke", f"{W}.positive", f"{W}.at_least" if fits else f"{W}.more_than_zero", values)
+    if not fits:
+        rod = least / chord * share * (1 + ROUNDED)
+        values["rod"] = (rod, "length", "above") if rod > SMALLEST else (SMALLEST, "length")
+    raise Infeasible("stroke", f"{W}.positive", f"{W}.at_least" if fits else f"{W}.with_rod", values, whole=not fits)
 
 
 def solve(asked: Asked) -> Outcome:

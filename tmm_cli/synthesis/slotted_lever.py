@@ -23,6 +23,7 @@ from tmm_cli.vectors import settled
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 W: Final = "synthesis_slotted_lever"
 FAMILY: Final = 61  # lengths of OC within bounds that are listed
+ANY: Final = 0.1  # m: a distance, where any will do
 STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
 
 
@@ -99,29 +100,54 @@ def find(asked: Asked) -> Found:
 def refuse(asked: Asked) -> None:
     """Raises Infeasible with the reason and what could be met."""
     if asked.k is not None and not asked.k > 1:
-        turned = 1 / asked.k if STRAIGHT < asked.k < 1 else 1.0
-        values: dict[str, Shown] = {"k": (turned, "number", "most")}
-        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if turned > 1 else f"{W}.k_more", values)
+        values: dict[str, Shown] = {"least": (1.0, "number", "above")}
+        if turned := STRAIGHT < asked.k < 1 and _solved(replace(asked, k=1 / asked.k)):
+            values["k"] = (1 / asked.k, "number", "most")
+        raise Infeasible("k", f"{W}.k_below", f"{W}.k_least" if turned else f"{W}.k_more", values)
     if asked.k is not None and not np.pi - asked.theta > STRAIGHT:
         values = {"k": (float(k_of(np.pi - STRAIGHT)), "number", "below")}
         raise Infeasible("k", f"{W}.swing_range", f"{W}.k_most", values)
     if asked.swing is not None and not 0 < asked.swing < np.pi - STRAIGHT:
-        values = {"most": (np.pi - STRAIGHT, "angle", "below")}
+        values = {"least": (SMALLEST, "angle", "least"), "most": (np.pi - STRAIGHT, "angle", "below")}
         raise Infeasible("swing", f"{W}.swing_range", f"{W}.swing_allowed", values)
     for name, value in (("CB", asked.length), ("OC", asked.frame), ("OA", asked.crank)):
         if value is not None and not value > 0:
-            raise Infeasible(name, f"{W}.positive", f"{W}.at_least", {"least": (SMALLEST, "length")})
+            values = {"least": (SMALLEST, "length")}
+            if name == "CB" and (lever := _shortest_lever(asked)) > SMALLEST:
+                values["lever"] = (lever, "length", "least")
+                words = "lever_least" if asked.within is not None else "lever_usable"
+                raise Infeasible(name, f"{W}.positive", f"{W}.{words}", values)
+            raise Infeasible(name, f"{W}.positive", f"{W}.at_least", values)
     if asked.length is None and abs(asked.b2 - asked.b1) == 0:
-        raise Infeasible("B2", f"{W}.same", f"{W}.other_place")
+        way = _shortest_lever(asked) * 2 * float(np.sin(asked.theta / 2))  # so that the stone is on CB
+        way = way if way > SMALLEST else ANY
+        values = {"x": (asked.b1.real + way, "length", "least"), "y": (asked.b1.imag, "length")}
+        raise Infeasible("B2", f"{W}.same", f"{W}.other_place", values)
     if asked.within is not None:
         low, high = asked.within
         longest = float(find(replace(asked, within=(1.0, 1.0))).longest)
         if not 0 < low <= high:
-            first, last = max(SMALLEST, min(low, high, longest)), max(SMALLEST, low, high)
+            first, last = max(SMALLEST, min(low, high, longest)), max(low, high)
+            last = last if last > 0 else max(SMALLEST, longest)
             values = {"first": (first, "length", "most"), "last": (last, "length", "least")}
             raise Infeasible("within", f"{W}.bounds", f"{W}.bounds_order", values)
         if low > longest:
             raise Infeasible("within", f"{W}.too_long", f"{W}.longest_most", {"longest": (longest, "length", "most")})
+
+
+def _solved(asked: Asked) -> bool:
+    try:
+        refuse(asked)
+    except Infeasible:
+        return False
+    return True
+
+
+def _shortest_lever(asked: Asked) -> float:
+    """The least CB (m) that has the stone on it, for what is given of OC, or of OA."""
+    sine = float(np.sin(asked.theta / 2))
+    frame = asked.within[0] if asked.within is not None else asked.frame if asked.crank is None else asked.crank / sine
+    return float(frame) * (1 + sine)
 
 
 def sense(asked: Asked) -> int:

@@ -36,12 +36,14 @@ WORDS: dict[str, str] = {
     f"{_W}.curves": "red: centre points m (pivots); dashed: circle points k1 (pins), in position 1",
     f"{_W}.still": "{point} does not move between these positions, or not against the coupler: it is the pole",
     f"{_W}.elsewhere": "another {point}",
+    f"{_W}.one_pole": "the coupler only turns about one point: every pivot would be there",
+    f"{_W}.hinge": "a hinge at [{x}, {y}] in the place of a four-bar; or positions that are no turns about one point",
+    f"{_W}.elsewhere_at": "another {point}, as [{x}, {y}]",
     f"{_W}.line": "the three places of {point} lie on a line: the other end of the link is infinitely far",
     f"{_W}.off_line": "another {point}, or a slider instead of the link",
     f"{_W}.off_line_at": "{point} [{x}, {y}], whose link reaches {sizes} times the size of the task, or a slider "
     "instead of the link",
     f"{_W}.one_point": "{names} are one point: that is no four-bar",
-    f"{_W}.two_points": "two points",
     f"{_W}.short": "{name} does not reach both places",
     f"{_W}.longer": "{name} {length} or more",
     f"{_W}.no_turn": "no link through the four positions turns by this angle from the first to the second",
@@ -54,6 +56,8 @@ WORDS: dict[str, str] = {
     f"{_W}.still_off": "the coupler does not turn: all its points go on equal circles, and the fourth place is not on "
     "that through the others",
     f"{_W}.still_on": "x = {x}, y = {y}; or a coupler that turns",
+    f"{_W}.still_on_turn": "x = {x}, y = {y} with {names} {turn}; or a coupler that turns",
+    f"{_W}.still_turns": "{names} {turn}",
     f"{_W}.still_turn": "the coupler does not turn: both links turn as its places do on their circle",
     f"{_W}.any_parallelogram": "the coupler does not turn: any parallelogram with these arms does it; AD is free in "
     "length and direction, taken across the arms in the middle of their way",
@@ -64,12 +68,15 @@ WORDS: dict[str, str] = {
     "one position alone was found to help",
     f"{_W}.left_out_whole": "without {left}, and position {which}: [{x}, {y}, {angle}]",
     f"{_W}.left_out": "without {left}",
+    f"{_W}.both_points": "{first} [{x0}, {y0}] and {second} [{x1}, {y1}]; no other of them alone was found to help",
+    f"{_W}.on_circle": "positions 2 and 3 at [{x0}, {y0}] and [{x1}, {y1}]: with the others on a circle of {radius}, "
+    "{sizes} times the size of the task; or a slider",
     f"{_W}.left_out_position": "without {left}, and position {which}: {part} {to}",
     f"{_W}.no_curve": "Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)",
     f"{_W}.has_branch": "branch defect: some positions are on the other assembly of the four-bar",
     f"{_W}.has_turns_back": "order defect: AB does not reach the positions in order by turning one way",
     f"{_W}.has_locks": "circuit defect: AB locks on the way between the positions",
-    f"{_W}.swap": "DC as the driver (exchange A with D and B with C), or defects: keep",
+    f"{_W}.swap": "DC as the driver ({swap}); or defects: keep",
     f"{_W}.sides": "AB_side: {one}, DC_side: {other}; or defects: keep",
     f"{_W}.length": "{name} {length}; or defects: keep",
     f"{_W}.point": "{point} [{x}, {y}]; or defects: keep",
@@ -108,12 +115,14 @@ WORDS: dict[str, str] = {
     f"{_W}.other_y": "pivots within, to y",
     f"{_W}.other_points": "other points or turns, or defects: keep",
 }
-for _key in ("position", "whole", "left_out", "left_out_position", "left_out_whole"):
+for _key in ("position", "whole", "left_out", "left_out_position", "left_out_whole", "both_points"):
     WORDS[f"{_W}.{_key}_or_keep"] = WORDS[f"{_W}.{_key}"] + "; or defects: keep"
 _FAR = "; no change of one position by up to {turn}, or {share} of the size of the task, was found to help"
 for _key, _text in {
     "other_positions": "other positions",
     "other_points": "other points",
+    "elsewhere": "another {point}",
+    "off_line": "another {point}, or a slider instead of the link",
     "still_slider": "places on a circle, or a slider",
     "no_box": "other positions: without this box there is no such four-bar either",
 }.items():
@@ -127,7 +136,7 @@ for _key, _text in {"turn": "turn", "turns": "turns", "turns_no_box": "turns"}.i
     WORDS[f"{_W}.{_key}_usable"] = WORDS[f"{_W}.{_key}"].replace("; or", _USABLE[_text] + "; or")
 for _key in ("sides", "length", "point", *("turn", "turn_usable", "turns", "turns_usable"), "turns_no_box",
              "turns_no_box_usable"):  # fmt: skip
-    WORDS[f"{_W}.{_key}_swap"] = WORDS[f"{_W}.{_key}"].replace("; or", "; or DC as the driver; or")
+    WORDS[f"{_W}.{_key}_swap"] = WORDS[f"{_W}.{_key}"].replace("; or", "; or DC as the driver ({swap}); or")
 for _point, _text in {
     "A": "pivot A",
     "D": "pivot D",
@@ -140,3 +149,5 @@ for _point, _text in {"A": "pivot A", "D": "pivot D", "B": "B in the coupler", "
 for _number in range(1, 5):
     WORDS |= {f"{_W}.{_axis}{_number}": f"position {_number}: {_axis} of P" for _axis in "xy"}
     WORDS[f"{_W}.angle{_number}"] = f"position {_number}: angle of the coupler"
+for _key in ("point", "turn", "turn_usable", "turns", "turns_usable"):
+    WORDS[f"{_W}.{_key}_alone"] = WORDS[f"{_W}.{_key}"].replace("; or defects: keep", "")

@@ -54,11 +54,15 @@ WORDS: dict[str, str] = {
     "circle through {C}1, {C}2′ ...",
     f"{_W}.inversion": "dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back",
     f"{_W}.order": "the input turns back: pair {this} cannot be reached after pair {last} in order",
-    f"{_W}.in_order": "input angles that only grow, or only fall; pair {last} has {phi}",
+    f"{_W}.in_order": "input angles that only grow, or only fall",
+    f"{_W}.input_alone": "input angle {which}: {phi}",
     f"{_W}.turn": "the input has come round before the last pair",
     f"{_W}.one_turn": "less than a turn from the first to the last input angle",
     f"{_W}.positive": "there is no such link",
-    f"{_W}.more_than_zero": "more than zero",
+    f"{_W}.any_length": "any length, as {one}",
+    f"{_W}.length_least_long": "{least} or more, with no link {links} times as long as another; {best} for the best "
+    "transmission",
+    f"{_W}.length_least": "{least} or more; {best} for the best transmission",
     f"{_W}.at_least": "{least} or more",
     f"{_W}.none": "no four-bar passes through these pairs",
     f"{_W}.all_branch": "branch defect: every four-bar through these pairs has some of them on its other assembly",
@@ -79,6 +83,9 @@ WORDS: dict[str, str] = {
     f"{_W}.keep": "defects: keep; every other solution has a defect too",
     f"{_W}.number": "there is no solution of this number",
     f"{_W}.numbers": "1 to {count}",
+    f"{_W}.choose_best": "choose: transmission",
+    f"{_W}.numbers_fair": "{numbers}; or choose: transmission",
+    f"{_W}.numbers_keep": "1 to {count} with defects: keep; every solution has a defect",
 }
 WORDS |= {f"{_W}.column_{key}": text for key, text in _COLUMNS.items()}
 _NEAREST = {
@@ -91,6 +98,8 @@ for _key, _text in _NEAREST.items():
         for _plain, _number in _USABLE.items():
             for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
                 WORDS[f"{_W}.{_key}{_bound}{_plain}{_left}"] = f"{_text}{_number}{_why}{_or}"
+for _count in range(2, 6):
+    WORDS[f"{_W}.inputs_{_count}"] = "input angles " + ", ".join(f"{{phi{k}}}" for k in range(1, _count + 1))
 for _left, _or in (("", "; or defects: keep"), ("_alone", "")):
     WORDS[f"{_W}.points_fewer{_left}"] = f"points: {{count}}{_or}"
     for _count in range(2, 6):

@@ -56,27 +56,33 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.positive": "there is no such link",
     "synthesis_four_bar_by_k.at_least": "{least} or more",
     "synthesis_four_bar_by_k.k_below": "k is the time of the working stroke over that of the idle one, the shorter",
-    "synthesis_four_bar_by_k.k_least": "more than 1; {k} for the same strokes",
-    "synthesis_four_bar_by_k.k_range": "1 to {k}",
-    "synthesis_four_bar_by_k.k_zero": "1 or more",
-    "synthesis_four_bar_by_k.k_zero_above": "more than 1",
-    "synthesis_four_bar_by_k.k_range_above": "more than 1, to {k}",
+    "synthesis_four_bar_by_k.k_least": "{least} or more; {k} for the same strokes",
+    "synthesis_four_bar_by_k.k_same": "{k} for the same strokes",
+    "synthesis_four_bar_by_k.k_more": "k {k} or more",
+    "synthesis_four_bar_by_k.k_range": "{least} to {k}",
+    "synthesis_four_bar_by_k.k_zero": "{least} or more",
     "synthesis_four_bar_by_k.swing": "a rocker swings by more than zero and less than 180 deg",
-    "synthesis_four_bar_by_k.swing_range": "psi2 from {low} to {high}, other than psi1 = {psi1}",
+    "synthesis_four_bar_by_k.swing_least": "psi2 {psi2} or more",
+    "synthesis_four_bar_by_k.swing_as": "psi2 {psi2}, as one between the bounds",
+    "synthesis_four_bar_by_k.swing_most": "psi2 {psi2} or less",
+    "synthesis_four_bar_by_k.swing_range1": "psi2 from {near0} to {far0}",
+    "synthesis_four_bar_by_k.swing_range2": "psi2 from {near0} to {far0}, or {near1} to {far1}",
     "synthesis_four_bar_by_k.k_above": "k is too large for this swing: on the whole circle the rocker would pass its "
     "dead position, or stand all but in it",
     "synthesis_four_bar_by_k.k_most": "k {k} or less, or psi2 {psi2} or more",
     "synthesis_four_bar_by_k.k_most_down": "k {k} or less, or psi2 {psi2} or less",
     "synthesis_four_bar_by_k.k_most_alone": "k {k} or less",
-    "synthesis_four_bar_by_k.k_most_other": "k {k} or less with another choice of A",
+    "synthesis_four_bar_by_k.k_most_best": "k {k} or less with choose: best transmission",
+    "synthesis_four_bar_by_k.k_most_length": "k {k} or less with choose: best transmission in the place of {name}; or "
+    "{name} {length} with k {with_k}",
     "synthesis_four_bar_by_k.sense": "with this sense of the crank the slow stroke leads from psi2 to psi1",
-    "synthesis_four_bar_by_k.sense_most": "the other sense, or k {k} or less",
-    "synthesis_four_bar_by_k.sense_other": "the other sense",
-    "synthesis_four_bar_by_k.sense_both": "the other sense with k {other} or less",
+    "synthesis_four_bar_by_k.sense_most": "turns: {turn}, or k {k} or less",
+    "synthesis_four_bar_by_k.sense_other": "turns: {turn}",
+    "synthesis_four_bar_by_k.sense_both": "turns: {turn} with k {other} or less",
     "synthesis_four_bar_by_k.best_none": "with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the "
     "farther A is",
-    "synthesis_four_bar_by_k.best_others": "k more than 1; or l2, l4, near or choose: supports level, the pressure "
-    "angle being more than {pressure} always",
+    "synthesis_four_bar_by_k.best_others": "k {k} or more; or l4 {frame}, with a pressure angle of {usable} or less "
+    "(it is more than {pressure} always)",
     "synthesis_four_bar_by_k.level_none": "no pivot of the admissible arcs is as high as D",
     "synthesis_four_bar_by_k.near_end": "the nearest place of the admissible arcs is an end of them, where the rocker "
     "is dead",
@@ -85,19 +91,21 @@ WORDS: dict[str, str] = {
     "synthesis_four_bar_by_k.l1_none": "no pivot of the admissible arcs gives such a crank",
     "synthesis_four_bar_by_k.l2_none": "no pivot of the admissible arcs gives such a coupler",
     "synthesis_four_bar_by_k.l1_same": "with k = 1 every crank is half of C1C2",
-    "synthesis_four_bar_by_k.l1_above": "k {k} or more; or l2, l4, near or supports level; the crank is {l1}",
-    "synthesis_four_bar_by_k.l1_others": "l2, l4, near or supports level; the crank is {l1}",
+    "synthesis_four_bar_by_k.l1_above": "k {k} or more; or l4 {frame} in the place of l1: the crank is {l1} then",
+    "synthesis_four_bar_by_k.l1_others": "l4 {frame} in the place of l1: the crank is {l1}, and the pressure angle "
+    "{usable} or less",
     "synthesis_four_bar_by_k.l4_none": "no pivot of the admissible arcs is at this distance from D",
     "synthesis_four_bar_by_k.l4_range": "{low} to {high}",
     "synthesis_four_bar_by_k.l4_range_line": "{low} or more",
     "synthesis_four_bar_by_k.l4_range_but": "{low} to {high}, other than {l3}",
+    "synthesis_four_bar_by_k.l4_beside": "{before} or less, or {after} or more",
 }
 for _where in ("higher", "lower"):
     _key = f"synthesis_four_bar_by_k.level_{_where}"
     WORDS |= {
-        _key: f"best transmission, l4 or near; at best A is {{offset}} {_where} than D",
-        f"{_key}_turned": f"psi1 {{psi1}} and psi2 {{psi2}}, both turned by {{turn}}; or best transmission, l4 or "
-        f"near; now A is at best {{offset}} {_where} than D",
+        f"{_key}_near": f"near: [{{x}}, {{y}}]; at best A is {{offset}} {_where} than D",
+        f"{_key}_turned": f"psi1 {{psi1}} and psi2 {{psi2}}, both turned by {{turn}}; now A is at best {{offset}} "
+        f"{_where} than D",
         f"{_key}_more": f"k {{k}} or more; now A is at best {{offset}} {_where} than D",
         f"{_key}_less": f"k {{k}} or less; now A is at best {{offset}} {_where} than D",
     }

@@ -46,7 +46,6 @@ WORDS: dict[str, str] = {
     "synthesis_grashof.lever_change": "change point: the stone may pass the hinge of the slotted link",
     "synthesis_grashof.lever_margin": "|OC - OA| - e",
     "synthesis_grashof.positive": "there is no such link",
-    "synthesis_grashof.more_than_zero": "more than zero",
     "synthesis_grashof.at_least": "{least} or more",
     "synthesis_grashof.open": "the links do not close: {link} is as long as the others together, or longer",
     "synthesis_grashof.closing": "{link} {most} or less",

@@ -21,6 +21,8 @@ from tmm_cli.synthesis.record import Infeasible, sound
 from tmm_cli.words import say
 
 Parameters = dict[str, Quantity]
+SLOW = ("coupler-positions",)  # tasks whose refusals are told once: another costs too much
+TOLD = ("least", "low", "most", "high", "lever", "one", "turn", "near0")  # values that may stand in a key's place
 Variant = Callable[[Parameters, UnitSystem], Problem]
 
 
@@ -90,7 +92,10 @@ def with_synthesis(
             with np.errstate(all="ignore"):  # what has no value is refused by `sound`
                 outcome = sound(task(block.task).solve(record))
         except Infeasible as error:
-            raise _refused(error, block, units).at("synthesis") from None
+            told = _refused(error, block, units)
+            if not getattr(reader(block.task), "SEARCH", False) and block.task not in SLOW:
+                told.allowed = (told.allowed or "") + _beside(error, block, raw, units)
+            raise told.at("synthesis") from None
         except OfTheFile as error:
             raise error.error from None
         except ProblemError as error:
@@ -185,11 +190,46 @@ def _refused(error: Infeasible, block: Block, units: UnitSystem) -> ProblemError
     from tmm_cli.problem.synthesis.limits import shown
 
     values = shown(error.values, units)
+    allowed, then = say(error.nearest, **values), error.then
+    while then is not None:
+        allowed += f"; and {say(then.nearest, **shown(then.values, units))}"
+        then = then.then
     return ProblemError(
-        say(error.reason, **values), path=error.path,
-        found=_found(block, error.path),
-        allowed=say(error.nearest, **values),
+        say(error.reason, **values), path=error.path, found=_found(block, error.path), allowed=allowed,
     )  # fmt: skip
+
+
+def _beside(
+    error: Infeasible, block: Block, raw: Mapping[str, object], units: UnitSystem, done: tuple[str, ...] = ()
+) -> str:
+    """What must change beside a value that is refused: why the task is refused with the value that is told."""
+    from tmm_cli.problem.synthesis.limits import shown
+
+    values, key = shown(error.values, units), str(error.path[0]) if len(error.path) == 1 else ""
+    listed = isinstance(getattr(block, key, None), list | tuple)
+    tries: list[Any] = [values[name] for name in (key, *TOLD) if name in values and not listed]
+    if listed and {"x", "y"} <= set(values):
+        tries = [[values["x"], values["y"]]]
+    both: tuple[str, ...] = ("psi1", "psi2")
+    several: dict[str, Any] = {name: values[name] for name in both if "turn" in values and name in values}
+    then: list[tuple[Infeasible, Block]] = []
+    for text in tries if key not in done and not error.whole and error.then is None else ():
+        changed = block.model_copy(update=several or {key: text})
+        try:
+            with np.errstate(all="ignore"):
+                task(block.task).solve(reader(block.task).asked(changed, Bounded(_parts(block, raw, units)[2], units)))
+        except ProblemError:
+            return ""
+        except Infeasible as refusal:
+            then.append((refusal, changed))
+        else:
+            return ""
+    if not then or then[0][0].path == error.path:
+        return ""
+    other, changed = then[0]
+    told, name = say(other.nearest, **shown(other.values, units)), str(other.path[0]) if other.path else ""
+    named = told.split()[0].rstrip(":") in type(block).model_fields or len(other.path) != 1
+    return f"; and {told if named else f'{name}: {told}'}" + _beside(other, changed, raw, units, (*done, key))
 
 
 def _found(block: Block, path: tuple[str | int, ...]) -> str | None:

@@ -72,7 +72,7 @@ def asked(shape: Shape, sense: Sense) -> Asked:
         if same:
             raise ProblemError(
                 "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",
-                allowed="different positions",
+                allowed="any other position, as one turned by 20 deg",
             )  # fmt: skip
     sides = {name: side for name in DYADS if (side := _side(shape, sense, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
@@ -117,7 +117,7 @@ def _side(shape: Shape, sense: Sense, name: str, count: int) -> Side | None:
         for field, key in (("pivot", pivot), ("pin", pin), ("near", near)) if key in given
     }  # fmt: skip
     if name in given:
-        found["length"] = sense.positive(getattr(shape, name), LENGTH, (name,))
+        found["length"] = sense.number(getattr(shape, name), LENGTH, (name,))
     if turn in given:
         found["turn"] = sense.number(getattr(shape, turn), ANGLE, (turn,))
     return Side(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)
