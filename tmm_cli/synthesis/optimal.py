@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from tmm_cli.synthesis.goals import FORCES, Goal
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
 from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.synthesis.wider import Nearest
 
 __all__ = ["PARAMETERS", "Asked", "Limit", "best", "solve"]
 PARAMETERS: Final[dict[str, str]] = {}
@@ -102,7 +105,7 @@ def solve(asked: Asked) -> Outcome:
     try:
         search = Search(asked)
     except NoneAssembled as refusal:
-        search = Search(asked, _within(asked, "vary", refusal.reason).tolist())
+        search = Search(asked, _within(asked, "vary", refusal.reason).first)
     found = best(search)
     if found.missed:
         found = _mended(search, found)
@@ -121,7 +124,7 @@ def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...
 
     Raises Infeasible, at a key and for a reason, with the bounds that it finds else.
     """
-    again = _best_of(search, [search.shares(_within(search.asked, *refusal))], found.evolved)
+    again = _best_of(search, [search.shares(_within(search.asked, *refusal).numbers)], found.evolved)
     if again.missed:
         raise Infeasible(*refusal, _other(refusal[1], search.closed))
     return again
@@ -133,8 +136,8 @@ def _other(reason: str, closed: bool) -> str:
     return own.get(reason, f"{W}.wider")
 
 
-def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real:
-    """Numbers within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
+def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Nearest:
+    """A mechanism within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
     from tmm_cli.synthesis.wider import nearest
 
     found = nearest(asked)
@@ -148,9 +151,7 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
         if not found.keeps and reason != f"{W}.no_assembly":  # with these bounds it goes its way, and no more is said
             key, reason = "vary", f"{W}.never"
         raise Infeasible(asked.bound(name, above) if key == "vary" else key, reason, f"{W}.{words}", values)
-    if not found.sketched:
-        raise Infeasible(key, reason, f"{W}.other_sketch")
-    return found.numbers
+    return found
 
 
 def _mended(search: Search, found: Best) -> Best:
