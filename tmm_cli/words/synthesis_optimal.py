@@ -115,3 +115,6 @@ WORDS: dict[str, str] = {
 for _count in range(1, 21):
     _bounds = ", ".join(f"{{name{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
     WORDS[f"synthesis_optimal.wider{_count}"] = f"wider bounds, the nearest: {_bounds}"
+for _count in range(2, 31):
+    _limits = ", ".join(f"constraint {{which{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
+    WORDS[f"synthesis_optimal.together{_count}"] = f"with the others kept, these are met together: {_limits}"
