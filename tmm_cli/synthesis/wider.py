@@ -27,8 +27,8 @@ GENERATIONS = 120  # until some mechanism is found,
 CLOSER = 60  # and of each search in what is nearer than the nearest known one
 ROUNDS = 2  # of those
 SPREAD = 60  # candidates tried first in each of the nested bounds
-QUICK = 2  # times as many of them, of searches and of their generations, where candidates move by their tape
-STARTS = 5  # of the polish: the nearest that differ
+STARTS = 2  # of the polish: the nearest that differ
+QUICK = 2  # times as many of all these, and of generations, where candidates move by their tape
 APART = 0.05  # by so much, in shares of the given ranges
 BEYOND = 1e-9  # shares of the range: what is less is within
 ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
@@ -216,7 +216,7 @@ def _starts(search: Wider) -> list[Real]:
             most = np.minimum(most, search.own_high + reach * span)
         part = search.within(least, most, search.sides)
         generations = min(search.generations, quick * CLOSER if np.isfinite(reach) else GENERATIONS)
-        known = part.shares(numbers[good][np.argsort(far[good])[:STARTS]])
+        known = part.shares(numbers[good][np.argsort(far[good])[: STARTS * quick]])
         evolved = evolve(
             part.evaluate, len(least), population=search.population, generations=generations, seed=seed + n,
             shrinking=generations // 2 if equal else 0, progress=search.asked.progress, known=np.clip(known, 0, 1),
@@ -225,7 +225,7 @@ def _starts(search: Wider) -> list[Real]:
         far, missed = np.append(far, evolved.objective), np.append(missed, evolved.violation)
     starts: list[Real] = []
     for k in np.lexsort((far, np.where(missed <= FINE, 0.0, missed))):
-        if len(starts) == STARTS or not missed[k] < 1.0:
+        if len(starts) == STARTS * quick or not missed[k] < 1.0:
             break
         if all(np.max(np.abs(numbers[k] - other) / span) > APART for other in starts):
             starts.append(numbers[k])
