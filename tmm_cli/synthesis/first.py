@@ -65,7 +65,8 @@ def first_near(asked: Asked, tries: int, low: Real, high: Real) -> list[float] |
         least, most = own_low + share * (low - own_low), own_high + share * (high - own_high)
         spread = least + chance.random((tries, len(low))) * (most - least)
         tried += [np.where(told, drawn, spread), spread] if not np.all(told) else [spread]
-    for numbers in np.vstack(tried):
+    every = np.vstack(tried)
+    for numbers in asked.near(every) if asked.values else every:
         if asked.accepts(numbers.tolist()) and shown(asked, numbers):
             return [float(number) for number in numbers]
     return None

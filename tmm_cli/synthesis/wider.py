@@ -192,7 +192,7 @@ def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float]) -> 
 def _towards(search: Wider, inside: Real, outside: Real) -> Real:
     """As far from one mechanism towards another place as there are mechanisms."""
     for _ in range(HALVES):
-        middle = (inside + outside) / 2
+        middle = search.numbers(search.shares((inside + outside) / 2))
         inside, outside = (middle, outside) if search.holds(middle) else (inside, middle)
     return inside
 
@@ -240,7 +240,7 @@ def _spread(search: Wider, count: int) -> tuple[Real, Real, Real]:
         least = search.own_low + share * (search.low - search.own_low)
         most = search.own_high + share * (search.high - search.own_high)
         tried.append(least + chance.random((count, len(least))) * (most - least))
-    numbers = np.vstack(tried)
+    numbers = search.numbers(search.shares(np.vstack(tried)))
     return (numbers, *search.evaluate(search.shares(numbers)))
 
 
