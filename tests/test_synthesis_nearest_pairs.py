@@ -214,3 +214,12 @@ def test_both_extreme_positions_are_told_turned_where_no_k_makes_the_supports_le
     back = np.sign(first - float(match[1].split()[0])) * 0.02
     psi1, psi2 = (float(match[k].split()[0]) + back for k in (1, 2))
     refused(block | {"psi1": psi1, "psi2": psi2})
+
+
+def test_four_bars_between_two_steps_of_the_first_scan_are_not_missed():
+    """They are there from 78.08 deg on; between 78.18 and 78.22 deg a link of theirs is too long."""
+    block = of_pairs([40.5, 75.9, 111.8, 157.5], [12.7, 24.5, 49.3, 74.2], l4=100)
+    assert refused(block).allowed.startswith("the last output angle 78.0793 deg")
+    refused(put(block, ("pairs", 3, 1), 78.079))
+    long = [links(solved(put(block, ("pairs", 3, 1), last))) > LINKS for last in (78.0793, 78.15, 78.2, 78.23)]
+    assert long == [False, False, True, False]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -140,6 +141,37 @@ def test_the_nearest_value_that_is_told_can_be_met():
     assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
     with pytest.raises(ProblemError):
         slider(task.replace("VALUE", f"{float(nearest.split()[0]) * 1.0001} mm"))
+
+
+def with_constraints(name, edit, vary, constraints):
+    """A file of the bank whose numbers vary, with the least sum of lengths under constraints."""
+    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8").replace(*edit)
+    task = f"synthesis: {{task: optimal, vary: {vary}, objective: length, constraints: [{constraints}]}}\npoints: {{O"
+    return build(read_text(text.replace("points: {O", task, 1), "x.yaml")).synthesis.outcome
+
+
+def test_constraints_that_contradict_one_another_are_told_with_limits_that_are_met_together():
+    """Without offset the sine of the largest pressure angle is r/l, and the links are r + l long: 50/250, 300 mm."""
+    task = "{{of: pressure, most: {}}}, {{of: length, least: {}}}"
+    file = ("crank-slider", ("r: 60, l: 220, ", ""), "{r: [50, 60], l: [200, 250]}")
+    with pytest.raises(ProblemError) as caught:
+        with_constraints(*file, task.format("5 deg", "500 mm"))
+    assert caught.value.path[:2] == ("synthesis", "constraints")
+    told = re.fullmatch(
+        r"with the others kept, these are met together: constraint 1 most (\S+ deg), constraint 2 least (\S+ mm)",
+        caught.value.allowed,
+    )
+    assert [float(value.split()[0]) for value in told.groups()] == pytest.approx([11.537, 300], rel=1e-5)
+    assert with_constraints(*file, task.format(*told.groups())).found
+
+
+def test_a_quantity_that_is_the_same_for_all_is_told_exactly():
+    """The stroke of the Whitworth mechanism is 2 CD, wherever C lies."""
+    file = ("whitworth", ("OC: 60, ", ""), "{OC: [43, 77]}")
+    with pytest.raises(ProblemError) as caught:
+        with_constraints(*file, "{of: stroke, equal: 239.7}")
+    assert caught.value.allowed == "with the others kept, the nearest is 240 mm"
+    assert with_constraints(*file, "{of: stroke, equal: 240}").found
 
 
 REFUSED = {

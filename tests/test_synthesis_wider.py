@@ -108,13 +108,13 @@ def file_with(name, edit, vary, more=""):
     return build(read_text(text.replace("points: {", task + "points: {", 1), "x.yaml"))
 
 
-def test_bounds_are_told_with_which_the_sketch_shows_the_assembly():
-    """Beyond the nearest bounds that can be assembled at all, as the sketch of the file lies far from those."""
+def test_the_sketch_may_show_a_linkage_beyond_bounds_that_hold_another_of_the_same_assembly():
+    """The cylinder's pivot lies so far from that of the lever that DB > 300 mm; the sketch shows AB = 250, DB = 160."""
     edit = ("AB: 250, DB: 160, ", "")
     with pytest.raises(ProblemError) as caught:
         file_with("cylinder", edit, "{AB: [20, 60], DB: [80, 200]}")
-    ends = told(caught.value, "AB to", "DB to")
-    problem = file_with("cylinder", edit, f"{{AB: [20, {ends[0]}], DB: [80, {ends[1]}]}}")
+    (end,) = told(caught.value, "DB to")
+    problem = file_with("cylinder", edit, f"{{AB: [20, 60], DB: [80, {end}]}}")
     assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
@@ -163,11 +163,15 @@ def test_a_crank_that_starts_with_its_working_stroke_has_nearest_bounds_too():
     slid("[r*cos(60 deg) + l, 30]", **(bounds | {"l": "[50, 80.0101]"}))
 
 
-def test_bounds_that_the_sketch_does_not_fit_are_told_with_that():
+def test_bounds_are_told_though_the_sketch_shows_a_linkage_far_beyond_them():
+    """B of the sketch lies 300 mm from O, which links of 60 and 80 mm do not reach: its assembly is theirs as well."""
     with pytest.raises(ProblemError) as caught:
         slid("[300, 30]", r="[50, 60]", l="[50, 70]")
     assert caught.value.message == "no linkage within these bounds can be assembled as it is sketched"
-    assert caught.value.allowed.startswith("wider bounds, the nearest: l to 80.0101 mm; and a sketch")
+    assert told(caught.value, "l to") == [80.0101]
+    found = slid("[300, 30]", r="[50, 60]", l="[50, 80.0101]")
+    assert "synthesis_optimal.not_as_sketched" in found.notes
+    assert found.sketch.points["B"].real > 0
 
 
 def test_what_fails_between_the_positions_of_the_search_is_not_told_as_nearest():
@@ -180,3 +184,23 @@ def test_what_fails_between_the_positions_of_the_search_is_not_told_as_nearest()
     with pytest.raises(ProblemError) as caught:
         build(read_text(text, "x.yaml"))
     assert caught.value.allowed == "wider bounds, the nearest: OC to 222.017 mm"
+
+
+def six_bar(bounds):
+    """The six-bar of the structure example, whose slider lies just as far from D as B comes on the other side."""
+    text = text_of(
+        "six-bar", (r"OA: 100, AB: 350, ", ""),
+        (r"points: \{O", f"synthesis: {{task: optimal, vary: {bounds}, objective: length}}\npoints: {{O"),
+    )  # fmt: skip
+    return build(read_text(text, "x.yaml"))
+
+
+def test_a_search_that_is_stuck_where_a_rod_just_touches_is_begun_elsewhere():
+    """With OA = 200 mm the rocker turns fully, and its rod lacks no more than the room there. Where the rocker swings,
+    OA + OD <= AB + BD: AB from 200 + 400 - 250 = 350 mm on.
+    """
+    with pytest.raises(ProblemError) as caught:
+        six_bar("{OA: [200, 220], AB: [250, 280]}")
+    (end,) = told(caught.value, "AB to")
+    assert end == pytest.approx(350.07, abs=0.002)
+    assert six_bar(f"{{OA: [200, 220], AB: [250, {end}]}}").synthesis.outcome.found

@@ -44,17 +44,19 @@ def better(f: Real, v: Real, than_f: Real, than_v: Real, tolerance: float) -> Re
 
 def evolve(
     evaluate: Evaluate, size: int, *, population: int, generations: int, seed: int, shrinking: int = 0,
-    progress: Callable[[int, int], None] = lambda at, of: None,
+    progress: Callable[[int, int], None] = lambda at, of: None, known: Real | None = None,
 ) -> Evolved:  # fmt: skip
     """Search 0..1 in `size` dimensions; the same seed gives the same answer.
 
     SIDES populations go on beside each other, for they are evaluated quicker together; one that gets no better makes
     room for a new one. population: of all; shrinking: generations in which the tolerance of a population goes to zero;
-    without equalities none is wanted, and the search is better without.
+    without equalities none is wanted, and the search is better without. known: candidates that it begins with.
     """
     each = max(FEWEST, population // SIDES)
     sides = [_Population(each, size, shrinking, chance) for chance in np.random.default_rng(seed).spawn(SIDES)]
     trials = [side.spread() for side in sides]
+    if known is not None:
+        trials[0][: len(known)] = known[:each]
     earlier: list[tuple[Real, Real, Real]] = []  # the best of populations that have made room
     history: list[tuple[float, float]] = []
     stopped = False

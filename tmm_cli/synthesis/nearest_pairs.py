@@ -17,6 +17,7 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 W: Final = "synthesis_four_bar_by_angles"
 FIRST: Final = (0.1, 0.4)  # of all changes, which are tried before the others
 PARTS: Final = (8, 24)  # into which the way to the nearest change is divided again and again, with two pairs, with more
+FINER: Final = 25  # times, with more than two pairs, are the changes tried again that are nearer than one that will do
 SHARP: Final = 0.01  # of INWARDS: how near to the nearest change that leads
 INWARDS: Final = 2e-6  # rad, or a share of a length, from where there is one first;
 INWARDS_ALL: Final = 1e-4  # of a change of all output angles, each of which is rounded
@@ -94,13 +95,22 @@ def _endless(asked: Asked) -> bool:
 
 def _nearest(change: Change) -> Iterator[float]:
     """Changes from which on there is a sound four-bar, the nearest first; it stays sound as the number is rounded."""
-    sizes, inside = change.step * np.arange(1, change.count + 1), {1.0: False, -1.0: False}
-    for some in np.split(sizes, [round(share * change.count) for share in FIRST]):
+    for near in _scanned(change, change.step, change.count):
+        if change.pairs > 2 and change.all is None:  # nearer ones may have been stepped over
+            finer = change.step / FINER
+            yield from _scanned(change, finer, int(abs(near) / finer))
+        yield near
+
+
+def _scanned(change: Change, step: float, count: int) -> Iterator[float]:
+    """The same among so many changes in such steps on either side."""
+    sizes, inside = step * np.arange(1, count + 1), {1.0: False, -1.0: False}
+    for some in np.split(sizes, [round(share * count) for share in FIRST]):
         moves = np.stack([some, -some], axis=-1).ravel()
         for move, here in zip(moves.tolist(), fit(change, moves).sensible.tolist(), strict=True):
             sign = float(np.sign(move))
             if here and not inside[sign]:
-                near = _edge(change, move, move - sign * change.step) + sign * _inwards(change)
+                near = _edge(change, move, move - sign * step) + sign * _inwards(change)
                 rounded = near + sign * ROUNDED * (abs(change.value(near)) if change.kind == "angle" else 1.0)
                 if np.all(fit(change, [near, (near + rounded) / 2, rounded], closely=True).sensible):
                     yield near

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.candidates import Search, W
+from tmm_cli.synthesis.candidates import LOST, Search, W
 from tmm_cli.synthesis.every import every
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.goals import FORCES, Goal
 from tmm_cli.synthesis.optimal_asked import Asked, Limit
-from tmm_cli.synthesis.record import Infeasible, Outcome
+from tmm_cli.synthesis.record import Infeasible, Outcome, Shown
 from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.synthesis.wider import Nearest
 
 __all__ = ["PARAMETERS", "Asked", "Limit", "best", "solve"]
 PARAMETERS: Final[dict[str, str]] = {}
@@ -27,6 +30,7 @@ STARTS = 3  # of the polish: the best that differ
 SHRINKING = 40  # generations a parameter, for equalities
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
+ALIKE = 3  # mechanisms that are compared
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
 
 
@@ -75,6 +79,7 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
         except ValueError:
             return
         missed = float(sum(limit.missed(v) for limit, v in zip(search.limits, values[1:], strict=True)))
+        missed += LOST * (search.limits[0].missed(values[1]) > KEPT)
         found.append((missed if missed > KEPT else 0.0, float(search.wanted(np.array(values[0]))), x, values))
 
     try:
@@ -102,7 +107,7 @@ def solve(asked: Asked) -> Outcome:
     try:
         search = Search(asked)
     except NoneAssembled as refusal:
-        search = Search(asked, _within(asked, "vary", refusal.reason).tolist())
+        search = Search(asked, _within(asked, "vary", refusal.reason).first)
     found = best(search)
     if found.missed:
         found = _mended(search, found)
@@ -121,7 +126,7 @@ def _from(search: Search, found: Best, refusal: tuple[str | tuple[str | int, ...
 
     Raises Infeasible, at a key and for a reason, with the bounds that it finds else.
     """
-    again = _best_of(search, [search.shares(_within(search.asked, *refusal))], found.evolved)
+    again = _best_of(search, [search.shares(_within(search.asked, *refusal).numbers)], found.evolved)
     if again.missed:
         raise Infeasible(*refusal, _other(refusal[1], search.closed))
     return again
@@ -133,8 +138,8 @@ def _other(reason: str, closed: bool) -> str:
     return own.get(reason, f"{W}.wider")
 
 
-def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real:
-    """Numbers within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
+def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Nearest:
+    """A mechanism within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
     from tmm_cli.synthesis.wider import nearest
 
     found = nearest(asked)
@@ -148,9 +153,7 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Real
         if not found.keeps and reason != f"{W}.no_assembly":  # with these bounds it goes its way, and no more is said
             key, reason = "vary", f"{W}.never"
         raise Infeasible(asked.bound(name, above) if key == "vary" else key, reason, f"{W}.{words}", values)
-    if not found.sketched:
-        raise Infeasible(key, reason, f"{W}.other_sketch")
-    return found.numbers
+    return found
 
 
 def _mended(search: Search, found: Best) -> Best:
@@ -159,27 +162,78 @@ def _mended(search: Search, found: Best) -> Best:
     Raises Infeasible when it cannot be met while all the others are kept: how near to it one comes then.
     """
     misses = [float(limit.missed(v)) for limit, v in zip(search.limits, found.values[1:], strict=True)]
-    n = int(np.argmax(misses))
+    n = 0 if misses[0] > KEPT else int(np.argmax(misses))
     limit = search.limits[n]
     if n == 0 or np.isnan(found.values[n + 1]):
-        if n and limit.goal.of in FORCES and search.variant.accelerated and misses[0] <= KEPT:
+        if n and limit.goal.of in FORCES and search.variant.accelerated:
             raise Infeasible(limit.at, *_none(search, limit.goal))
-        never = n == 0 or misses[0] > KEPT  # what does not go its whole way has no stroke either
-        return _from(search, found, ("vary", f"{W}.never") if never else (limit.at, f"{W}.has_none"))
-    bound = limit.least if limit.least is not None and found.values[n + 1] < limit.least else limit.most
+        return _from(search, found, (limit.at, f"{W}.has_none") if n else ("vary", f"{W}.never"))
+    bound = limit.passed(found.values[n + 1])
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
-    kind = limit.goal.kind(search.linkage, search.groups)
     try:
-        nearest = best(Search(replace(search.asked, objective=limit.goal, limits=others, target=bound)))
+        nearest = _aimed(search, limit.goal, bound, others)
     except Infeasible:
         nearest = found
     if nearest.missed:  # the others contradict one another too
-        return _from(search, found, (limit.at, f"{W}.unmet"))
+        return _together(search, found)
     if limit.missed(nearest.values[0]) <= KEPT:
         again = _best_of(search, [nearest.x], found.evolved)
         if not again.missed:
             return again
-    assert bound is not None
-    value = nearest.values[0]
-    side = "below" if value < bound else "above"  # with the search's own errors it is no limit to the last digit
-    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": (value, kind, side)})
+    told = _beside(search, n, nearest.values[0], bound)
+    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": told})
+
+
+def _aimed(search: Search, goal: Goal, bound: float, limits: tuple[Limit, ...]) -> Best:
+    """The mechanism whose quantity is nearest to a bound while others are kept. Raises Infeasible."""
+    return best(Search(replace(search.asked, objective=goal, limits=limits, target=bound), search.first))
+
+
+def _together(search: Search, found: Best) -> Best:
+    """What keeps all constraints after all.
+
+    Raises Infeasible when they contradict one another: with the limits nearest to those asked that are met together,
+    each the nearest with the others as they are told.
+    """
+    values = found.values[2:]
+    limits = [limit.widened(value) for limit, value in zip(search.limits[1:], values, strict=True)]
+    missed = [k for k, limit in enumerate(search.limits[1:]) if limit.missed(values[k]) > KEPT]
+    told: dict[int, tuple[str, Shown]] = {}
+    for k in missed:
+        limit, value = search.limits[k + 1], values[k]
+        bound, others = limit.passed(value), tuple(other for n, other in enumerate(limits) if n != k)
+        try:
+            nearest = _aimed(search, limit.goal, bound, others)
+            if not nearest.missed and limit.missed(nearest.values[0]) < limit.missed(value):
+                value, found = nearest.values[0], nearest
+        except Infeasible:
+            pass
+        limits[k] = limit.widened(value)
+        if limit.missed(value) > KEPT:
+            side = "equal" if limit.equal else "least" if bound == limit.least else "most"
+            told[k] = side, _beside(search, k + 1, value, bound)
+    if not told:
+        again = _best_of(search, [found.x], found.evolved)
+        if not again.missed:
+            return again
+        raise Infeasible(search.limits[1 + missed[0]].at, f"{W}.unmet", f"{W}.wider")
+    at = search.limits[1 + next(iter(told))].at
+    if len(told) == 1:
+        raise Infeasible(at, f"{W}.unmet", f"{W}.nearest", {"value": next(iter(told.values()))[1]})
+    shown: dict[str, Shown] = {}
+    for n, (k, (side, nearby)) in enumerate(told.items(), 1):
+        shown |= {f"which{n}": (str(k + 1), "word"), f"side{n}": (side, "word"), f"value{n}": nearby}
+    raise Infeasible(at, f"{W}.unmet", f"{W}.together{len(told)}", shown)
+
+
+def _beside(search: Search, n: int, value: float, bound: float) -> Shown:
+    """The nearest value of the n-th limit to a bound as it is shown: with the search's own errors it is no limit to the
+    last digit.
+    """
+    limit = search.limits[n]
+    kind = limit.goal.kind(search.linkage, search.groups)
+    if limit.equal:
+        others = (search.exactly(x)[n + 1] for x in np.random.default_rng(0).random((ALIKE, len(search.low))))
+        if all(abs(other - value) <= KEPT * abs(value) for other in others):
+            return value, kind, "exact"
+    return value, kind, "below" if value < bound else "above"

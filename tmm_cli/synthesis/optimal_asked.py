@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -41,6 +41,21 @@ class Limit:
         high = 0.0 if self.most is None else value - self.most
         missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
         return np.where(np.isnan(missed), np.inf, missed)
+
+    def passed(self, value: float) -> float:
+        """The bound that a value beyond one of them lies beyond."""
+        bound = self.least if self.least is not None and value < self.least else self.most
+        assert bound is not None
+        return bound
+
+    def widened(self, value: float) -> Limit:
+        """The same with bounds just so wide that such a value keeps it."""
+        if self.equal:
+            return replace(self, least=value, most=value)
+        least, most = self.least, self.most
+        return replace(
+            self, least=least if least is None else min(least, value), most=most if most is None else max(most, value)
+        )
 
     def margin(self, value: float) -> float:
         """How far the value is from its nearer limit, in its unit."""

@@ -57,7 +57,7 @@ def told(search: Search, found: Best) -> Outcome:
             drawings.insert(0, drawn)
     notes = (f"{W}.stopped",) if found.evolved.stopped else ()
     objectives = found.evolved.objective[np.isfinite(found.evolved.objective)]
-    if asked.objective.of in (*PLAIN, *FORCES) and not np.ptp(objectives):
+    if asked.objective.of in (*PLAIN, *FORCES) and len(objectives) and not np.ptp(objectives):
         notes = (*notes, f"{W}.constant")
     sketch = search.sketch(found.x)
     if sketch is not None:

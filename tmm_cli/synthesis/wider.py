@@ -5,6 +5,7 @@ The same search over wider bounds, in which what lies beyond the given ones is m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,20 +13,28 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.synthesis.candidates import Search
-from tmm_cli.synthesis.evolution import evolve
-from tmm_cli.synthesis.first import NoneAssembled, first_of, shown
+from tmm_cli.synthesis.evolution import FINE, evolve
+from tmm_cli.synthesis.first import NESTED, first_near
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal_asked import Asked
 from tmm_cli.synthesis.polish import Local
 from tmm_cli.synthesis.record import Infeasible, Shown
+from tmm_cli.variants.taped import Taped
 from tmm_cli.vectors import Real
 
 TIMES = (5.0, 3.0, 1.5, 1.1)  # as wide: of the larger bound, as far as the file takes it
-GENERATIONS = 120
+GENERATIONS = 120  # until some mechanism is found,
+CLOSER = 60  # and of each search in what is nearer than the nearest known one
+ROUNDS = 2  # of those
+SPREAD = 60  # candidates tried first in each of the nested bounds
+STARTS = 2  # of the polish: the nearest that differ
+QUICK = 2  # times as many of all these, and of generations, where candidates move by their tape
+APART = 0.05  # by so much, in shares of the given ranges
 BEYOND = 1e-9  # shares of the range: what is less is within
 ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
 KEPT = 1e-7
-STEPS = 65  # on the way to what the sketch shows, where it does not show the nearest mechanism
+HALVES = 20  # of a way on which there are mechanisms at first
+FIRSTS = 3  # linkages that tell the assembly
 
 
 class Wider(Search):
@@ -35,9 +44,7 @@ class Wider(Search):
     1), or anywhere (nan).
     """
 
-    tries = 400
-
-    def __init__(self, asked: Asked, low: Real, high: Real, sides: Real) -> None:
+    def __init__(self, asked: Asked, low: Real, high: Real, sides: Real, first: Sequence[float]) -> None:
         self.own_low, self.own_high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
         self.sides = sides
         names = list(asked.low)
@@ -45,7 +52,7 @@ class Wider(Search):
             asked, low=dict(zip(names, low.tolist(), strict=True)), high=dict(zip(names, high.tolist(), strict=True)),
             objective=Goal("length"), target=None,
         )  # fmt: skip
-        super().__init__(wide)
+        super().__init__(wide, first)
 
     def within(self, low: Real, high: Real, sides: Real) -> Wider:
         """The same over other bounds."""
@@ -80,6 +87,14 @@ class Wider(Search):
         """Whether they keep the constraints."""
         return self.missed(self.exactly(self.shares(numbers))) <= KEPT
 
+    def far(self, numbers: Real) -> float:
+        """By how much they lie beyond the bounds given."""
+        return float(np.sum(self.beyond(self.shares(numbers)[None])))
+
+    def holds(self, numbers: Real) -> bool:
+        """Whether the file takes them, and they keep the constraints."""
+        return self.asked.accepts(numbers.tolist()) and self.kept(numbers)
+
     def beyond_by(self, numbers: Real) -> tuple[tuple[str, bool, float, str], ...]:
         """Which bounds they lie beyond, with a little room: name, whether above, value, its kind."""
         found, span = [], self.own_high - self.own_low
@@ -99,24 +114,25 @@ class Wider(Search):
 class Nearest:
     """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind.
 
-    keeps: the constraints, which no mechanism was found to keep where it is False. sketched: as the file has it.
+    first: numbers that tell its assembly, perhaps beyond the bounds. keeps: the constraints, which no mechanism was
+    found to keep where it is False.
     """
 
     numbers: Real
     beyond: tuple[tuple[str, bool, float, str], ...]
+    first: Sequence[float]
     keeps: bool = True
-    sketched: bool = True
 
     @property
     def told(self) -> tuple[str, dict[str, Shown]]:
-        """The end of the key of words that say so, and their values."""
+        """The key of words that say so, and their values."""
         values: dict[str, Shown] = {}
         for n, (name, above, value, kind) in enumerate(self.beyond, 1):
             values |= {
                 f"name{n}": (name, "word"), f"side{n}": ("to" if above else "from", "word"),
                 f"value{n}": (value, kind, "least" if above else "most"),
             }  # fmt: skip
-        return f"wider{len(self.beyond)}" + ("" if self.sketched else "_sketch"), values
+        return f"wider{len(self.beyond)}", values
 
 
 def nearest(asked: Asked) -> Nearest | None:
@@ -132,45 +148,100 @@ def nearest(asked: Asked) -> Nearest | None:
 
 
 def _nearest(asked: Asked) -> Nearest | None:
+    """The nearest of the assembly that a file with the bounds told has."""
     low, high = _widest(asked)
-    anywhere = np.full(len(low), np.nan)
+    first = first_near(asked, Search.tries, low, high)
+    for _ in range(FIRSTS):
+        if first is None:
+            return None
+        found = _nearest_of(asked, low, high, first)
+        if found is None or not found.beyond:
+            return found
+        own = dict(asked.low), dict(asked.high)
+        for name, above, value, _kind in found.beyond:
+            own[above][name] = value
+        wider = replace(asked, low=own[0], high=own[1])
+        again = first_near(wider, Search.tries, low, high)
+        if again is None:
+            return None
+        if again == first or Wider(wider, low, high, np.full(len(low), np.nan), again).kept(found.numbers):
+            return found
+        first = again
+    return None
+
+
+def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float]) -> Nearest | None:
+    """The nearest of the assembly that one linkage has."""
     try:
-        search = Wider(asked, low, high, anywhere)
+        search = Wider(asked, low, high, np.full(len(low), np.nan), first)
     except Infeasible:
         return None
+    starts = _starts(search)
+    drawn = [_drawn(search, _drawn(search, start)) for start in starts]
+    best = min((x for x in drawn if search.holds(x)), key=search.far, default=None)
+    if best is None:
+        return None
+    within = np.clip(best, search.own_low, search.own_high)
+    for start in (*starts, within):  # some of which fail between the positions of the search
+        aim = np.where(best == within, np.clip(start, search.own_low, search.own_high), start)
+        if search.far(aim) < search.far(best):
+            best = _towards(search, best, aim)
+    return Nearest(best, search.beyond_by(best), first)
+
+
+def _towards(search: Wider, inside: Real, outside: Real) -> Real:
+    """As far from one mechanism towards another place as there are mechanisms."""
+    for _ in range(HALVES):
+        middle = search.numbers(search.shares((inside + outside) / 2))
+        inside, outside = (middle, outside) if search.holds(middle) else (inside, middle)
+    return inside
+
+
+def _starts(search: Wider) -> list[Real]:
+    """Numbers of mechanisms that differ, the nearest first: found in what is nearer than the nearest known one, again
+    and again.
+    """
+    span, quick = search.own_high - search.own_low, QUICK if isinstance(search.program, Taped) else 1
+    numbers, far, missed = _spread(search, SPREAD * quick * quick)
     equal = any(limit.equal for limit in search.limits)
-    generations = min(search.generations, GENERATIONS)
-    evolved = evolve(
-        search.evaluate, len(low), population=search.population, generations=generations, seed=asked.seed,
-        shrinking=generations // 2 if equal else 0, progress=asked.progress,
-    )  # fmt: skip
-    if not evolved.violation[0] < 1.0:
-        return None
-    numbers = search.numbers(evolved.population[0])
-    for _ in range(2):
-        numbers = _drawn(search, numbers)
-    if not search.kept(numbers):
-        return None
-    found = Nearest(numbers, search.beyond_by(numbers))
-    if _sketched(asked, found):
-        return found
-    way = (numbers + share * (np.array(search.first) - numbers) for share in np.linspace(0, 1, STEPS)[1:])
-    there = next((x for x in way if shown(asked, x) and search.kept(x)), None)
-    return replace(found, sketched=False) if there is None else Nearest(there, search.beyond_by(there))
+    reach, seed = np.inf, search.asked.seed
+    for n in range(ROUNDS * quick):
+        good = missed <= FINE
+        reach = float(np.min(far[good], initial=reach))
+        if reach <= BEYOND:
+            break
+        least, most = search.low, search.high
+        if np.isfinite(reach):
+            least = np.maximum(least, search.own_low - reach * span)
+            most = np.minimum(most, search.own_high + reach * span)
+        part = search.within(least, most, search.sides)
+        generations = min(search.generations, quick * CLOSER if np.isfinite(reach) else GENERATIONS)
+        known = part.shares(numbers[good][np.argsort(far[good])[: STARTS * quick]])
+        evolved = evolve(
+            part.evaluate, len(least), population=search.population, generations=generations, seed=seed + n,
+            shrinking=generations // 2 if equal else 0, progress=search.asked.progress, known=np.clip(known, 0, 1),
+        )  # fmt: skip
+        numbers = np.vstack([numbers, part.numbers(evolved.population)])
+        far, missed = np.append(far, evolved.objective), np.append(missed, evolved.violation)
+    starts: list[Real] = []
+    for k in np.lexsort((far, np.where(missed <= FINE, 0.0, missed))):
+        if len(starts) == STARTS * quick or not missed[k] < 1.0:
+            break
+        if all(np.max(np.abs(numbers[k] - other) / span) > APART for other in starts):
+            starts.append(numbers[k])
+    return starts
 
 
-def _sketched(asked: Asked, found: Nearest) -> bool:
-    """Whether the file's sketch shows a linkage within such bounds, so that a search in them can begin."""
-    if shown(asked, found.numbers):
-        return True
-    low, high = dict(asked.low), dict(asked.high)
-    for name, above, value, _ in found.beyond:
-        (high if above else low)[name] = value
-    try:
-        first_of(replace(asked, low=low, high=high), Search.tries)
-    except NoneAssembled:
-        return False
-    return bool(found.beyond)
+def _spread(search: Wider, count: int) -> tuple[Real, Real, Real]:
+    """Numbers spread over wider and wider bounds, how far beyond they lie and what they violate."""
+    chance = np.random.default_rng(search.asked.seed)
+    tried = []
+    for share in (0.0, *NESTED):
+        least = search.own_low + share * (search.low - search.own_low)
+        most = search.own_high + share * (search.high - search.own_high)
+        tried.append(least + chance.random((count, len(least))) * (most - least))
+    numbers = search.numbers(search.shares(np.vstack(tried)))
+    return (numbers, *search.evaluate(search.shares(numbers)))
 
 
 def _drawn(wide: Wider, numbers: Real) -> Real:

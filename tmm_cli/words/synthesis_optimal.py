@@ -96,7 +96,7 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.other_ratios": "numbers of teeth with small common ratios, or speeds of drivers with such; or "
     "over: [from, to]",
     "synthesis_optimal.not_as_sketched": "the file's sketch does not show the mechanism that was found: it is "
-    "assembled as the middle of the bounds is",
+    "assembled as linkages near it are that the sketch does show",
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
@@ -115,7 +115,6 @@ WORDS: dict[str, str] = {
 for _count in range(1, 21):
     _bounds = ", ".join(f"{{name{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
     WORDS[f"synthesis_optimal.wider{_count}"] = f"wider bounds, the nearest: {_bounds}"
-    WORDS[f"synthesis_optimal.wider{_count}_sketch"] = (
-        f"wider bounds, the nearest: {_bounds}; and a sketch of such a mechanism, e.g. with places that rest on the "
-        "parameters"
-    )
+for _count in range(2, 31):
+    _limits = ", ".join(f"constraint {{which{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
+    WORDS[f"synthesis_optimal.together{_count}"] = f"with the others kept, these are met together: {_limits}"
