@@ -143,3 +143,16 @@ def test_what_varies_is_refused_at_its_place(case):
     with pytest.raises(ProblemError) as caught:
         build(read_text(text, "x.yaml"))
     assert all(words in str(caught.value) for words in said), str(caught.value)
+
+
+def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
+    """Only with DE = OC = 300 mm the second coupler holds nothing; one that both couplers rest on may vary."""
+    task = "vary: {DE: [250, 320]}\n  objective: mass"
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml"))
+    assert str(caught.value) == (
+        "x.yaml:11:9: synthesis.vary: with values in the middle of these bounds mobility is not 1: the driver cannot "
+        "move, its links are a truss\n"
+        "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
+        "  allowed: W = 1; where pairs hold the same twice, a parameter that all their dimensions rest on"
+    )

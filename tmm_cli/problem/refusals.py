@@ -203,7 +203,7 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
     place = f"{at:.6g} {units.symbol(ANGLE if crank else LENGTH)}"
     match error:
         case WrongMobility(structure=structure):
-            return _mobility(structure)
+            return mobility(structure)
         case NoAssembly(group=group, gap=gap):
             short = f"{units.from_si(gap, LENGTH):.6g} {units.symbol(LENGTH)} short of closing"
             if group.type in ("PRP", "RPP"):
@@ -256,7 +256,8 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
     return ProblemError(str(error))
 
 
-def _mobility(structure: Structure) -> ProblemError:
+def mobility(structure: Structure) -> ProblemError:
+    """What a wrong mobility comes from: links that are loose, or pairs that hold what is held already."""
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"

@@ -21,6 +21,7 @@ from tmm_cli.problem.synthesis.driven import Ends, asked_over, driven, within
 from tmm_cli.problem.synthesis.ranges import Range, Ranges, Two, read
 from tmm_cli.problem.units import ANGLE, LENGTH, Dimension, Quantity, UnitSystem
 from tmm_cli.problem.varied import VariedUnits
+from tmm_cli.refused import WrongMobility
 from tmm_cli.synthesis.goals import Goal
 from tmm_cli.synthesis.optimal import Asked, Limit
 from tmm_cli.synthesis.optimal_asked import near
@@ -124,6 +125,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         return True
 
     middle = make(middles)
+    _check_mobility(middle.linkage)
     ways = list(dict.fromkeys([middle.ends, *_check_bounds(ranges, make, middles)]))
     limits = []
     for n, given in enumerate(shape.constraints):
@@ -166,6 +168,20 @@ def _check_work(shape: Shape) -> None:
             "such a search takes too long", path=("generations",), found=str(shape.generations),
             allowed=f"{MOST_PLACES // each} or less of so many candidates at so many positions",
         )  # fmt: skip
+
+
+def _check_mobility(linkage: Linkage) -> None:
+    """What has passive links moves with exact dimensions only, which a parameter may spoil. Raises ProblemError."""
+    try:
+        mobile(linkage)
+    except WrongMobility as refusal:
+        from tmm_cli.problem.refusals import mobility
+
+        told = mobility(refusal.structure)
+        raise ProblemError(
+            f"with values in the middle of these bounds {told.message}", path=("vary",), found=told.found,
+            allowed=f"{told.allowed}; where pairs hold the same twice, a parameter that all their dimensions rest on",
+        ) from None  # fmt: skip
 
 
 def _check_bounds(ranges: Ranges, make: Make, middles: Sequence[float]) -> list[Ends]:
