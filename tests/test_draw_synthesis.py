@@ -26,6 +26,7 @@ from tmm_cli.synthesis import (
     shaper,
     slotted_lever,
 )
+from tmm_cli.synthesis.evolution import Evolved
 
 ROOT = Path(__file__).parents[1]
 
@@ -160,12 +161,19 @@ def test_a_curve_is_cut_where_it_leaves_the_field():
 
 def test_the_history_is_never_empty():
     rows = np.array([[3.0, 0.4], [2.0, 0.1], [2.5, 1e-3], [2.6, 1e-5]])  # as with equalities: never quite kept
-    shown = history.diagram(rows, lambda f: f, 2.7, "length", "length")
+
+    def drawn(polished, *, each=False):
+        evolved = Evolved(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, each=each)
+        return history.diagram(evolved, lambda f: f, polished, "length", "length")
+
+    shown = drawn(2.7)
     assert [line.words.rpartition(".")[2] for line in shown.lines] == ["leading", "polished"]
     assert list(shown.lower[0].y) == [0.4, 0.1, 1e-3, 1e-5]
     rows[2:, 1] = 0
-    shown = history.diagram(rows, lambda f: f, 2.4, "length", "length")
+    shown = drawn(2.4)
     assert list(shown.lines[1].y[2:]) == [2.5, 2.5] and np.all(np.isnan(shown.lines[1].y[:2]))
+    shown = drawn(2.4, each=True)  # of all that were tried only those are drawn that keep the constraints
+    assert list(shown.lines[0].y[2:]) == [2.5, 2.6] and np.all(np.isnan(shown.lines[0].y[:2])) and not shown.lower
 
 
 @pytest.mark.parametrize("k", [1.1, 1.3, 1.5, 2.0])

@@ -23,6 +23,14 @@ def test_strokes_end_where_the_slope_changes_its_sign_be_it_a_simple_or_a_triple
     assert ratio(slope, ROUND) == pytest.approx((1 - share) / share, rel=1e-13)
 
 
+def test_a_stroke_may_end_at_a_place_of_the_scan_but_for_rounding():
+    """There the sign is sure neither way: looked at from both sides it may differ."""
+    for rounding in (-1e-16, 0.0, 1e-16):
+        for turned in (-1e-16, 1e-16):
+            wavering = lambda s: np.sin(2 * np.pi * (s - 0.25)) + np.where(s > 0.3, rounding, turned)  # noqa: E731, B023
+            assert ratio(wavering, ROUND) == pytest.approx(1, rel=1e-13)
+
+
 def test_a_dwell_belongs_to_no_stroke():
     def slope(s):
         s = np.mod(s, 1.0)

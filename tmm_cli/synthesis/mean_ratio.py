@@ -44,6 +44,7 @@ def _edges(slope: Callable[[Real], Real], low: Real, step: float, before: Real) 
     for _ in range(ROUNDS):
         there = low[:, None] + step * np.arange(PARTS + 1) / PARTS
         same = np.sign(slope(there.ravel())).reshape(there.shape) == before[:, None]
-        low = there[np.arange(len(low)), np.maximum(np.argmin(same, axis=1) - 1, 0)]
+        first = np.where(np.all(same, axis=1), PARTS, np.argmin(same, axis=1))  # at its end, but for rounding
+        low = there[np.arange(len(low)), np.maximum(first - 1, 0)]
         step /= PARTS
     return low

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.synthesis.candidates import LOST, Search, W
-from tmm_cli.synthesis.every import every
+from tmm_cli.synthesis.every import every, shortlist
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.goals import FORCES, Goal
@@ -50,7 +50,7 @@ def best(search: Search) -> Best:
     asked, size = search.asked, len(search.low)
     few = every(search)
     if few is not None:
-        return _best_of(search, few.population[:STARTS], few)
+        return _best_of(search, shortlist(search, few, STARTS), few)
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
         search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,

@@ -49,7 +49,7 @@ def told(search: Search, found: Best) -> Outcome:
         else:
             demands.append(_demand(search, n, found.values[n], kinds[n], ends, asked=False))
     listings, of = [_constraints(search, found, kinds)], _words(search, search.goals[0])
-    drawings = [diagram(found.evolved.history, partial(_in_its_unit, search), found.values[0], of, kinds[0])]
+    drawings = [diagram(found.evolved, partial(_in_its_unit, search), found.values[0], of, kinds[0])]
     for n, goal in enumerate(search.goals):
         if goal.wanted:
             listing, drawn = reached(search, found.x, n)
