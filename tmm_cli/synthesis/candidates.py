@@ -12,7 +12,6 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.assembly import assemble
-from tmm_cli.family import Iterated
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.linkage import Sketch
 from tmm_cli.mobile import mobile
@@ -27,11 +26,8 @@ from tmm_cli.synthesis.peaks import WINDOW
 from tmm_cli.synthesis.polish import Local, polish
 from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.synthesis.usable import asked_goals, check_output, check_use
-from tmm_cli.tape import DependsOnData
-from tmm_cli.variants.apart import Apart
+from tmm_cli.variants.fastest import Program, fastest
 from tmm_cli.variants.sketch import alike, sketch_of
-from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.together import Together
 from tmm_cli.variants.way import Places
 from tmm_cli.vectors import Real
 
@@ -142,20 +138,11 @@ class Search:
         links = (goal.links or tuple(self.linkage.links)) if goal.of == "length" else ()
         return tuple(len(spans_of(self.linkage, link)) for link in links)
 
-    def _program(self, turns: int) -> Taped | Together | Apart:
-        """What moves the candidates, the fastest there is for this linkage."""
-        forces = any(goal.of in FORCES for goal in self.goals)
-        try:
-            return Taped(self.asked.make, self.first, self._outputs, forces=forces)
-        except (Iterated, DependsOnData):
-            pass
-        try:
-            return Together(
-                self.asked.make, self.first, self._outputs, forces=forces, turns=turns,
-                other=[self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)],
-            )  # fmt: skip
-        except (Iterated, DependsOnData):
-            return Apart(self.asked.make, self.first, self._outputs, forces=forces, turns=turns)
+    def _program(self, turns: int) -> Program:
+        return fastest(
+            self.asked.make, self.first, self._outputs, forces=any(goal.of in FORCES for goal in self.goals),
+            turns=turns, other=[self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)],
+        )  # fmt: skip
 
     @property
     def population(self) -> int:
