@@ -135,6 +135,19 @@ MESSAGES = {
 }  # fmt: skip
 
 
+def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
+    """As fast forth as back, it meets the other crank at other places: the moments differ."""
+    text = text_of(
+        "five-bar", (("speed: 120 rpm, turns: cw", "speed: n2"), ("l: 180, ", "")),
+        "vary: {n2: {among: [-120 rpm, 120 rpm]}, l: {among: [180, 200]}}\n  objective: moment",
+    )  # fmt: skip
+    values = {n2: measure(Goal("moment"), with_numbers(text, n2=f"{n2} rpm", l=180)) for n2 in (-120, 120)}
+    assert values[120] < 0.9 * values[-120]
+    found, results = best_of(text)
+    assert (found["n2"], found["l"]) == pytest.approx((4 * np.pi, 0.18), rel=1e-12)
+    assert measure(Goal("moment"), results) == pytest.approx(values[120], rel=1e-12)
+
+
 @pytest.mark.parametrize("case", MESSAGES)
 def test_what_varies_is_refused_at_its_place(case):
     varies, *said = MESSAGES[case]

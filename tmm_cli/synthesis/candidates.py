@@ -144,18 +144,18 @@ class Search:
 
     def _program(self, turns: int) -> Taped | Together | Apart:
         """What moves the candidates, the fastest there is for this linkage."""
-        forces = any(goal.of in FORCES for goal in self.goals)
+        forces, given = any(goal.of in FORCES for goal in self.goals), (self.asked.make, self.first, self._outputs)
+        if self.asked.reverses(self.first):
+            return Apart(*given, forces=forces, turns=turns)
         try:
-            return Taped(self.asked.make, self.first, self._outputs, forces=forces)
+            return Taped(*given, forces=forces)
         except (Iterated, DependsOnData):
             pass
+        other = [self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)]
         try:
-            return Together(
-                self.asked.make, self.first, self._outputs, forces=forces, turns=turns,
-                other=[self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)],
-            )  # fmt: skip
+            return Together(*given, forces=forces, turns=turns, other=other)
         except (Iterated, DependsOnData):
-            return Apart(self.asked.make, self.first, self._outputs, forces=forces, turns=turns)
+            return Apart(*given, forces=forces, turns=turns)
 
     @property
     def population(self) -> int:

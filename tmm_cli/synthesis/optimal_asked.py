@@ -95,6 +95,17 @@ class Asked:
         """Another of the values that a parameter may have; nan where it may have all within its bounds."""
         return next((value for value in self.values.get(name, ()) if value != number), np.nan)
 
+    def reverses(self, first: Sequence[float]) -> bool:
+        """Whether a driver goes forth in some candidates and back in others: its sense is no number of arrays."""
+        senses = set()
+        for k, name in enumerate(self.low):
+            for end in (self.low[name], self.high[name]):
+                numbers = [*first[:k], end, *first[k + 1 :]]
+                if self.accepts(numbers):
+                    linkage = self.make(numbers).linkage
+                    senses.add(tuple(driver.sense for driver in (linkage.driver, *linkage.others)))
+        return len(senses) > 1
+
     @property
     def free(self) -> list[int]:
         """Which of them may have all values within their bounds."""
