@@ -148,11 +148,33 @@ def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
     assert measure(Goal("moment"), results) == pytest.approx(values[120], rel=1e-12)
 
 
+def refusal_of(text):
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("limit, key, value", [
+    ("equal: 131", "equal", "132 mm"), ("least: 103, most: 107", "most", "108.001 mm"),
+    ("least: 101, most: 107", "least", "99.999 mm"),
+])  # fmt: skip
+def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key, value):
+    """Twice the crank, which is 50, 54, 58, 62, 66 or 70 mm long."""
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""),),
+        f"vary: {{r: {{from: 50, to: 70, step: 4}}}}\n  objective: length\n  constraints: [{{of: stroke, {limit}}}]",
+    )  # fmt: skip
+    said = refusal_of(text)
+    assert f"constraints[0].{key}:" in said and f"the nearest is {value}" in said
+    old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
+    found, _ = best_of(text.replace(old, f"{key}: {value}"))
+    assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
+
+
 @pytest.mark.parametrize("case", MESSAGES)
 def test_what_varies_is_refused_at_its_place(case):
     varies, *said = MESSAGES[case]
     other = "l: [180, 200]" if varies.startswith("n2") else "n2: {among: [60 rpm, 120 rpm]}"
     text = text_of("five-bar", FIVE_BAR, f"vary: {{{varies}, {other}}}\n  objective: moment")
-    with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
-    assert all(words in str(caught.value) for words in said), str(caught.value)
+    told = refusal_of(text)
+    assert all(words in told for words in said), told

@@ -181,7 +181,7 @@ def _mended(search: Search, found: Best) -> Best:
         if not again.missed:
             return again
     told = _beside(search, n, nearest.values[0], bound)
-    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": told})
+    raise Infeasible(limit.key(bound), f"{W}.unmet", f"{W}.nearest", {"value": told})
 
 
 def _aimed(search: Search, goal: Goal, bound: float, limits: tuple[Limit, ...]) -> Best:
@@ -199,6 +199,7 @@ def _together(search: Search, found: Best) -> Best:
     limits = [limit.widened(value) for limit, value in zip(search.limits[1:], values, strict=True)]
     missed = [k for k, limit in enumerate(search.limits[1:]) if limit.missed(values[k]) > KEPT]
     told: dict[int, tuple[str, Shown]] = {}
+    keys = []
     for k in missed:
         limit, value = search.limits[k + 1], values[k]
         bound, others = limit.passed(value), tuple(other for n, other in enumerate(limits) if n != k)
@@ -212,18 +213,18 @@ def _together(search: Search, found: Best) -> Best:
         if limit.missed(value) > KEPT:
             side = "equal" if limit.equal else "least" if bound == limit.least else "most"
             told[k] = side, _beside(search, k + 1, value, bound)
+            keys.append(limit.key(bound))
     if not told:
         again = _best_of(search, [found.x], found.evolved)
         if not again.missed:
             return again
         raise Infeasible(search.limits[1 + missed[0]].at, f"{W}.unmet", f"{W}.wider")
-    at = search.limits[1 + next(iter(told))].at
     if len(told) == 1:
-        raise Infeasible(at, f"{W}.unmet", f"{W}.nearest", {"value": next(iter(told.values()))[1]})
+        raise Infeasible(keys[0], f"{W}.unmet", f"{W}.nearest", {"value": next(iter(told.values()))[1]})
     shown: dict[str, Shown] = {}
     for n, (k, (side, nearby)) in enumerate(told.items(), 1):
         shown |= {f"which{n}": (str(k + 1), "word"), f"side{n}": (side, "word"), f"value{n}": nearby}
-    raise Infeasible(at, f"{W}.unmet", f"{W}.together{len(told)}", shown)
+    raise Infeasible(keys[0], f"{W}.unmet", f"{W}.together{len(told)}", shown)
 
 
 def _beside(search: Search, n: int, value: float, bound: float) -> Shown:
@@ -232,6 +233,8 @@ def _beside(search: Search, n: int, value: float, bound: float) -> Shown:
     """
     limit = search.limits[n]
     kind = limit.goal.kind(search.linkage, search.groups)
+    if limit.equal and not search.asked.free:  # among so many values none but this one can be met
+        return value, kind, "exact"
     if limit.equal:
         others = (search.exactly(x)[n + 1] for x in np.random.default_rng(0).random((ALIKE, len(search.low))))
         if all(abs(other - value) <= KEPT * abs(value) for other in others):

@@ -22,7 +22,7 @@ class Limit:
     goal: Goal
     least: float | None = None
     most: float | None = None
-    at: tuple[str | int, ...] = ()
+    at: Path = ()
 
     @property
     def equal(self) -> bool:
@@ -47,6 +47,11 @@ class Limit:
         bound = self.least if self.least is not None and value < self.least else self.most
         assert bound is not None
         return bound
+
+    def key(self, bound: float | None) -> Path:
+        """Where a bound of it stands."""
+        both = not self.equal and self.least is not None and self.most is not None
+        return (*self.at[:-1], "least" if bound == self.least else "most") if both else self.at
 
     def widened(self, value: float) -> Limit:
         """The same with bounds just so wide that such a value keeps it."""
