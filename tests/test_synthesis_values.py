@@ -129,6 +129,7 @@ MESSAGES = {
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
     "too many": ("l: {from: 1, to: 3e9, step: 1}", "these are too many steps", "found:   3000000000 values"),
+    "endless": ("l: {from: 1, to: 1e290, step: 1e-300}", "these are too many steps", "found:   1e-300"),
     "too large a step": ("l: {from: 1, to: 3, step: 5}", "not one step lies between these bounds", "found:   5"),
     "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
     "refused by the file": ("l: {among: [0, 180, 200]}", "with this bound the file is refused", "vary.l.among[0]"),
@@ -169,6 +170,24 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
     old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
     found, _ = best_of(text.replace(old, f"{key}: {value}"))
     assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
+
+
+@pytest.mark.parametrize("varies, said", [
+    ("z: {among: [25, 25.5, 26]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+    ("z: {from: -25, to: 25, step: 1}", "a number of teeth is wanted"),
+    ("z: {from: 25, to: 26, step: 0.125}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+])  # fmt: skip
+def test_numbers_that_the_file_refuses_are_told(varies, said):
+    text = text_of(
+        "gear-straight-line", (("teeth: [25, 25], module: 4", "teeth: [z, 20]"),),
+        f"vary: {{{varies}}}\n  objective: length",
+    )  # fmt: skip
+    assert said in refusal_of(text)
+
+
+def test_steps_are_told_as_they_are_written():
+    text = text_of("five-bar", FIVE_BAR, "vary: {n2: {from: 61, to: 62, step: 0.3}, l: [180, 200]}\n  objective: box")
+    assert "found:   '{from: 61, to: 62, step: 0.3}'" in refusal_of(text)
 
 
 @pytest.mark.parametrize("case", MESSAGES)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from copy import copy
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
@@ -110,11 +111,42 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         dimensions = (KINDS[kind].dimension for kind in kinds.values())
         return file_with({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
+    def said(error: OfTheFile, numbers: Sequence[Any]) -> OfTheFile:
+        """A refusal of the file with the numbers that it is refused with."""
+        refused, values = copy(error.error), []
+        for name, number, kind in zip(low, numbers, kinds.values(), strict=True):
+            value, dimension = number.value if isinstance(number, Varied) else number, KINDS[kind].dimension
+            shown = f"{sense.units.from_si(float(value), dimension):.6g} {sense.units.symbol(dimension)}".rstrip()
+            values.append(f"{name} = {shown}")
+        refused.message = f"with {', '.join(values)} the file is refused: {refused.message}"
+        return OfTheFile(refused)
+
+    def takes(numbers: Sequence[Any]) -> bool:
+        try:
+            file(numbers)
+        except OfTheFile:
+            return False
+        return True
+
+    def first(numbers: Sequence[float]) -> Problem:
+        try:
+            return file(numbers)
+        except OfTheFile as error:
+            sound = any(takes(list(ends.values())) for ends in (low, high))
+            raise (said(error, numbers) if sound else error) from None
+
     middles = near([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)], ranges.values, low).tolist()
-    over = asked_over(shape.over, file(middles).linkage.driver, sense)
+    over = asked_over(shape.over, first(middles).linkage.driver, sense)
 
     def make(numbers: Sequence[Any]) -> Variant:
         return driven(file(numbers), over)
+
+    def tried(numbers: Sequence[Any]) -> Variant:
+        """With other numbers the file is sound: what it is refused for is said of these."""
+        try:
+            return make(numbers)
+        except OfTheFile as error:
+            raise said(error, numbers) from None
 
     def accepts(numbers: Sequence[float]) -> bool:
         try:
@@ -148,7 +180,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         None if target is None else sense.number(target, _dimension(objective, middle.linkage), ("objective", "target"))
     )
     return Asked(
-        low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
+        low, high, kinds, tried, objective, tuple(limits), wanted, shape.positions, shape.population,
         shape.generations, shape.seed, accepts, _bar(), ranges.values, ranges.at,
     )  # fmt: skip
 
