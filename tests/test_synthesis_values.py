@@ -172,6 +172,18 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
     assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
 
 
+def test_a_stroke_that_hangs_on_steps_alone_is_told_exactly_beside_what_may_have_all_values():
+    """The rod gives the pressure angle, asin(r/l), and never the stroke: with 150 mm and more r is 60 mm."""
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "vary: {r: {from: 40, to: 60, step: 10}, l: [150, 200]}\n  objective: length\n"
+        "  constraints: [{of: pressure, equal: 20 deg}, {of: stroke, equal: 90}]",
+    )  # fmt: skip
+    assert "the nearest is 120 mm" in refusal_of(text)
+    found, _ = best_of(text.replace("equal: 90", "equal: 120"))
+    assert (found["r"], found["l"]) == pytest.approx((0.06, 0.06 / np.sin(np.radians(20))), rel=1e-9)
+
+
 @pytest.mark.parametrize("varies, said", [
     ("z: {among: [25, 25.5, 26]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
     ("z: {from: -25, to: 25, step: 1}", "a number of teeth is wanted"),

@@ -31,6 +31,7 @@ SHRINKING = 40  # generations a parameter, for equalities
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 ALIKE = 3  # mechanisms that are compared
+BESIDE = 0.2  # of the ranges: by less than half of it they differ
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
 
 
@@ -180,7 +181,7 @@ def _mended(search: Search, found: Best) -> Best:
         again = _best_of(search, [nearest.x], found.evolved)
         if not again.missed:
             return again
-    told = _beside(search, n, nearest.values[0], bound)
+    told = _beside(search, n, nearest.values[0], bound, nearest.x)
     raise Infeasible(limit.key(bound), f"{W}.unmet", f"{W}.nearest", {"value": told})
 
 
@@ -212,7 +213,7 @@ def _together(search: Search, found: Best) -> Best:
         limits[k] = limit.widened(value)
         if limit.missed(value) > KEPT:
             side = "equal" if limit.equal else "least" if bound == limit.least else "most"
-            told[k] = side, _beside(search, k + 1, value, bound)
+            told[k] = side, _beside(search, k + 1, value, bound, found.x)
             keys.append(limit.key(bound))
     if not told:
         again = _best_of(search, [found.x], found.evolved)
@@ -227,16 +228,17 @@ def _together(search: Search, found: Best) -> Best:
     raise Infeasible(keys[0], f"{W}.unmet", f"{W}.together{len(told)}", shown)
 
 
-def _beside(search: Search, n: int, value: float, bound: float) -> Shown:
-    """The nearest value of the n-th limit to a bound as it is shown: with the search's own errors it is no limit to the
-    last digit.
+def _beside(search: Search, n: int, value: float, bound: float, x: Real) -> Shown:
+    """The nearest value of the n-th limit to a bound, that of a candidate x, as it is shown.
+
+    With the search's own errors it is no limit to the last digit; but an equality that hangs on nothing that may have all
+    values within its bounds is met by that value alone.
     """
-    limit = search.limits[n]
+    limit, free = search.limits[n], search.asked.free
     kind = limit.goal.kind(search.linkage, search.groups)
-    if limit.equal and not search.asked.free:  # among so many values none but this one can be met
-        return value, kind, "exact"
     if limit.equal:
-        others = (search.exactly(x)[n + 1] for x in np.random.default_rng(0).random((ALIKE, len(search.low))))
-        if all(abs(other - value) <= KEPT * abs(value) for other in others):
+        others = np.tile(x, (ALIKE, 1))
+        others[:, free] = np.clip(x[free] + BESIDE * (np.random.default_rng(0).random((ALIKE, len(free))) - 0.5), 0, 1)
+        if all(abs(search.exactly(other)[n + 1] - value) <= KEPT * abs(value) for other in others):
             return value, kind, "exact"
     return value, kind, "below" if value < bound else "above"
