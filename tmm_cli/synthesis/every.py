@@ -42,4 +42,4 @@ def every(search: Search) -> Evolved | None:
     finally:
         asked.progress(count, count)
     order = np.lexsort((np.where(np.isfinite(f), f, np.inf), v))
-    return Evolved(x[order], f[order], v[order], np.array(history), stopped)
+    return Evolved(x[order], f[order], v[order], np.array(history), stopped, every=True)

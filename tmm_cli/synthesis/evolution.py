@@ -25,7 +25,7 @@ FINE = 1e-6  # a violation that the polish takes away
 class Evolved:
     """population (variants, n), best first, with objective and violation; history: of the best, by generation.
 
-    stopped: by hand, before its end.
+    stopped: by hand, before its end. every: nothing evolved, all candidates were tried one after another.
     """
 
     population: Real
@@ -33,6 +33,7 @@ class Evolved:
     violation: Real
     history: Real
     stopped: bool
+    every: bool = False
 
 
 def better(f: Real, v: Real, than_f: Real, than_v: Real, tolerance: float) -> Real:

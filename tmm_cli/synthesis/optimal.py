@@ -231,8 +231,8 @@ def _together(search: Search, found: Best) -> Best:
 def _beside(search: Search, n: int, value: float, bound: float, x: Real) -> Shown:
     """The nearest value of the n-th limit to a bound, that of a candidate x, as it is shown.
 
-    With the search's own errors it is no limit to the last digit; but an equality that hangs on nothing that may have all
-    values within its bounds is met by that value alone.
+    With the search's own errors it is no limit to the last digit; but an equality that hangs on nothing that may have
+    all values within its bounds is met by that value alone.
     """
     limit, free = search.limits[n], search.asked.free
     kind = limit.goal.kind(search.linkage, search.groups)

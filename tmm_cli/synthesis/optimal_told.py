@@ -49,7 +49,9 @@ def told(search: Search, found: Best) -> Outcome:
         else:
             demands.append(_demand(search, n, found.values[n], kinds[n], ends, asked=False))
     listings, of = [_constraints(search, found, kinds)], _words(search, search.goals[0])
-    drawings = [diagram(found.evolved.history, partial(_in_its_unit, search), found.values[0], of, kinds[0])]
+    drawings, every = [], found.evolved.every
+    if not every:  # nothing got better from one generation to the next
+        drawings.append(diagram(found.evolved.history, partial(_in_its_unit, search), found.values[0], of, kinds[0]))
     for n, goal in enumerate(search.goals):
         if goal.wanted:
             listing, drawn = reached(search, found.x, n)
@@ -62,8 +64,9 @@ def told(search: Search, found: Best) -> Outcome:
     sketch = search.sketch(found.x)
     if sketch is not None:
         notes = (*notes, f"{W}.not_as_sketched")
+    source = f"{W}.{('some' if found.evolved.stopped else 'every') if every else 'source'}"
     return Outcome(
-        tuple(given), tuple(numbers), f"{W}.source", tuple(demands), tuple(drawings), notes, tuple(listings), sketch
+        tuple(given), tuple(numbers), source, tuple(demands), tuple(drawings), notes, tuple(listings), sketch
     )  # fmt: skip
 
 
