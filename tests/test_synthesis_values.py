@@ -149,6 +149,26 @@ def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
     assert measure(Goal("moment"), results) == pytest.approx(values[120], rel=1e-12)
 
 
+FEW = "vary: {l1: {from: 60, to: 100, step: 1}, l2: {from: 300, to: 400, step: 2}}\n  "
+WITH = "\n  constraints: [{of: stroke, least: 40 deg}, {of: pressure, most: 45 deg}]"
+
+
+@pytest.mark.parametrize("task, goal, better", [
+    ("objective: {of: reaction, pair: B}" + WITH, lambda r: measure(Goal("reaction", "B"), r), (85, 300)),
+    ("objective: box" + WITH, lambda r: measure(Goal("box"), r), (85, 300)),
+    ("objective: {of: stroke, target: 44 deg}", lambda r: abs(measure(Goal("stroke"), r) - np.radians(44)), (91, 384)),
+])  # fmt: skip
+def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the_search(task, goal, better):
+    text = text_of("crank-rocker", (("l1: 100, ", ""), ("l2: 350, ", "")), FEW + task)
+    other = with_numbers(text, l1=better[0], l2=better[1])
+    if WITH in task:  # its swing is just over 40 deg, which places 5 deg apart do not show
+        assert measure(Goal("stroke"), other) > np.radians(40) and measure(Goal("pressure"), other) < np.radians(45)
+    _, results = best_of(text)
+    assert goal(results) <= goal(other) * (1 + 1e-12)
+    outcome = results.synthesis.outcome
+    assert outcome.source == "synthesis_optimal.every" and "history" not in [each.name for each in outcome.drawings]
+
+
 def refusal_of(text):
     with pytest.raises(ProblemError) as caught:
         build(read_text(text, "x.yaml"))

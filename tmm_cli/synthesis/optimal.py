@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.synthesis.candidates import LOST, Search, W
-from tmm_cli.synthesis.every import every
+from tmm_cli.synthesis.every import every, foremost
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.goals import FORCES, Goal
@@ -51,7 +51,10 @@ def best(search: Search) -> Best:
     asked, size = search.asked, len(search.low)
     few = every(search)
     if few is not None:
-        return _best_of(search, few.population[:STARTS], few)
+        try:
+            return _best_of(search, foremost(search, few) if not few.stopped else few.population[:STARTS], few)
+        except KeyboardInterrupt:
+            return _best_of(search, few.population[:STARTS], replace(few, stopped=True))
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
         search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
@@ -86,7 +89,8 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
     try:
         for start in starts:
             take(start)
-            take(search.polished(start))
+            if search.asked.free:
+                take(search.polished(start))
     except KeyboardInterrupt:
         if not found:
             raise
