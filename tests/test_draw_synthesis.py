@@ -163,7 +163,7 @@ def test_the_history_is_never_empty():
     rows = np.array([[3.0, 0.4], [2.0, 0.1], [2.5, 1e-3], [2.6, 1e-5]])  # as with equalities: never quite kept
 
     def drawn(polished, *, each=False):
-        evolved = Evolved(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, each=each)
+        evolved = Evolved(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, every=each)
         return history.diagram(evolved, lambda f: f, polished, "length", "length")
 
     shown = drawn(2.7)

@@ -129,10 +129,102 @@ MESSAGES = {
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
     "too many": ("l: {from: 1, to: 3e9, step: 1}", "these are too many steps", "found:   3000000000 values"),
+    "endless": ("l: {from: 1, to: 1e290, step: 1e-300}", "these are too many steps", "found:   1e-300"),
     "too large a step": ("l: {from: 1, to: 3, step: 5}", "not one step lies between these bounds", "found:   5"),
     "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
     "refused by the file": ("l: {among: [0, 180, 200]}", "with this bound the file is refused", "vary.l.among[0]"),
 }  # fmt: skip
+
+
+def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
+    """As fast forth as back, it meets the other crank at other places: the moments differ."""
+    text = text_of(
+        "five-bar", (("speed: 120 rpm, turns: cw", "speed: n2"), ("l: 180, ", "")),
+        "vary: {n2: {among: [-120 rpm, 120 rpm]}, l: {among: [180, 200]}}\n  objective: moment",
+    )  # fmt: skip
+    values = {n2: measure(Goal("moment"), with_numbers(text, n2=f"{n2} rpm", l=180)) for n2 in (-120, 120)}
+    assert values[120] < 0.9 * values[-120]
+    found, results = best_of(text)
+    assert (found["n2"], found["l"]) == pytest.approx((4 * np.pi, 0.18), rel=1e-12)
+    assert measure(Goal("moment"), results) == pytest.approx(values[120], rel=1e-12)
+
+
+FEW = "vary: {l1: {from: 60, to: 100, step: 1}, l2: {from: 300, to: 400, step: 2}}\n  "
+WITH = "\n  constraints: [{of: stroke, least: 40 deg}, {of: pressure, most: 45 deg}]"
+
+
+@pytest.mark.parametrize("task, goal, better", [
+    ("objective: {of: reaction, pair: B}" + WITH, lambda r: measure(Goal("reaction", "B"), r), (85, 300)),
+    ("objective: box" + WITH, lambda r: measure(Goal("box"), r), (85, 300)),
+    ("objective: {of: stroke, target: 44 deg}", lambda r: abs(measure(Goal("stroke"), r) - np.radians(44)), (91, 384)),
+])  # fmt: skip
+def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the_search(task, goal, better):
+    text = text_of("crank-rocker", (("l1: 100, ", ""), ("l2: 350, ", "")), FEW + task)
+    other = with_numbers(text, l1=better[0], l2=better[1])
+    if WITH in task:  # its swing is just over 40 deg, which places 5 deg apart do not show
+        assert measure(Goal("stroke"), other) > np.radians(40) and measure(Goal("pressure"), other) < np.radians(45)
+    _, results = best_of(text)
+    assert goal(results) <= goal(other) * (1 + 1e-12)
+    outcome = results.synthesis.outcome
+    assert outcome.source == "synthesis_optimal.every"
+    assert {line.words.rpartition(".")[2] for line in outcome.drawings[-1].lines} == {
+        "one_by_one",
+        "evolution",
+        "exactly",
+    }
+
+
+def refusal_of(text):
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("limit, key, value", [
+    ("equal: 131", "equal", "132 mm"), ("least: 103, most: 107", "most", "108.001 mm"),
+    ("least: 101, most: 107", "least", "99.999 mm"),
+])  # fmt: skip
+def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key, value):
+    """Twice the crank, which is 50, 54, 58, 62, 66 or 70 mm long."""
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""),),
+        f"vary: {{r: {{from: 50, to: 70, step: 4}}}}\n  objective: length\n  constraints: [{{of: stroke, {limit}}}]",
+    )  # fmt: skip
+    said = refusal_of(text)
+    assert f"constraints[0].{key}:" in said and f"the nearest is {value}" in said
+    old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
+    found, _ = best_of(text.replace(old, f"{key}: {value}"))
+    assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
+
+
+def test_a_stroke_that_hangs_on_steps_alone_is_told_exactly_beside_what_may_have_all_values():
+    """The rod gives the pressure angle, asin(r/l), and never the stroke: with 150 mm and more r is 60 mm."""
+    text = text_of(
+        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "vary: {r: {from: 40, to: 60, step: 10}, l: [150, 200]}\n  objective: length\n"
+        "  constraints: [{of: pressure, equal: 20 deg}, {of: stroke, equal: 90}]",
+    )  # fmt: skip
+    assert "the nearest is 120 mm" in refusal_of(text)
+    found, _ = best_of(text.replace("equal: 90", "equal: 120"))
+    assert (found["r"], found["l"]) == pytest.approx((0.06, 0.06 / np.sin(np.radians(20))), rel=1e-9)
+
+
+@pytest.mark.parametrize("varies, said", [
+    ("z: {among: [25, 25.5, 26]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+    ("z: {from: -25, to: 25, step: 1}", "a number of teeth is wanted"),
+    ("z: {from: 25, to: 26, step: 0.125}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+])  # fmt: skip
+def test_numbers_that_the_file_refuses_are_told(varies, said):
+    text = text_of(
+        "gear-straight-line", (("teeth: [25, 25], module: 4", "teeth: [z, 20]"),),
+        f"vary: {{{varies}}}\n  objective: length",
+    )  # fmt: skip
+    assert said in refusal_of(text)
+
+
+def test_steps_are_told_as_they_are_written():
+    text = text_of("five-bar", FIVE_BAR, "vary: {n2: {from: 61, to: 62, step: 0.3}, l: [180, 200]}\n  objective: box")
+    assert "found:   '{from: 61, to: 62, step: 0.3}'" in refusal_of(text)
 
 
 @pytest.mark.parametrize("case", MESSAGES)
@@ -140,9 +232,8 @@ def test_what_varies_is_refused_at_its_place(case):
     varies, *said = MESSAGES[case]
     other = "l: [180, 200]" if varies.startswith("n2") else "n2: {among: [60 rpm, 120 rpm]}"
     text = text_of("five-bar", FIVE_BAR, f"vary: {{{varies}, {other}}}\n  objective: moment")
-    with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
-    assert all(words in str(caught.value) for words in said), str(caught.value)
+    told = refusal_of(text)
+    assert all(words in told for words in said), told
 
 
 def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
@@ -156,3 +247,13 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
         "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
         "  allowed: W = 1; where pairs hold the same twice, a parameter that all their dimensions rest on"
     )
+
+
+@pytest.mark.parametrize("over", ["", "\n  over: [0, 350]"])
+def test_bounds_of_a_number_of_teeth_are_told_as_steps(over):
+    text = text_of(
+        "gear-doubling", (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
+        f"vary: {{z1: [99.5, 140.2]}}\n  objective: stroke{over}",
+    )  # fmt: skip
+    told = refusal_of(text)
+    assert "synthesis.vary.z1: the file takes whole numbers here" in told and "{from: 100, to: 140, step: 1}" in told

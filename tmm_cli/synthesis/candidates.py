@@ -142,6 +142,7 @@ class Search:
         return fastest(
             self.asked.make, self.first, self._outputs, forces=any(goal.of in FORCES for goal in self.goals),
             turns=turns, other=[self.asked.beside(name, x) for name, x in zip(self.asked.low, self.first, strict=True)],
+            alike=not self.asked.reverses(self.first),
         )  # fmt: skip
 
     @property

@@ -1,7 +1,8 @@
-"""All candidates of an optimal synthesis whose parameters have few values."""
+"""All candidates of an optimal synthesis whose parameters have few values: coarsely, then the foremost closely."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from math import prod
 
@@ -13,9 +14,7 @@ from tmm_cli.vectors import Real
 
 MOST = 50_000  # candidates
 BLOCK = 500  # between two reports of progress
-CLOSELY = 400  # that are looked at closely, at most
-SLACK = 0.02  # of the best objective: by so much a coarse one may be too large
-MISSED = 1e-7  # by less of its scale a constraint is kept
+LEVELS = ((0, 2e-2, 400), (720, 5e-4, 30))  # positions round the cycle, the errors that they leave, how many go on
 
 
 def every(search: Search) -> Evolved | None:
@@ -40,24 +39,24 @@ def every(search: Search) -> Evolved | None:
     finally:
         asked.progress(count, count)
     order = np.lexsort((np.where(np.isfinite(f), f, np.inf), v))
-    return Evolved(x[order], f[order], v[order], np.stack([f, v], axis=1), stopped, each=True)
+    return Evolved(x[order], f[order], v[order], np.stack([f, v], axis=1), stopped, every=True)
 
 
-def shortlist(search: Search, evolved: Evolved, most: int) -> list[Real]:
-    """The best of them when they are looked at closely: all whose objective at the positions of the search is not
-    larger than the best one found so, which from a few positions is told too small, or little too large.
+def foremost(search: Search, found: Evolved) -> Real:
+    """Candidates (variants, n) among which the best one is: those that places of the search cannot tell from it.
+
+    Between the places peaks are higher, so that what keeps a constraint there may miss it, and the other way round.
     """
-    found: list[tuple[float, float, int]] = []
-    best = np.inf
-    for n in range(min(CLOSELY, len(evolved.population))):
-        if evolved.objective[n] > best + SLACK * abs(best):
-            break
-        values = search.exactly(evolved.population[n])
-        missed = float(sum(limit.missed(y) for limit, y in zip(search.limits, values[1:], strict=True)))
-        wanted = float(search.wanted(np.array(values[0])))
-        if np.isnan(missed + wanted):
-            continue
-        found.append((missed if missed > MISSED else 0.0, wanted, n))
-        if found[-1][0] == 0.0:
-            best = min(best, wanted)
-    return [evolved.population[n] for *_, n in sorted(found)[:most]]
+    x, f, v = found.population, found.objective, found.violation
+    for positions, error, most in LEVELS:
+        if positions:
+            closer = replace(search.asked, positions=max(positions, search.asked.positions))
+            f, v = Search(closer, search.first).evaluate(x)
+        sure = f[(v == 0) & np.isfinite(f)]
+        scale = 1.0 if search.asked.target is not None else abs(float(np.min(sure, initial=np.inf)))
+        near = f <= np.min(sure) + 2 * error * scale if sure.size else np.ones(len(f), dtype=bool)
+        likely = np.flatnonzero(near & (v <= error))
+        likely = likely[np.argsort(f[likely])][:most]
+        first = np.lexsort((np.where(np.isfinite(f), f, np.inf), v))[: most if not sure.size else 3]
+        x = x[np.unique(np.append(likely, first))]
+    return x

@@ -25,7 +25,7 @@ FINE = 1e-6  # a violation that the polish takes away
 class Evolved:
     """population (variants, n), best first, with objective and violation; history: of the best, by generation.
 
-    stopped: by hand, before its end. each: history is of each candidate, where all were tried.
+    stopped: by hand, before its end. every: nothing evolved, all were tried, and history is of each of them.
     """
 
     population: Real
@@ -33,7 +33,7 @@ class Evolved:
     violation: Real
     history: Real
     stopped: bool
-    each: bool = False
+    every: bool = False
 
 
 def better(f: Real, v: Real, than_f: Real, than_v: Real, tolerance: float) -> Real:

@@ -25,9 +25,9 @@ def diagram(evolved: Evolved, shown: Callable[[Real], Real], polished: float, of
     Where all were tried, each of them that keeps the constraints, and the best so far.
     """
     objective, violation = evolved.history.T
-    leading, missing, found, across, title = EACH if evolved.each else GENERATIONS
+    leading, missing, found, across, title = EACH if evolved.every else GENERATIONS
     number = np.arange(len(objective))
-    there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.each)), objective, np.nan)
+    there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
     kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
     lines = [Line(f"{W}.{leading}", number, shown(there), faint=True)]
     if np.any(np.isfinite(kept)):

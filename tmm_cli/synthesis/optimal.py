@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.synthesis.candidates import LOST, Search, W
-from tmm_cli.synthesis.every import every, shortlist
+from tmm_cli.synthesis.every import every, foremost
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
 from tmm_cli.synthesis.goals import FORCES, Goal
@@ -31,6 +31,7 @@ SHRINKING = 40  # generations a parameter, for equalities
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 ALIKE = 3  # mechanisms that are compared
+BESIDE = 0.2  # of the ranges: by less than half of it they differ
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
 
 
@@ -50,7 +51,10 @@ def best(search: Search) -> Best:
     asked, size = search.asked, len(search.low)
     few = every(search)
     if few is not None:
-        return _best_of(search, shortlist(search, few, STARTS), few)
+        try:
+            return _best_of(search, foremost(search, few) if not few.stopped else few.population[:STARTS], few)
+        except KeyboardInterrupt:
+            return _best_of(search, few.population[:STARTS], replace(few, stopped=True))
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
         search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
@@ -85,7 +89,8 @@ def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
     try:
         for start in starts:
             take(start)
-            take(search.polished(start))
+            if search.asked.free:
+                take(search.polished(start))
     except KeyboardInterrupt:
         if not found:
             raise
@@ -180,8 +185,8 @@ def _mended(search: Search, found: Best) -> Best:
         again = _best_of(search, [nearest.x], found.evolved)
         if not again.missed:
             return again
-    told = _beside(search, n, nearest.values[0], bound)
-    raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": told})
+    told = _beside(search, n, nearest.values[0], bound, nearest.x)
+    raise Infeasible(limit.key(bound), f"{W}.unmet", f"{W}.nearest", {"value": told})
 
 
 def _aimed(search: Search, goal: Goal, bound: float, limits: tuple[Limit, ...]) -> Best:
@@ -199,6 +204,7 @@ def _together(search: Search, found: Best) -> Best:
     limits = [limit.widened(value) for limit, value in zip(search.limits[1:], values, strict=True)]
     missed = [k for k, limit in enumerate(search.limits[1:]) if limit.missed(values[k]) > KEPT]
     told: dict[int, tuple[str, Shown]] = {}
+    keys = []
     for k in missed:
         limit, value = search.limits[k + 1], values[k]
         bound, others = limit.passed(value), tuple(other for n, other in enumerate(limits) if n != k)
@@ -211,29 +217,32 @@ def _together(search: Search, found: Best) -> Best:
         limits[k] = limit.widened(value)
         if limit.missed(value) > KEPT:
             side = "equal" if limit.equal else "least" if bound == limit.least else "most"
-            told[k] = side, _beside(search, k + 1, value, bound)
+            told[k] = side, _beside(search, k + 1, value, bound, found.x)
+            keys.append(limit.key(bound))
     if not told:
         again = _best_of(search, [found.x], found.evolved)
         if not again.missed:
             return again
         raise Infeasible(search.limits[1 + missed[0]].at, f"{W}.unmet", f"{W}.wider")
-    at = search.limits[1 + next(iter(told))].at
     if len(told) == 1:
-        raise Infeasible(at, f"{W}.unmet", f"{W}.nearest", {"value": next(iter(told.values()))[1]})
+        raise Infeasible(keys[0], f"{W}.unmet", f"{W}.nearest", {"value": next(iter(told.values()))[1]})
     shown: dict[str, Shown] = {}
     for n, (k, (side, nearby)) in enumerate(told.items(), 1):
         shown |= {f"which{n}": (str(k + 1), "word"), f"side{n}": (side, "word"), f"value{n}": nearby}
-    raise Infeasible(at, f"{W}.unmet", f"{W}.together{len(told)}", shown)
+    raise Infeasible(keys[0], f"{W}.unmet", f"{W}.together{len(told)}", shown)
 
 
-def _beside(search: Search, n: int, value: float, bound: float) -> Shown:
-    """The nearest value of the n-th limit to a bound as it is shown: with the search's own errors it is no limit to the
-    last digit.
+def _beside(search: Search, n: int, value: float, bound: float, x: Real) -> Shown:
+    """The nearest value of the n-th limit to a bound, that of a candidate x, as it is shown.
+
+    With the search's own errors it is no limit to the last digit; but an equality that hangs on nothing that may have
+    all values within its bounds is met by that value alone.
     """
-    limit = search.limits[n]
+    limit, free = search.limits[n], search.asked.free
     kind = limit.goal.kind(search.linkage, search.groups)
     if limit.equal:
-        others = (search.exactly(x)[n + 1] for x in np.random.default_rng(0).random((ALIKE, len(search.low))))
-        if all(abs(other - value) <= KEPT * abs(value) for other in others):
+        others = np.tile(x, (ALIKE, 1))
+        others[:, free] = np.clip(x[free] + BESIDE * (np.random.default_rng(0).random((ALIKE, len(free))) - 0.5), 0, 1)
+        if all(abs(search.exactly(other)[n + 1] - value) <= KEPT * abs(value) for other in others):
             return value, kind, "exact"
     return value, kind, "below" if value < bound else "above"

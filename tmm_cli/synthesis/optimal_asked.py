@@ -22,7 +22,7 @@ class Limit:
     goal: Goal
     least: float | None = None
     most: float | None = None
-    at: tuple[str | int, ...] = ()
+    at: Path = ()
 
     @property
     def equal(self) -> bool:
@@ -47,6 +47,11 @@ class Limit:
         bound = self.least if self.least is not None and value < self.least else self.most
         assert bound is not None
         return bound
+
+    def key(self, bound: float | None) -> Path:
+        """Where a bound of it stands."""
+        both = not self.equal and self.least is not None and self.most is not None
+        return (*self.at[:-1], "least" if bound == self.least else "most") if both else self.at
 
     def widened(self, value: float) -> Limit:
         """The same with bounds just so wide that such a value keeps it."""
@@ -94,6 +99,17 @@ class Asked:
     def beside(self, name: str, number: float) -> float:
         """Another of the values that a parameter may have; nan where it may have all within its bounds."""
         return next((value for value in self.values.get(name, ()) if value != number), np.nan)
+
+    def reverses(self, first: Sequence[float]) -> bool:
+        """Whether a driver goes forth in some candidates and back in others: its sense is no number of arrays."""
+        senses = set()
+        for k, name in enumerate(self.low):
+            for end in (self.low[name], self.high[name]):
+                numbers = [*first[:k], end, *first[k + 1 :]]
+                if self.accepts(numbers):
+                    linkage = self.make(numbers).linkage
+                    senses.add(tuple(driver.sense for driver in (linkage.driver, *linkage.others)))
+        return len(senses) > 1
 
     @property
     def free(self) -> list[int]:

@@ -62,8 +62,9 @@ def told(search: Search, found: Best) -> Outcome:
     sketch = search.sketch(found.x)
     if sketch is not None:
         notes = (*notes, f"{W}.not_as_sketched")
+    source = f"{W}.{('some' if found.evolved.stopped else 'every') if found.evolved.every else 'source'}"
     return Outcome(
-        tuple(given), tuple(numbers), f"{W}.source", tuple(demands), tuple(drawings), notes, tuple(listings), sketch
+        tuple(given), tuple(numbers), source, tuple(demands), tuple(drawings), notes, tuple(listings), sketch
     )  # fmt: skip
 
 

@@ -16,12 +16,16 @@ Program = Taped | Together | Apart
 
 
 def fastest(
-    make: Make, first: Sequence[float], asked: Asked, *, forces: bool, turns: int = 0, other: Sequence[float] = ()
+    make: Make, first: Sequence[float], asked: Asked, *, forces: bool, turns: int = 0, other: Sequence[float] = (),
+    alike: bool = True,
 ) -> Program:  # fmt: skip
     """By the tape, else together, else one after another; turns and other as Together has them.
 
-    Raises what assembly raises, for the first linkage.
+    alike: all drivers go the same way round, which arrays cannot tell. Raises what assembly raises, for the first
+    linkage.
     """
+    if not alike:
+        return Apart(make, first, asked, forces=forces, turns=turns)
     try:
         return Taped(make, first, asked, forces=forces)
     except (Iterated, DependsOnData):

@@ -79,6 +79,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.violation": "constraints missed, relative",
     "synthesis_optimal.polished": "after the polish",
     "synthesis_optimal.stopped": "stopped by hand: the best candidate so far, polished",
+    "synthesis_optimal.every": "all candidates, one after another",
+    "synthesis_optimal.some": "candidates one after another, as far as the search came",
     "synthesis_optimal.source": "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then "
     "sequential quadratic programming on the exact peaks",
     "synthesis_optimal.goes_from": "the driver goes from",

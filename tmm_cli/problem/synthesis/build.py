@@ -237,6 +237,8 @@ def _found(block: Block, path: tuple[str | int, ...]) -> str | None:
     given = _at(block, path)
     if path == ("vary",):
         return quote(", ".join(f"{name}: {_told(own)}" for name, own in given.items()))
+    if isinstance(given, BaseModel):  # steps or values of one parameter
+        return quote(_told(given))
     return quote(given) if path else None
 
 

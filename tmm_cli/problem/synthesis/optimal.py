@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Sequence
+from copy import copy
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
@@ -30,6 +32,7 @@ from tmm_cli.variants.way import Make, Variant
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters
+PART = 0.0625  # what is added to a whole number, to see whether the file takes others
 FEWEST = 8  # candidates in a generation
 MOST_PLACES = 2_000_000_000  # positions of candidates: some minutes for a four-bar
 Of = Literal["length", "mass", "box", "pressure", "moment", "reaction", "margin", "stroke", "k", "speed", "path", "law"]
@@ -111,11 +114,43 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         dimensions = (KINDS[kind].dimension for kind in kinds.values())
         return file_with({n: Quantity(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
+    def said(error: OfTheFile, numbers: Sequence[Any]) -> OfTheFile:
+        """A refusal of the file with the numbers that it is refused with."""
+        refused, values = copy(error.error), []
+        for name, number, kind in zip(low, numbers, kinds.values(), strict=True):
+            value, dimension = number.value if isinstance(number, Varied) else number, KINDS[kind].dimension
+            shown = f"{sense.units.from_si(float(value), dimension):.6g} {sense.units.symbol(dimension)}".rstrip()
+            values.append(f"{name} = {shown}")
+        refused.message = f"with {', '.join(values)} the file is refused: {refused.message}"
+        return OfTheFile(refused)
+
+    def takes(numbers: Sequence[Any]) -> bool:
+        try:
+            file(numbers)
+        except OfTheFile:
+            return False
+        return True
+
+    def first(numbers: Sequence[float]) -> Problem:
+        try:
+            return file(numbers)
+        except OfTheFile as error:
+            sound = any(takes(list(ends.values())) for ends in (low, high))
+            raise (said(error, numbers) if sound else error) from None
+
     middles = near([(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)], ranges.values, low).tolist()
-    over = asked_over(shape.over, file(middles).linkage.driver, sense)
+    _check_whole(ranges, middles, takes)
+    over = asked_over(shape.over, first(middles).linkage.driver, sense)
 
     def make(numbers: Sequence[Any]) -> Variant:
         return driven(file(numbers), over)
+
+    def tried(numbers: Sequence[Any]) -> Variant:
+        """With other numbers the file is sound: what it is refused for is said of these."""
+        try:
+            return make(numbers)
+        except OfTheFile as error:
+            raise said(error, numbers) from None
 
     def accepts(numbers: Sequence[float]) -> bool:
         try:
@@ -150,7 +185,7 @@ def asked(shape: Shape, sense: Sense, file_with: Callable[[dict[str, Quantity], 
         None if target is None else sense.number(target, _dimension(objective, middle.linkage), ("objective", "target"))
     )
     return Asked(
-        low, high, kinds, make, objective, tuple(limits), wanted, shape.positions, shape.population,
+        low, high, kinds, tried, objective, tuple(limits), wanted, shape.positions, shape.population,
         shape.generations, shape.seed, accepts, _bar(), ranges.values, ranges.at,
     )  # fmt: skip
 
@@ -182,6 +217,20 @@ def _check_mobility(linkage: Linkage) -> None:
             f"with values in the middle of these bounds {told.message}", path=("vary",), found=told.found,
             allowed=f"{told.allowed}; where pairs hold the same twice, a parameter that all their dimensions rest on",
         ) from None  # fmt: skip
+
+
+def _check_whole(ranges: Ranges, numbers: Sequence[float], takes: Callable[[Sequence[float]], bool]) -> None:
+    """Of what the file refuses, as a number of teeth that is not whole, steps are wanted. Raises ProblemError."""
+    for k, name in enumerate(ranges.low):
+        if ranges.kinds[name] != "number" or name in ranges.values:
+            continue
+        whole, *parts = ([*numbers[:k], round(numbers[k]) + more, *numbers[k + 1 :]] for more in (0.0, PART, -PART))
+        if takes(whole) and not any(map(takes, parts)):
+            low, high = math.ceil(ranges.low[name]), math.floor(ranges.high[name])
+            raise ProblemError(
+                "the file takes whole numbers here", path=("vary", name), found=", ".join(ranges.told[name]),
+                allowed=f"{{from: {low}, to: {high}, step: 1}}",
+            )  # fmt: skip
 
 
 def _check_bounds(ranges: Ranges, make: Make, middles: Sequence[float]) -> list[Ends]:

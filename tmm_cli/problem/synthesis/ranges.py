@@ -17,9 +17,10 @@ from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema import Strict, Value
 from tmm_cli.problem.sense import Sense
 from tmm_cli.problem.synthesis.build import OfTheFile
-from tmm_cli.problem.units import Quantity, UnitSystem
+from tmm_cli.problem.units import Quantity, UnitError, UnitSystem
 
 MOST = 10_000  # values of a parameter
+ENDLESS = 10**12  # so many values that it does not matter how many
 SAME = 1e-9  # of a step: what is left over by rounding
 
 Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
@@ -119,7 +120,7 @@ def _steps(name: str, own: Chosen, sense: Sense, kind: str) -> tuple[tuple[float
             "the lower bound comes first", path=at, found=f"{own.from_} and {own.to}", allowed="from: low, to: high"
         )
     step = float(sense.positive(own.step, KINDS[kind].dimension, (*at, "step")))
-    count = int((high - low) / step + SAME) + 1
+    count = int(min((high - low) / step + SAME, ENDLESS)) + 1
     if count < 2:
         raise ProblemError(
             "not one step lies between these bounds", path=(*at, "step"), found=quote(own.step),
@@ -127,7 +128,8 @@ def _steps(name: str, own: Chosen, sense: Sense, kind: str) -> tuple[tuple[float
         )  # fmt: skip
     if count > MOST:
         raise ProblemError(
-            "these are too many steps", path=(*at, "step"), found=f"{count} values",
+            "these are too many steps", path=(*at, "step"),
+            found=f"{count} values" if count < ENDLESS else quote(own.step),
             allowed=f"{MOST} and less; or bounds without steps, [low, high]",
         )  # fmt: skip
     values = tuple(_round(low + step * k) for k in range(count))
@@ -157,16 +159,19 @@ def _round(value: float) -> float:
 def _kinds(
     given: Mapping[str, list[Any]], sense: Sense, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
-    """The dimension of each: of its values, else the first that the file takes them for, lengths before others."""
+    """The dimension of each: of its values, else the first that the file takes them for, lengths before others.
+
+    Of what the file refuses whatever it is, the first whose dimension it does not mind.
+    """
     found = {name: next((k for v in own if (k := _kind_of(v, sense))), "") for name, own in given.items()}
     bare = [name for name, kind in found.items() if not kind]
 
-    def taken(numbers: Mapping[str, Quantity]) -> bool:
+    def refusal(numbers: Mapping[str, Quantity]) -> ProblemError | None:
         try:
             file_with({names.get(name, name): number for name, number in numbers.items()}, sense.units)
-        except OfTheFile:
-            return False
-        return True
+        except OfTheFile as error:
+            return error.error
+        return None
 
     def quantity(name: str, kind: str | None) -> Quantity:
         """A value of it; None: as a bare number."""
@@ -181,11 +186,13 @@ def _kinds(
         plain = first | {name: quantity(name, None) for name in bare}
     except ProblemError:
         return usual  # said when its bounds are read
-    if not bare or taken(first):
+    if not bare or refusal(first) is None:
         return usual
     for name in bare:
         kinds = ("length", *(kind for kind in KINDS if kind != "length"))
-        found[name] = next((kind for kind in kinds if taken(plain | {name: quantity(name, kind)})), "length")
+        said = {kind: refusal(plain | {name: quantity(name, kind)}) for kind in kinds}
+        fitting = [kind for kind in kinds if not isinstance(said[kind], UnitError)]
+        found[name] = next((kind for kind in kinds if said[kind] is None), fitting[0] if fitting else "length")
     return found
 
 
