@@ -257,3 +257,16 @@ def test_bounds_of_a_number_of_teeth_are_told_as_steps(over):
     )  # fmt: skip
     told = refusal_of(text)
     assert "synthesis.vary.z1: the file takes whole numbers here" in told and "{from: 100, to: 140, step: 1}" in told
+
+
+def test_the_choice_is_not_settled_before_what_is_free_is_polished():
+    """With k = 1.05 two cranks suit most couplers, and the smaller one of the longer coupler makes the least box."""
+    varies = "vary: {{l2: {{among: [{}]}}, l1: [60, 110]}}\n  objective: box\n  constraints: [{{of: k, equal: 1.05}}]\n"
+    edits = (("l1: 100, ", ""), ("l2: 350, ", ""))
+    boxes = {}
+    for values in ("340, 360, 370", "360, 370", "360, 360.5"):
+        found, results = best_of(text_of("crank-rocker", edits, varies.format(values) + "  generations: 60"))
+        boxes[values] = measure(Goal("box"), results)
+        assert "370" not in values or found["l2"] == pytest.approx(0.37)
+    assert boxes["340, 360, 370"] == pytest.approx(boxes["360, 370"], rel=1e-9)
+    assert boxes["360, 370"] < boxes["360, 360.5"]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.synthesis.candidates import LOST, Search, W
+from tmm_cli.synthesis.choices import Choices
 from tmm_cli.synthesis.every import every, foremost
 from tmm_cli.synthesis.evolution import Evolved, evolve
 from tmm_cli.synthesis.first import NoneAssembled
@@ -55,9 +56,10 @@ def best(search: Search) -> Best:
             return _best_of(search, foremost(search, few) if not few.stopped else few.population[:STARTS], few)
         except KeyboardInterrupt:
             return _best_of(search, few.population[:STARTS], replace(few, stopped=True))
+    choices = Choices(search) if asked.values else None
     shrinking = min(SHRINKING * size, int(0.6 * search.generations))
     evolved = evolve(
-        search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
+        choices or search.evaluate, size, population=search.population, generations=search.generations, seed=asked.seed,
         shrinking=shrinking if any(limit.equal for limit in search.limits) else 0, progress=asked.progress,
     )  # fmt: skip
     starts: list[Real] = []
@@ -70,7 +72,7 @@ def best(search: Search) -> Best:
             and all(np.max(np.abs(x - s)) > APART for s in starts)
         ):
             starts.append(x)
-    return _best_of(search, starts, evolved)
+    return _best_of(search, starts if choices is None else [*starts, *choices.starts()], evolved)
 
 
 def _best_of(search: Search, starts: Iterable[Real], evolved: Evolved) -> Best:
