@@ -32,6 +32,8 @@ HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 ALIKE = 3  # mechanisms that are compared
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
+SEEMS = 1e-4  # of a bound: what comes so near to it between the positions of the search seems to meet it
+PAST = 0.5  # of a bound that only seems to be met: so far past it is aimed then
 
 
 @dataclass(frozen=True)
@@ -171,7 +173,7 @@ def _mended(search: Search, found: Best) -> Best:
     bound = limit.passed(found.values[n + 1])
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
     try:
-        nearest = _aimed(search, limit.goal, bound, others)
+        nearest = _aimed(search, limit, bound, others)
     except Infeasible:
         nearest = found
     if nearest.missed:  # the others contradict one another too
@@ -184,9 +186,23 @@ def _mended(search: Search, found: Best) -> Best:
     raise Infeasible(limit.at, f"{W}.unmet", f"{W}.nearest", {"value": told})
 
 
-def _aimed(search: Search, goal: Goal, bound: float, limits: tuple[Limit, ...]) -> Best:
-    """The mechanism whose quantity is nearest to a bound while others are kept. Raises Infeasible."""
-    return best(Search(replace(search.asked, objective=goal, limits=limits, target=bound), search.first))
+def _aimed(search: Search, limit: Limit, bound: float, others: tuple[Limit, ...]) -> Best:
+    """The mechanism whose quantity is nearest to a bound while others are kept. Raises Infeasible.
+
+    A search ends where the bound seems to be met at its positions, though it may not be between them, nor as near as it
+    can be: then what is farthest past it is searched for, which no bound ends too early.
+    """
+
+    def towards(target: float) -> Best:
+        return best(Search(replace(search.asked, objective=limit.goal, limits=others, target=target), search.first))
+
+    found = towards(bound)
+    short = float(limit.missed(found.values[0]))
+    if found.missed or short <= KEPT or not found.evolved.objective[0] <= SEEMS:
+        return found
+    past = np.copysign(PAST * (abs(bound) or 1.0), bound - found.values[0])
+    again = towards(bound + float(past))
+    return again if not again.missed and limit.missed(again.values[0]) < short else found
 
 
 def _together(search: Search, found: Best) -> Best:
@@ -203,7 +219,7 @@ def _together(search: Search, found: Best) -> Best:
         limit, value = search.limits[k + 1], values[k]
         bound, others = limit.passed(value), tuple(other for n, other in enumerate(limits) if n != k)
         try:
-            nearest = _aimed(search, limit.goal, bound, others)
+            nearest = _aimed(search, limit, bound, others)
             if not nearest.missed and limit.missed(nearest.values[0]) < limit.missed(value):
                 value, found = nearest.values[0], nearest
         except Infeasible:
