@@ -146,6 +146,15 @@ def test_fewer_precision_points_are_told_where_no_end_of_the_ranges_helps():
     solved(block | {"points": int(count)})
 
 
+def test_fewer_points_and_one_end_of_the_ranges_are_told_where_neither_helps_alone():
+    block = {"task": "four-bar-by-angles", "function": "log10(x)", "x": [1, 10], "points": 4, "l4": 100,
+             "input": [13.7, 227.1], "output": [42.16, -30.01]}  # fmt: skip
+    told = refused(block).allowed
+    count, limit, usable = re.match(r"points: (\d) with the first output angle (\S+) deg \((\S+) deg", told).groups()
+    for angle in (limit, usable):
+        solved(block | {"points": int(count), "output": [float(angle), -30.01]})
+
+
 @pytest.mark.parametrize(("phi", "psi"), [
     ([30, 80, 70], [60, 90, 100]), ([30, 20, 70], [60, 90, 100]), ([30, 30, 70], [60, 90, 100]),
     ([0, 20, 40, 30], [0, 15, 33, 55]), ([0, 20, 20, 60, 80], [0, 15, 33, 55, 83]), ([5, 200, 400], [10, 30, 60]),
