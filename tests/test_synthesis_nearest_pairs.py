@@ -225,6 +225,16 @@ def test_both_extreme_positions_are_told_turned_where_no_k_makes_the_supports_le
     refused(block | {"psi1": psi1, "psi2": psi2})
 
 
+def test_positions_that_are_told_turned_are_level_as_they_are_rounded_on_a_short_arc_too():
+    """The arc ends where k is 3.44197 with the swing of both as they are printed with six digits."""
+    block = {"task": "four-bar-by-k", "l3": 286.6, "psi1": 103.8, "psi2": 202.7548, "k": 3.442,
+             "choose": "supports level", "turns": "ccw"}  # fmt: skip
+    match = re.search(r"psi1 (\S+) deg and psi2 (\S+) deg, both turned", refused(block).allowed)
+    for more in (0.0, 4e-4):
+        for other in (0.0, 4e-4):
+            solved(block | {"psi1": float(match[1]) - more, "psi2": float(match[2]) - other})
+
+
 def test_four_bars_between_two_steps_of_the_first_scan_are_not_missed():
     """They are there from 78.08 deg on; between 78.18 and 78.22 deg a link of theirs is too long."""
     block = of_pairs([40.5, 75.9, 111.8, 157.5], [12.7, 24.5, 49.3, 74.2], l4=100)
