@@ -18,6 +18,7 @@ import numpy as np
 
 EXACT: Final = np.longdouble
 COMPLEX: Final = np.clongdouble
+DEAD: Final = 4e-15  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
 DEFECTS: Final = ("", "branch", "turns_back", "locks")
 
 
@@ -121,6 +122,7 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
         phi = np.angle((b - a) / (d - a))
         steps = np.mod(np.diff(phi, axis=-1), 2 * np.pi)
         sides = np.sign(((c - b) * np.conj(c - d)).imag)
+        dead = 1 - DEAD * (l1**2 + l2**2 + l3**2 + l4**2) / (2 * l2 * l3)  # as with pin C on pivot A: a kite
     branch = np.any(sides != sides[..., :1], axis=-1)
     found = []
     for way in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
@@ -135,7 +137,7 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
         worst = np.argmax(np.where(np.isnan(size), np.inf, size), -1)[..., None]
         largest = np.take_along_axis(size, worst, -1)[..., 0]
         where = np.take_along_axis(np.stack(places, -1), worst, -1)[..., 0]
-        locks = ~(largest < 1)
+        locks = ~(largest < dead)
         turned = np.abs(way) >= 2 * np.pi
         defect = np.where(branch, 1, np.where(turned, 2, np.where(locks, 3, 0)))
         found.append((defect, np.arccos(np.clip(largest, 0, 1)), way, where))

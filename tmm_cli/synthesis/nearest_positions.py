@@ -163,7 +163,7 @@ def _longer(asked: Asked, error: Infeasible) -> Infeasible:
                 share = edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
                 error.values["length"] = (least * float(np.exp(share + INWARDS)), "length", "least")
             return error
-    error.values["length"] = (least * BEYOND, "length")  # more must change
+    error.values["length"] = (float(f"{least * BEYOND:.3g}"), "length")  # more must change, to what it is with this
     return error
 
 
