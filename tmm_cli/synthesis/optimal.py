@@ -144,11 +144,12 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Near
     """A mechanism within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
     from tmm_cli.synthesis.wider import nearest
 
-    found = nearest(asked)
+    found, early = nearest(asked)
     if found is None:
         low, high = list(asked.low.values()), list(asked.high.values())
         closed = asked.make([(a + b) / 2 for a, b in zip(low, high, strict=True)]).ends is None
-        raise Infeasible(key, reason, _other(reason, closed))
+        words = _other(reason, closed)
+        raise Infeasible(key, reason, words + "_early" * (early and words == f"{W}.wider"))
     if found.beyond:
         name, above, *_ = found.beyond[0]
         words, values = found.told
