@@ -175,3 +175,10 @@ def test_a_kite_passes_the_line_of_the_frame_dead_whatever_rounding_says(block):
     match = re.match(r"(?:another )?(\w+),?(?: as)? (.+?)[;,] (?:or|for|with)", told)
     value = match[2].strip("[]").split(", ")
     solved(block | {match[1]: value if "[" in match[2] else value[0]})
+
+
+def test_two_positions_turned_about_one_place_have_a_size_from_what_is_given():
+    """Both places are the origin of the coupler: its task is as large as its pivots and links."""
+    block = task([[0, 0, 0], [0, 0, 31.39]], A=[-55.01, 75.65], D=[66.12, -56.5], AB=26.6, DC=24.7)
+    match = re.match(r"D \[(\S+ mm), (\S+ mm)\]", refused(block).allowed)
+    solved(block | {"D": list(match.groups())})

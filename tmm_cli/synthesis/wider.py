@@ -29,14 +29,14 @@ ROUNDS = 2  # of those
 SPREAD = 60  # candidates tried first in each of the nested bounds
 STARTS = 2  # of the polish: the nearest that differ
 QUICK = 2  # times as many of all these, and of generations, where candidates move by their tape
-WORK = 1_200_000  # places times candidates that are evaluated in all, about, for one set of constraints,
+WORK = 600_000  # places times candidates that are evaluated in all, about, for one set of constraints,
 TAPED = 50  # times as many by their tape,
 FEWEST = 20  # and generations of each search at least
 APART = 0.05  # by so much, in shares of the given ranges
 BEYOND = 1e-9  # shares of the range: what is less is within
 ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
 KEPT = 1e-7
-HALVES = 20  # of a way on which there are mechanisms at first
+HALVES = 12  # of a way on which there are mechanisms at first: finer than ROOM; times QUICK by their tape
 FIRSTS = 3  # linkages that tell the assembly
 
 
@@ -216,7 +216,7 @@ def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float], wor
 
 def _towards(search: Wider, inside: Real, outside: Real) -> Real:
     """As far from one mechanism towards another place as there are mechanisms."""
-    for _ in range(HALVES):
+    for _ in range(HALVES * (QUICK if isinstance(search.program, Taped) else 1)):
         middle = search.numbers(search.shares((inside + outside) / 2))
         inside, outside = (middle, outside) if search.holds(middle) else (inside, middle)
     return inside

@@ -101,7 +101,7 @@ WORDS: dict[str, str] = {
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
     "synthesis_optimal.wider": "other bounds; none were found that are up to five times as wide",
-    "synthesis_optimal.wider_early": "other bounds; none were found that are up to five times as wide, by a search that "
+    "synthesis_optimal.wider_early": "other bounds; none were found that are up to five times as wide, but the search "
     "was cut short",
     "synthesis_optimal.other_way": "other bounds; or another way of the driver (over, stroke or positions)",
     "synthesis_optimal.over": "other bounds; or, where the crank is not to turn fully, over: [from, to] or "
