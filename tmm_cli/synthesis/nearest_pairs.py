@@ -54,16 +54,16 @@ def refuse_found(asked: Asked, found: list[Bars]) -> None:
         raise Infeasible("output", f"{W}.{reason}", f"{W}.points_fewer{alone}", {"count": (str(count), "word")})
     if near is None and asked.function:
         near = _first(numbers(asked, 2 * WIDEST))
-    count = ""
+    points = ""
     if near is None and asked.function:  # fewer points and one angle
         fewer = ((task, _first(numbers(task))) for task in with_fewer(asked))
         task, near = next((one for one in fewer if one[1] is not None), (asked, None))
-        count = str(len(task.phi))
+        points = str(len(task.phi))
     if near is not None:
         change, move = near
         words, values = _told(change, move)
-        if count:
-            words, values = f"points_{words}", values | {"count": (count, "word")}
+        if points:
+            words, values = f"points_{words}", values | {"count": (points, "word")}
         key = (
             last if len(change.key) == 1 and change.kind == "angle" else change.key[: len(last)]
         )  # a zero is not given
