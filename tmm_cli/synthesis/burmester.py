@@ -19,7 +19,7 @@ import numpy as np
 
 EXACT: Final = np.longdouble
 COMPLEX: Final = np.clongdouble
-DEAD: Final = 4e-15  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
+DEAD: Final = 5e-16  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
 DEFECTS: Final = ("", "branch", "turns_back", "locks")
 
 

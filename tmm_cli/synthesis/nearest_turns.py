@@ -20,7 +20,7 @@ ROUNDS: Final = 28  # tables of turns round the best, each half as wide as the o
 TABLE: Final = np.linspace(-2, 2, 9)
 LINE: Final = np.linspace(0, 1, 129)  # then turns of one link on the way to what was asked
 HALVINGS: Final = 40
-DEAD: Final = 4e-7  # rad of transmission, more than rounding makes of none
+DEAD: Final = 2e-7  # rad of transmission, more than rounding makes of none
 LINES: Final = 40  # rounds of them at most, until
 SETTLED: Final = 1e-8  # rad: they no longer move
 
