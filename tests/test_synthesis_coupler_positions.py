@@ -309,7 +309,7 @@ REFUSED = {
     f"positions: {FOUR}, AB_turn: -60":
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
         "  found:   a list of 4\n"
-        "  allowed: AB_turn 0.001397 deg (6 deg for a least transmission angle of 31 deg); or defects: keep",
+        "  allowed: AB_turn 0.00139894 deg (6 deg for a least transmission angle of 31 deg); or defects: keep",
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
         "synthesis.C: B and C are one point: that is no four-bar\n  found:   [0, 0]\n"
         "  allowed: another C, as [14.5613 mm, -3.90168 mm]",

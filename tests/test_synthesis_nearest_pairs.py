@@ -146,6 +146,15 @@ def test_fewer_precision_points_are_told_where_no_end_of_the_ranges_helps():
     solved(block | {"points": int(count)})
 
 
+def test_fewer_points_and_one_end_of_the_ranges_are_told_where_neither_helps_alone():
+    block = {"task": "four-bar-by-angles", "function": "log10(x)", "x": [1, 10], "points": 4, "l4": 100,
+             "input": [13.7, 227.1], "output": [42.16, -30.01]}  # fmt: skip
+    told = refused(block).allowed
+    count, limit, usable = re.match(r"points: (\d) with the first output angle (\S+) deg \((\S+) deg", told).groups()
+    for angle in (limit, usable):
+        solved(block | {"points": int(count), "output": [float(angle), -30.01]})
+
+
 @pytest.mark.parametrize(("phi", "psi"), [
     ([30, 80, 70], [60, 90, 100]), ([30, 20, 70], [60, 90, 100]), ([30, 30, 70], [60, 90, 100]),
     ([0, 20, 40, 30], [0, 15, 33, 55]), ([0, 20, 20, 60, 80], [0, 15, 33, 55, 83]), ([5, 200, 400], [10, 30, 60]),
@@ -214,6 +223,16 @@ def test_both_extreme_positions_are_told_turned_where_no_k_makes_the_supports_le
     back = np.sign(first - float(match[1].split()[0])) * 0.02
     psi1, psi2 = (float(match[k].split()[0]) + back for k in (1, 2))
     refused(block | {"psi1": psi1, "psi2": psi2})
+
+
+def test_positions_that_are_told_turned_are_level_as_they_are_rounded_on_a_short_arc_too():
+    """The arc ends where k is 3.44197 with the swing of both as they are printed with six digits."""
+    block = {"task": "four-bar-by-k", "l3": 286.6, "psi1": 103.8, "psi2": 202.7548, "k": 3.442,
+             "choose": "supports level", "turns": "ccw"}  # fmt: skip
+    match = re.search(r"psi1 (\S+) deg and psi2 (\S+) deg, both turned", refused(block).allowed)
+    for more in (0.0, 4e-4):
+        for other in (0.0, 4e-4):
+            solved(block | {"psi1": float(match[1]) - more, "psi2": float(match[2]) - other})
 
 
 def test_four_bars_between_two_steps_of_the_first_scan_are_not_missed():

@@ -163,3 +163,22 @@ def test_where_no_coordinate_alone_helps_a_whole_position_is_told():
     positions = [[0, 0, 0], [25, 29, 23], [52, 8, 28], [34, 19, 21]]
     match = re.search(r"^position 4: \[(\S+ mm), (\S+ mm), (\S+ deg)\]", refused(task(positions)).allowed)
     solved(task([*positions[:3], list(match.groups())]))
+
+
+@pytest.mark.parametrize("block", [
+    task([[0, 0, 0], [4.2, 44.3, -21.2]], A=[2.6, -61.5], C=[2.6, -61.5], AB=132.2, DC=159.8),
+    task([[0, 0, 0], [56.6, -71.9, 27.8]], A=[15.3, 7.1], C=[15.3, 7.1], AB=138.5, DC=43.7859),
+])  # fmt: skip
+def test_a_kite_passes_the_line_of_the_frame_dead_whatever_rounding_says(block):
+    """Pin C lies on pivot A in position 1, whatever the length of AB: BC is folded on AB, and CD on AD."""
+    told = refused(block).allowed
+    match = re.match(r"(?:another )?(\w+),?(?: as)? (.+?)[;,] (?:or|for|with)", told)
+    value = match[2].strip("[]").split(", ")
+    solved(block | {match[1]: value if "[" in match[2] else value[0]})
+
+
+def test_two_positions_turned_about_one_place_have_a_size_from_what_is_given():
+    """Both places are the origin of the coupler: its task is as large as its pivots and links."""
+    block = task([[0, 0, 0], [0, 0, 31.39]], A=[-55.01, 75.65], D=[66.12, -56.5], AB=26.6, DC=24.7)
+    match = re.match(r"D \[(\S+ mm), (\S+ mm)\]", refused(block).allowed)
+    solved(block | {"D": list(match.groups())})

@@ -12,6 +12,7 @@ from tmm_cli import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis import wider
 from tmm_cli.synthesis.check import measured
 
 FOUR_BAR = """tmm: 1
@@ -204,3 +205,25 @@ def test_a_search_that_is_stuck_where_a_rod_just_touches_is_begun_elsewhere():
     (end,) = told(caught.value, "AB to")
     assert end == pytest.approx(350.07, abs=0.002)
     assert six_bar(f"{{OA: [200, 220], AB: [250, {end}]}}").synthesis.outcome.found
+
+
+def test_a_search_whose_work_is_at_an_end_says_so_and_tells_bounds_that_do(monkeypatch):
+    work = wider.Work
+    monkeypatch.setattr(wider, "Work", lambda: work(0.0))
+    bounds = {"l1": "[65, 70]", "l2": "[60, 70]", "l3": "[50, 70]"}
+    told = refused(**bounds).allowed
+    assert told.startswith("wider bounds, the nearest found: ")
+    assert told.endswith("; the search for nearer ones was cut short")
+    for name, side, value in re.findall(r"(l\d) (from|to) (\S+) mm", told):
+        low, high = bounds[name].strip("[]").split(", ")
+        bounds[name] = f"[{value}, {high}]" if side == "from" else f"[{low}, {value}]"
+    solved(**bounds)
+
+
+def test_work_is_counted_in_places_times_candidates():
+    work = wider.Work(1000.0)
+    assert work.generations(40, 20.0) == 40
+    assert (work.left, work.early) == (200.0, False)
+    assert work.generations(400, 1.0) == 200
+    assert work.early
+    assert work.generations(400, 1.0) == wider.FEWEST

@@ -12,12 +12,14 @@ dyads or tasks.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
 EXACT: Final = np.longdouble
 COMPLEX: Final = np.clongdouble
+DEAD: Final = 5e-16  # of the terms of the cosine of a transmission angle: what is so near to 1 is rounding
 DEFECTS: Final = ("", "branch", "turns_back", "locks")
 
 
@@ -35,6 +37,17 @@ class Poses:
     def in_plane(self, fixed: Any) -> Any:
         """Points of the frame in the plane's axes, in every position."""
         return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit(-np.asarray(self.angles))
+
+    @cached_property
+    def loop(self) -> tuple[Any, ...]:
+        """Of the closed four-bar of four positions: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4."""
+        places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
+        d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
+        d2, d3, d4 = (
+            a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1], a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
+            a[..., 0] * d[..., 1] - a[..., 1] * d[..., 0],
+        )  # fmt: skip
+        return d, a, d2, d3, np.abs(d3), np.abs(d4), d2 + d3 + d4
 
 
 @dataclass(frozen=True)
@@ -77,23 +90,19 @@ def by_turn(poses: Poses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
 
     ends: turns are known to have dyads, and are not outside the last ones but for rounding.
     """
-    places, angles = np.asarray(poses.places, COMPLEX), np.asarray(poses.angles, EXACT)
-    d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
-    d2, d3, d4 = (
-        a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1], a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
-        a[..., 0] * d[..., 1] - a[..., 1] * d[..., 0],
-    )  # fmt: skip
+    places, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
     second = unit(turn)
-    rest = d2 + d3 + d4 - d2 * second
+    rest = total - d2 * second
     with np.errstate(all="ignore"):
-        cosine = (np.abs(rest) ** 2 + np.abs(d3) ** 2 - np.abs(d4) ** 2) / (2 * np.abs(rest) * np.abs(d3))
+        length = np.abs(rest)
+        cosine = (length**2 + size3**2 - size4**2) / (2 * length * size3)
         cosine = np.clip(cosine, -1, 1) if ends else cosine
         sine = np.sqrt((1 - cosine) * (1 + cosine)) * np.where(np.equal(branch, 0), 1, -1)
-        third = rest / np.abs(rest) * (cosine + 1j * sine) * np.abs(d3) / d3
+        third = rest / length * (cosine + 1j * sine) * size3 / d3
         least = (second - 1) * a[..., 1] - (third - 1) * a[..., 0]
         w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least
         z = ((second - 1) * d[..., 1] - (third - 1) * d[..., 0]) / least
-    pin = -z * unit(-angles[..., 0])
+    pin = -z * unit(-np.asarray(poses.angles, EXACT)[..., 0])
     return Dyads(places[..., 0] - z - w, pin)
 
 
@@ -121,6 +130,7 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
         phi = np.angle((b - a) / (d - a))
         steps = np.mod(np.diff(phi, axis=-1), 2 * np.pi)
         sides = np.sign(((c - b) * np.conj(c - d)).imag)
+        dead = 1 - DEAD * (l1**2 + l2**2 + l3**2 + l4**2) / (2 * l2 * l3)  # as with pin C on pivot A: a kite
     branch = np.any(sides != sides[..., :1], axis=-1)
     found = []
     for way in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
@@ -135,7 +145,7 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
         worst = np.argmax(np.where(np.isnan(size), np.inf, size), -1)[..., None]
         largest = np.take_along_axis(size, worst, -1)[..., 0]
         where = np.take_along_axis(np.stack(places, -1), worst, -1)[..., 0]
-        locks = ~(largest < 1)
+        locks = ~(largest < dead)
         turned = np.abs(way) >= 2 * np.pi
         defect = np.where(branch, 1, np.where(turned, 2, np.where(locks, 3, 0)))
         found.append((defect, np.arccos(np.clip(largest, 0, 1)), way, where))

@@ -62,10 +62,15 @@ class Asked:
 
     @property
     def size(self) -> float:
-        """The largest distance between positions, or of what is given of the coupler, m."""
+        """The largest distance between positions, or of what is given of the coupler, m; where all that is nothing, of
+        pivots that are given, or a length."""
         places = np.asarray(self.places, complex)
         given = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
-        return float(max(np.max(np.abs(places[:, None] - places)), *given, 0.0))
+        found = float(max(np.max(np.abs(places[:, None] - places)), *given, 0.0))
+        if found == 0:
+            away = [abs(complex(s.pivot) - places[0]) for s in self.sides.values() if s.pivot is not None]
+            found = float(max([*away, *(s.length for s in self.sides.values() if s.length is not None), 0.0]))
+        return found
 
     def outside(self, places: Any) -> Any:
         """How far places lie outside the box (m), 0 within."""

@@ -33,6 +33,7 @@ GRID: Final = np.radians(0.1)  # of turns that are tried
 COARSE: Final = np.radians(0.5)  # the same, where the other link is free
 INWARDS: Final = 1e-6  # rad, or a share of a length, from where there is a sound four-bar first
 ROUNDED: Final = 1e-5  # what six digits may add to a length
+DEAD: Final = 1e-6  # rad of transmission, more than rounding makes of none, as in a kite whose C lies on A
 SHARE: Final = 0.02  # by which a length is changed, and
 TIMES: Final = 20.0  # how far
 SWAPPED: Final = ("sides", "length", "point", "turn", "turns", "turns_no_box")  # words that name DC as driver too
@@ -180,7 +181,7 @@ def _by_lengths(asked: Asked, one: Dyads, other: Dyads) -> tuple[str, dict[str, 
 
     def works(tried: Asked) -> bool:
         try:
-            return bool(sound(tried, dyad(tried, "AB"), dyad(tried, "DC")))
+            return bool(sound(tried, dyad(tried, "AB"), dyad(tried, "DC"), least=DEAD))
         except Infeasible:
             return False
 

@@ -86,8 +86,9 @@ def _told(asked: Asked, error: Infeasible) -> Infeasible:
     """The refusal with what is solved; of a link that is too short and not all that must change, with the rest too."""
     found = told(asked, error, _solves)
     if found.nearest == f"{W}.longer" and found.then is None:
-        name, length = found.values["name"][0], found.values["length"][0]
-        longer = replace(asked, sides={**asked.sides, name: replace(asked.sides[name], length=length * (1 + ROUNDED))})
+        name, (length, _, *side) = found.values["name"][0], found.values["length"]
+        length *= 1 + ROUNDED * len(side)  # a plain number is told as it is
+        longer = replace(asked, sides={**asked.sides, name: replace(asked.sides[name], length=length)})
         try:
             _solved(longer)
         except Infeasible as then:
@@ -96,11 +97,13 @@ def _told(asked: Asked, error: Infeasible) -> Infeasible:
 
 
 def _solves(asked: Asked) -> bool:
+    """Whether the task is solved, without a search for what a refusal would tell."""
     try:
-        _solved(asked)
+        one, other = both(asked)
     except Infeasible:
         return False
-    return True
+    apart = min(abs(one.pin - other.pin), abs(one.pivot - other.pivot)) > SAME * asked.size
+    return bool(apart) and (asked.keep or int(marks(asked.poses, one, other).defect) == 0)
 
 
 def _solved(asked: Asked) -> Outcome:

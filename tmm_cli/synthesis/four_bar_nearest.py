@@ -18,7 +18,9 @@ from tmm_cli.synthesis.record import Infeasible, Shown
 W: Final = "synthesis_four_bar_by_k"
 SCAN: Final = 100  # values of theta that are tried on either side
 INWARDS: Final = 1e-6  # rad of theta, from where there is such a pivot first: an end of an arc
-TURNED: Final = 5e-5  # rad, so when both positions are turned, each of which is rounded
+TURNED: Final = 5e-5  # rad, so when both positions are turned; or so many times that, where
+MORE: Final = 2.0 ** np.arange(9)
+ROUNDED: Final = 1e-5  # of each of them, which six digits may add to it, leaves no such pivot else
 LEAST: Final = 1e-3  # rad: the least theta that is tried
 
 
@@ -76,11 +78,21 @@ def _turn(asked: Asked) -> float | None:
     off = np.concatenate([np.angle(at(asked, places(asked, s), s).a - asked.support) for s in arcs(asked)])
     off = -(off - np.pi * np.round(off / np.pi))  # A may be on either side of D
     for turn in off[np.argsort(np.abs(off))][:: max(1, len(off) // SCAN)]:
-        told = float(turn + np.copysign(TURNED, turn))
-        turned = replace(asked, psi1=asked.psi1 + told, psi2=asked.psi2 + told)
-        if any(_on(turned, w, side) for side in arcs(turned) for w in level_places(turned)):
-            return told
+        for more in MORE:
+            told = float(turn + np.copysign(TURNED * more, turn))
+            ends = [float(psi) + told for psi in (asked.psi1, asked.psi2)]
+            added = [float(np.copysign(ROUNDED * abs(psi), turn)) for psi in ends]
+            if all(
+                _level(replace(asked, psi1=ends[0] + one, psi2=ends[1] + other))
+                for one in (0.0, added[0]) for other in (0.0, added[1])
+            ):  # fmt: skip
+                return told
     return None
+
+
+def _level(asked: Asked) -> bool:
+    """Whether a pivot is as high as D."""
+    return any(_on(asked, w, side) for side in arcs(asked) for w in level_places(asked))
 
 
 def _on(asked: Asked, w: Any, side: int) -> bool:

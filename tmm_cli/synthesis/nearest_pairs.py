@@ -10,7 +10,17 @@ import numpy as np
 
 from tmm_cli.synthesis import freudenstein
 from tmm_cli.synthesis.freudenstein import Bars
-from tmm_cli.synthesis.pair_changes import LINKS, WIDEST, Change, fewer_points, fit, length, numbers, together
+from tmm_cli.synthesis.pair_changes import (
+    LINKS,
+    WIDEST,
+    Change,
+    fewer_points,
+    fit,
+    length,
+    numbers,
+    together,
+    with_fewer,
+)
 from tmm_cli.synthesis.pairs import LONG, Asked, quality
 from tmm_cli.synthesis.record import Infeasible, Shown
 
@@ -44,9 +54,16 @@ def refuse_found(asked: Asked, found: list[Bars]) -> None:
         raise Infeasible("output", f"{W}.{reason}", f"{W}.points_fewer{alone}", {"count": (str(count), "word")})
     if near is None and asked.function:
         near = _first(numbers(asked, 2 * WIDEST))
+    points = ""
+    if near is None and asked.function:  # fewer points and one angle
+        fewer = ((task, _first(numbers(task))) for task in with_fewer(asked))
+        task, near = next((one for one in fewer if one[1] is not None), (asked, None))
+        points = str(len(task.phi))
     if near is not None:
         change, move = near
         words, values = _told(change, move)
+        if points:
+            words, values = f"points_{words}", values | {"count": (points, "word")}
         key = (
             last if len(change.key) == 1 and change.kind == "angle" else change.key[: len(last)]
         )  # a zero is not given

@@ -112,19 +112,22 @@ def told(asked: Asked, error: Infeasible, solves: Callable[[Asked], bool]) -> In
     if words not in ENDS:
         return error
     keep = "_or_keep" if error.reason.startswith(f"{W}.has_") else ""
-    values = _position(asked, solves)
+    four = len(asked.places) == 4 and not still(asked.poses)
+    free, level = replace(asked, sides={}), 0
+    if four and len(asked.sides) == 1:  # what does not help any links does not help these
+        level = max(0, _scanned(free)[0] - 1) if not soluble(free, QUICK) else 0
+    values = _position(asked, solves, level)
     if values is not None:
         return Infeasible(error.path, error.reason, f"{W}.position{keep}", error.values | values)
-    if len(asked.places) == 4 and asked.sides and not still(asked.poses):
-        free = replace(asked, sides={})
+    if four and asked.sides:
         left = {"left": (", ".join(_keys(asked)), "word")}
-        if solves(free):
+        if soluble(free) and solves(free):
             return Infeasible(error.path, error.reason, f"{W}.left_out{keep}", error.values | left)
-        if (values := _position(free, solves)) is not None:
+        if (values := _position(free, solves, level)) is not None:
             return Infeasible(error.path, error.reason, f"{W}.left_out_position{keep}", error.values | values | left)
         if (values := whole_position(free, solves, soluble)) is not None:
             return Infeasible(error.path, error.reason, f"{W}.left_out_whole{keep}", error.values | values | left)
-    if len(asked.places) == 4 and not asked.sides and not still(asked.poses):
+    if four and not asked.sides:
         values = whole_position(asked, solves, soluble)
         if values is not None:
             return Infeasible(error.path, error.reason, f"{W}.whole{keep}", error.values | values)
@@ -163,7 +166,7 @@ def _longer(asked: Asked, error: Infeasible) -> Infeasible:
                 share = edge(lambda s: soluble(with_length(s)), share, float(shares[n - 1]), INWARDS)
                 error.values["length"] = (least * float(np.exp(share + INWARDS)), "length", "least")
             return error
-    error.values["length"] = (least * BEYOND, "length")  # more must change
+    error.values["length"] = (float(f"{least * BEYOND:.3g}"), "length")  # more must change, to what it is with this
     return error
 
 
@@ -236,25 +239,45 @@ def _rough(
     }
 
 
-def _position(asked: Asked, solves: Callable[[Asked], bool]) -> dict[str, Shown] | None:
-    """Which angle or coordinate of a position changed least makes the task one that is solved, and to what."""
-    changes = [(k, part, sense) for k in range(1, len(asked.places)) for part in PARTS for sense in (1.0, -1.0)]
-    cheap = len(asked.places) < 4 or len(asked.sides) == 2
-    sizes = FARTHEST * np.geomspace(NEAREST, 1, FINE if cheap else LEVELS)
+def _cheap(asked: Asked) -> bool:
+    return len(asked.places) < 4 or len(asked.sides) == 2
+
+
+def _changes(asked: Asked) -> list[Change]:
+    return [(k, part, sense) for k in range(1, len(asked.places)) for part in PARTS for sense in (1.0, -1.0)]
+
+
+def _good(asked: Asked, change: Change, size: float) -> bool:
+    return soluble(_changed(asked, change, size), QUICK)
+
+
+def _scanned(asked: Asked, first: int = 0) -> tuple[int, list[Change], float, float]:
+    """The first of the sizes of changes, from the first-th on, with some that help: its number, these, it and the size
+    before; the number of sizes and none where there is no such."""
+    sizes = FARTHEST * np.geomspace(NEAREST, 1, FINE if _cheap(asked) else LEVELS)
+    outside = float(sizes[first - 1]) if first else 0.0
+    for n, size in enumerate(map(float, sizes[first:]), first):
+        if here := [change for change in _changes(asked) if _good(asked, change, size)]:
+            return n, here, size, outside
+        outside = size
+    return len(sizes), [], outside, outside
+
+
+def _position(asked: Asked, solves: Callable[[Asked], bool], first: int = 0) -> dict[str, Shown] | None:
+    """Which angle or coordinate of a position changed least makes the task one that is solved, and to what.
+
+    first: the number of the size of changes to begin with.
+    """
+    _, here, size, outside = _scanned(asked, first)
+    if not here:
+        return None
 
     def good(change: Change, size: float) -> bool:
-        return soluble(_changed(asked, change, size), QUICK)
+        return _good(asked, change, size)
 
-    outside = 0.0
-    for size in map(float, sizes):
-        if here := [change for change in changes if good(change, size)]:
-            break
-        outside = size
-    else:
-        return None
     rough = _rough(good, here, size, outside)
-    for nearer in map(float, np.linspace(outside, min(rough.values()), BETWEEN + 2)[1:-1]) if not cheap else ():
-        if here := [change for change in changes if good(change, nearer)]:
+    for nearer in map(float, np.linspace(outside, min(rough.values()), BETWEEN + 2)[1:-1]) if not _cheap(asked) else ():
+        if here := [change for change in _changes(asked) if good(change, nearer)]:
             rough = _rough(good, here, nearer, outside)
             break
     best = min(rough, key=lambda change: rough[change])

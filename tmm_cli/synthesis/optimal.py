@@ -34,6 +34,8 @@ APART = 0.02  # in shares of the ranges: what counts as different
 ALIKE = 3  # mechanisms that are compared
 BESIDE = 0.2  # of the ranges: by less than half of it they differ
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
+SEEMS = 1e-4  # of a bound: what comes so near to it between the positions of the search seems to meet it
+PAST = 0.5  # of a bound that only seems to be met: so far past it is aimed then
 
 
 @dataclass(frozen=True)
@@ -149,11 +151,12 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Near
     """A mechanism within the bounds with which all is met. Raises Infeasible with the nearest bounds."""
     from tmm_cli.synthesis.wider import nearest
 
-    found = nearest(asked)
+    found, early = nearest(asked)
     if found is None:
         low, high = list(asked.low.values()), list(asked.high.values())
         closed = asked.make([(a + b) / 2 for a, b in zip(low, high, strict=True)]).ends is None
-        raise Infeasible(key, reason, _other(reason, closed))
+        words = _other(reason, closed)
+        raise Infeasible(key, reason, words + "_early" * (early and words == f"{W}.wider"))
     if found.beyond:
         name, above, *_ = found.beyond[0]
         words, values = found.told
@@ -178,7 +181,7 @@ def _mended(search: Search, found: Best) -> Best:
     bound = limit.passed(found.values[n + 1])
     others = tuple(other for k, other in enumerate(search.limits[1:], 1) if k != n)
     try:
-        nearest = _aimed(search, limit.goal, bound, others)
+        nearest = _aimed(search, limit, bound, others)
     except Infeasible:
         nearest = found
     if nearest.missed:  # the others contradict one another too
@@ -191,9 +194,23 @@ def _mended(search: Search, found: Best) -> Best:
     raise Infeasible(limit.key(bound), f"{W}.unmet", f"{W}.nearest", {"value": told})
 
 
-def _aimed(search: Search, goal: Goal, bound: float, limits: tuple[Limit, ...]) -> Best:
-    """The mechanism whose quantity is nearest to a bound while others are kept. Raises Infeasible."""
-    return best(Search(replace(search.asked, objective=goal, limits=limits, target=bound), search.first))
+def _aimed(search: Search, limit: Limit, bound: float, others: tuple[Limit, ...]) -> Best:
+    """The mechanism whose quantity is nearest to a bound while others are kept. Raises Infeasible.
+
+    A search ends where the bound seems to be met at its positions, though it may not be between them, nor as near as it
+    can be: then what is farthest past it is searched for, which no bound ends too early.
+    """
+
+    def towards(target: float) -> Best:
+        return best(Search(replace(search.asked, objective=limit.goal, limits=others, target=target), search.first))
+
+    found = towards(bound)
+    short = float(limit.missed(found.values[0]))
+    if found.missed or short <= KEPT or not found.evolved.objective[0] <= SEEMS:
+        return found
+    past = np.copysign(PAST * (abs(bound) or 1.0), bound - found.values[0])
+    again = towards(bound + float(past))
+    return again if not again.missed and limit.missed(again.values[0]) < short else found
 
 
 def _together(search: Search, found: Best) -> Best:
@@ -211,7 +228,7 @@ def _together(search: Search, found: Best) -> Best:
         limit, value = search.limits[k + 1], values[k]
         bound, others = limit.passed(value), tuple(other for n, other in enumerate(limits) if n != k)
         try:
-            nearest = _aimed(search, limit.goal, bound, others)
+            nearest = _aimed(search, limit, bound, others)
             if not nearest.missed and limit.missed(nearest.values[0]) < limit.missed(value):
                 value, found = nearest.values[0], nearest
         except Infeasible:

@@ -168,6 +168,11 @@ def together(asked: Asked) -> Iterator[Change]:
 
 def fewer_points(asked: Asked) -> int | None:
     """The most precision points of a function, fewer than are asked, with which there is a sound four-bar."""
+    return next((len(task.phi) for task in with_fewer(asked) if _fit([task], True).sensible[0]), None)
+
+
+def with_fewer(asked: Asked) -> Iterator[Asked]:
+    """The same function with fewer and fewer precision points, down to two."""
     assert asked.function
     for count in range(len(asked.phi) - 1, 1, -1):
         phi, psi = asked.function.precision(count)
@@ -175,7 +180,4 @@ def fewer_points(asked: Asked) -> int | None:
         for name in ("psi0", "phi0")[: 5 - max(count, 3)]:  # as they are taken where they are not given
             if zeros[name] is None and not (count == 4 and any(zero is not None for zero in zeros.values())):
                 zeros[name] = 0.0
-        fewer = replace(asked, phi=tuple(phi), psi=tuple(psi), **zeros)
-        if _fit([fewer], True).sensible[0]:
-            return count
-    return None
+        yield replace(asked, phi=tuple(phi), psi=tuple(psi), **zeros)

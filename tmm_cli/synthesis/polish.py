@@ -56,10 +56,13 @@ def quadratic(
         matrix = np.block([[hessian + (rows.T * (lam / slack)) @ rows, -equal.T], [equal, np.zeros((e, e))]])
         if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(dual))):
             return None
+        size = 1 / np.sqrt(np.diag(matrix)[:n])  # near a bound entries differ by more digits than numbers have
+        across = np.linalg.norm(equal * size, axis=1)
+        size = np.append(size, 1 / np.where(across > 0, across, 1.0))
         aim = -slack * lam
         for corrected in (False, True):
             right = np.concatenate([-dual + rows.T @ ((aim - lam * apart) / slack), -off])
-            both = np.linalg.lstsq(matrix, right, rcond=None)[0]
+            both = size * np.linalg.lstsq(size[:, None] * matrix * size, size * right, rcond=None)[0]
             ds = rows @ both[:n] + apart
             dl = (aim - lam * ds) / slack
             longest = min(float(np.min(-x[dx < 0] / dx[dx < 0], initial=1.0)) for x, dx in ((slack, ds), (lam, dl)))

@@ -38,7 +38,7 @@ def whole_position(
             angles[k] = asked.angles[k] + share * (angle - float(asked.angles[k]))
             return replace(asked, places=tuple(places), angles=tuple(angles))
 
-        if not solves(there(1.0)):
+        if not quickly(there(1.0)):
             continue
         inside, outside = 1.0, 0.0
         while inside - outside > DRAWN:

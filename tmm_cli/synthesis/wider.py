@@ -29,12 +29,32 @@ ROUNDS = 2  # of those
 SPREAD = 60  # candidates tried first in each of the nested bounds
 STARTS = 2  # of the polish: the nearest that differ
 QUICK = 2  # times as many of all these, and of generations, where candidates move by their tape
+WORK = 600_000  # places times candidates that are evaluated in all, about, for one set of constraints,
+TAPED = 50  # times as many by their tape,
+FEWEST = 20  # and generations of each search at least
 APART = 0.05  # by so much, in shares of the given ranges
 BEYOND = 1e-9  # shares of the range: what is less is within
 ROOM = 1e-3  # of what lies beyond, by which the bounds told are wider still, so that the search finds its way there
 KEPT = 1e-7
-HALVES = 20  # of a way on which there are mechanisms at first
+HALVES = 12  # of a way on which there are mechanisms at first: finer than ROOM; times QUICK by their tape
 FIRSTS = 3  # linkages that tell the assembly
+
+
+@dataclass
+class Work:
+    """How many places times candidates are left to evaluate, so that a refusal comes in time on any machine; early:
+    whether some search was cut short for that.
+    """
+
+    left: float = WORK
+    early: bool = False
+
+    def generations(self, wanted: int, places: float) -> int:
+        """As many of the generations wanted, each of so many places times candidates, as are left; at least a few."""
+        allowed = max(FEWEST, int(self.left / places))
+        self.early = self.early or allowed < wanted
+        self.left -= min(wanted, allowed) * places
+        return min(wanted, allowed)
 
 
 class Wider(Search):
@@ -115,13 +135,14 @@ class Nearest:
     """Numbers (SI) of the nearest mechanism, and which bounds it lies beyond: name, whether above, value, its kind.
 
     first: numbers that tell its assembly, perhaps beyond the bounds. keeps: the constraints, which no mechanism was
-    found to keep where it is False.
+    found to keep where it is False. early: the search was cut short.
     """
 
     numbers: Real
     beyond: tuple[tuple[str, bool, float, str], ...]
     first: Sequence[float]
     keeps: bool = True
+    early: bool = False
 
     @property
     def told(self) -> tuple[str, dict[str, Shown]]:
@@ -132,29 +153,33 @@ class Nearest:
                 f"name{n}": (name, "word"), f"side{n}": ("to" if above else "from", "word"),
                 f"value{n}": (value, kind, "least" if above else "most"),
             }  # fmt: skip
-        return f"wider{len(self.beyond)}", values
+        return f"wider{len(self.beyond)}{'_early' * self.early}", values
 
 
-def nearest(asked: Asked) -> Nearest | None:
+def nearest(asked: Asked) -> tuple[Nearest | None, bool]:
     """The nearest mechanism that goes its way and keeps the constraints, else one that goes its way; None: none found.
+    And whether the search was cut short.
 
     Near is what lies beyond the bounds by the least sum of shares of their ranges.
     """
+    early = False
     for limits in dict.fromkeys((asked.limits, ())):
-        found = _nearest(replace(asked, limits=limits))
+        work = Work()
+        found = _nearest(replace(asked, limits=limits), work)
+        early = early or work.early
         if found is not None:
-            return replace(found, keeps=limits == asked.limits)
-    return None
+            return replace(found, keeps=limits == asked.limits, early=early), early
+    return None, early
 
 
-def _nearest(asked: Asked) -> Nearest | None:
+def _nearest(asked: Asked, work: Work) -> Nearest | None:
     """The nearest of the assembly that a file with the bounds told has."""
     low, high = _widest(asked)
     first = first_near(asked, Search.tries, low, high)
     for _ in range(FIRSTS):
         if first is None:
             return None
-        found = _nearest_of(asked, low, high, first)
+        found = _nearest_of(asked, low, high, first, work)
         if found is None or not found.beyond:
             return found
         own = dict(asked.low), dict(asked.high)
@@ -170,13 +195,13 @@ def _nearest(asked: Asked) -> Nearest | None:
     return None
 
 
-def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float]) -> Nearest | None:
+def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float], work: Work) -> Nearest | None:
     """The nearest of the assembly that one linkage has."""
     try:
         search = Wider(asked, low, high, np.full(len(low), np.nan), first)
     except Infeasible:
         return None
-    starts = _starts(search)
+    starts = _starts(search, work)
     drawn = [_drawn(search, _drawn(search, start)) for start in starts]
     best = min((x for x in drawn if search.holds(x)), key=search.far, default=None)
     if best is None:
@@ -191,19 +216,20 @@ def _nearest_of(asked: Asked, low: Real, high: Real, first: Sequence[float]) -> 
 
 def _towards(search: Wider, inside: Real, outside: Real) -> Real:
     """As far from one mechanism towards another place as there are mechanisms."""
-    for _ in range(HALVES):
+    for _ in range(HALVES * (QUICK if isinstance(search.program, Taped) else 1)):
         middle = search.numbers(search.shares((inside + outside) / 2))
         inside, outside = (middle, outside) if search.holds(middle) else (inside, middle)
     return inside
 
 
-def _starts(search: Wider) -> list[Real]:
+def _starts(search: Wider, work: Work) -> list[Real]:
     """Numbers of mechanisms that differ, the nearest first: found in what is nearer than the nearest known one, again
     and again.
     """
     span, quick = search.own_high - search.own_low, QUICK if isinstance(search.program, Taped) else 1
     numbers, far, missed = _spread(search, SPREAD * quick * quick)
     equal = any(limit.equal for limit in search.limits)
+    places = search.population * search.count / (TAPED if quick > 1 else 1)  # of a generation
     reach, seed = np.inf, search.asked.seed
     for n in range(ROUNDS * quick):
         good = missed <= FINE
@@ -216,6 +242,7 @@ def _starts(search: Wider) -> list[Real]:
             most = np.minimum(most, search.own_high + reach * span)
         part = search.within(least, most, search.sides)
         generations = min(search.generations, quick * CLOSER if np.isfinite(reach) else GENERATIONS)
+        generations = work.generations(generations, places)
         known = part.shares(numbers[good][np.argsort(far[good])[: STARTS * quick]])
         evolved = evolve(
             part.evaluate, len(least), population=search.population, generations=generations, seed=seed + n,

@@ -89,7 +89,8 @@ WORDS: dict[str, str] = {
 }
 WORDS |= {f"{_W}.column_{key}": text for key, text in _COLUMNS.items()}
 _NEAREST = {
-    "nearest": "{what} {value}", "nearest_more": "{what} {value} or more", "nearest_less": "{what} {value} or less",
+    "nearest": "{what} {value}", "points_nearest": "points: {count} with {what} {value}",
+    "nearest_more": "{what} {value} or more", "nearest_less": "{what} {value} or less",
 }  # fmt: skip
 _LONG = {"": "", "_long": ", with no link {links} times as long as another"}
 _USABLE = {"": "", "_usable": " ({usable} for a least transmission angle of {transmission})"}

@@ -107,6 +107,8 @@ WORDS: dict[str, str] = {
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
     "synthesis_optimal.wider": "other bounds; none were found that are up to five times as wide",
+    "synthesis_optimal.wider_early": "other bounds; none were found that are up to five times as wide, but the search "
+    "was cut short",
     "synthesis_optimal.other_way": "other bounds; or another way of the driver (over, stroke or positions)",
     "synthesis_optimal.over": "other bounds; or, where the crank is not to turn fully, over: [from, to] or "
     "over: positions",
@@ -121,6 +123,9 @@ WORDS: dict[str, str] = {
 for _count in range(1, 21):
     _bounds = ", ".join(f"{{name{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
     WORDS[f"synthesis_optimal.wider{_count}"] = f"wider bounds, the nearest: {_bounds}"
+    WORDS[f"synthesis_optimal.wider{_count}_early"] = (
+        f"wider bounds, the nearest found: {_bounds}; the search for nearer ones was cut short"
+    )
 for _count in range(2, 31):
     _limits = ", ".join(f"constraint {{which{n}}} {{side{n}}} {{value{n}}}" for n in range(1, _count + 1))
     WORDS[f"synthesis_optimal.together{_count}"] = f"with the others kept, these are met together: {_limits}"
