@@ -270,3 +270,10 @@ def test_the_choice_is_not_settled_before_what_is_free_is_polished():
         assert "370" not in values or found["l2"] == pytest.approx(0.37)
     assert boxes["340, 360, 370"] == pytest.approx(boxes["360, 370"], rel=1e-9)
     assert boxes["360, 370"] < boxes["360, 360.5"]
+
+
+def test_where_steps_hold_no_mechanism_bounds_without_steps_are_asked_for_and_tell_the_nearest():
+    edits, task = (("r: 60, ", ""), ("l: 220, ", "")), "vary: {{r: {}, l: {}}}\n  objective: moment"
+    told = refusal_of(text_of("crank-slider", edits, task.format("{from: 80, to: 90, step: 5}", "{among: [40, 50]}")))
+    assert "other values of what varies, or bounds [low, high] without steps, of which the nearest" in told
+    assert "wider bounds, the nearest: " in refusal_of(text_of("crank-slider", edits, task.format([80, 90], [40, 50])))

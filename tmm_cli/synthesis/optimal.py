@@ -153,9 +153,11 @@ def _within(asked: Asked, key: str | tuple[str | int, ...], reason: str) -> Near
 
     found, early = nearest(asked)
     if found is None:
-        low, high = list(asked.low.values()), list(asked.high.values())
-        closed = asked.make([(a + b) / 2 for a, b in zip(low, high, strict=True)]).ends is None
+        low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
+        closed = asked.make(asked.near((low + high) / 2).tolist()).ends is None
         words = _other(reason, closed)
+        if words in (f"{W}.wider", f"{W}.other_sketch") and not asked.free:
+            words = f"{W}.other_values"  # what lies beyond them is not tried
         raise Infeasible(key, reason, words + "_early" * (early and words == f"{W}.wider"))
     if found.beyond:
         name, above, *_ = found.beyond[0]

@@ -291,7 +291,7 @@ def _drawn(wide: Wider, numbers: Real) -> Real:
 def _widest(asked: Asked) -> tuple[Real, Real]:
     """As wide bounds as the file takes: of lengths and the like that are above zero they stay so."""
     low, high = np.array(list(asked.low.values())), np.array(list(asked.high.values()))
-    middle = (low + high) / 2
+    middle = asked.near((low + high) / 2)
     ends: tuple[Real, Real] = (low.copy(), high.copy())
     for n in asked.free:
         for side, end in enumerate(ends):

@@ -106,6 +106,8 @@ WORDS: dict[str, str] = {
     "synthesis_optimal.constant": "the objective is the same for all candidates: what was found only keeps the "
     "constraints",
     "synthesis_optimal.never": "no mechanism within these bounds can go the whole way of its driver",
+    "synthesis_optimal.other_values": "other values of what varies, or bounds [low, high] without steps, of which the "
+    "nearest that will do are told",
     "synthesis_optimal.wider": "other bounds; none were found that are up to five times as wide",
     "synthesis_optimal.wider_early": "other bounds; none were found that are up to five times as wide, but the search "
     "was cut short",
