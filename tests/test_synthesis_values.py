@@ -125,6 +125,7 @@ MESSAGES = {
     "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "the key `step` is missing", "allowed: from, to and step; or among"),
     "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "steps or values, not both", "from, to and step; or among"),
     "one value": ("n2: {among: [60 rpm]}", "with one value nothing varies", "found:   '60 rpm'"),
+    "no value": ("n2: {among: []}", "vary.n2.among: there is nothing here", "the values themselves"),
     "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),

@@ -34,7 +34,9 @@ class Chosen(Strict):
     from_: Value | None = Field(default=None, alias="from", description="the first of equal steps")
     to: Value | None = Field(default=None, description="which they do not go beyond")
     step: Value | None = Field(default=None, description="from one value to the next")
-    among: list[Value] = Field(default_factory=list, max_length=MOST, description="the values themselves, instead")
+    among: list[Value] | None = Field(
+        default=None, min_length=1, max_length=MOST, description="the values themselves, in the place of steps"
+    )
 
 
 def _listed(found: Any) -> Any:
@@ -138,11 +140,12 @@ def _steps(name: str, own: Chosen, sense: Sense, kind: str) -> tuple[tuple[float
 
 def _among(name: str, own: Chosen, sense: Sense, kind: str) -> tuple[tuple[float, ...], tuple[End, End]]:
     at: Path = ("vary", name, "among")
-    values = [float(sense.number(v, KINDS[kind].dimension, (*at, n))) for n, v in enumerate(own.among)]
+    given = own.among or []
+    values = [float(sense.number(v, KINDS[kind].dimension, (*at, n))) for n, v in enumerate(given)]
     if len(set(values)) < 2:
-        raise ProblemError("with one value nothing varies", path=at, found=quote(own.among[0]), allowed="two and more")
+        raise ProblemError("with one value nothing varies", path=at, found=quote(given[0]), allowed="two and more")
     first, last = int(np.argmin(values)), int(np.argmax(values))
-    return tuple(sorted(set(values))), ((first, own.among[first]), (last, own.among[last]))
+    return tuple(sorted(set(values))), ((first, given[first]), (last, given[last]))
 
 
 def _path(name: str, own: Range, key: str | int) -> Path:
