@@ -175,9 +175,10 @@ class Multibody:
 
     def _sketched(self):
         """Where the sketch was understood to show the links, angles within half a turn but for drivers'."""
-        from tmm_cli.motion import Law, move
+        from tmm_cli.groups.sequence import DriverMotion
+        from tmm_cli.kinematics.motion import move
 
-        law = Law(self.it.sketch.at, 1.0, 0.0, 1)
+        law = DriverMotion(self.it.sketch.at, 1.0, 0.0, 1)
         motion = move(self.it, self.motion.kernels, np.array([self.it.sketch.at]), law)
         X = np.zeros(self.size)
         for name, i in self.at_row.items():
@@ -207,7 +208,7 @@ class Multibody:
 
     # the answers, in 60 digits
 
-    def gaps(self, X, q):
+    def residuals(self, X, q):
         return mp.matrix(self.constraints(X, q, Digits()))
 
     def jacobian(self, X, q):
@@ -216,7 +217,7 @@ class Multibody:
             more, less = X.copy(), X.copy()
             more[j] += self.step
             less[j] -= self.step
-            J[:, j] = (self.gaps(more, q) - self.gaps(less, q)) / (2 * self.step)
+            J[:, j] = (self.residuals(more, q) - self.residuals(less, q)) / (2 * self.step)
         return J
 
     def begun(self, place):
@@ -232,15 +233,15 @@ class Multibody:
         X = self.begun(place)
         for _ in range(self.rounds):
             J = self.jacobian(X, q)
-            X = X - mp.lu_solve(J, self.gaps(X, q))
-        assert mp.norm(self.gaps(X, q), mp.inf) < mp.mpf(10) ** -40
+            X = X - mp.lu_solve(J, self.residuals(X, q))
+        assert mp.norm(self.residuals(X, q), mp.inf) < mp.mpf(10) ** -40
         J = self.jacobian(X, q)
         asked = [mp.matrix(self.size, 1) for _ in range(2)]
         for order in (1, 2):
             for row, drive in enumerate(drives, self.size - len(drives)):
                 asked[order - 1][row] = drive[order]
         V = mp.lu_solve(J, asked[0])
-        bend = self.gaps(X + self.bend * V, q) - 2 * self.gaps(X, q) + self.gaps(X - self.bend * V, q)
+        bend = self.residuals(X + self.bend * V, q) - 2 * self.residuals(X, q) + self.residuals(X - self.bend * V, q)
         A = mp.lu_solve(J, asked[1] - bend / self.bend**2)
         pushing = self.pushing(J, X).T
         missing = self.missing(X, V, A)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from test_commands import tmm
 
-from tmm_cli.assembly import assemble
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
 from tmm_cli.bench import speed
 from tmm_cli.bench.by_hand import MECHANISMS
 from tmm_cli.bench.chains import chain
@@ -18,8 +19,8 @@ from tmm_cli.bench.speed import Growth, Race, Rival, Speed, exponent
 from tmm_cli.forces.lever import lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import power, react
-from tmm_cli.mobile import mobile
-from tmm_cli.motion import Law, move
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 
 Q = np.linspace(0.1, 6.2, 40)
 TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair
@@ -30,17 +31,17 @@ TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair
 def test_the_code_by_hand_gives_what_the_product_gives(mechanism, variants):
     linkages = mechanism.variants(variants)
     ours, by_hand = mechanism.ours(linkages)(Q), mechanism.by_hand(linkages)(Q)
-    assert set(ours) == set(mechanism.names.values())
-    for hand, name in mechanism.names.items():
-        mine, theirs = ours[name], by_hand[hand] * (1j if hand == "N" else 1)
-        off = min(np.max(np.abs(mine - theirs)), np.max(np.abs(mine + theirs)) if hand in TURNED else np.inf)
+    assert set(ours) == set(by_hand)
+    for name, mine in ours.items():
+        theirs = by_hand[name] * (1j if name == "R.x" else 1)
+        off = min(np.max(np.abs(mine - theirs)), np.max(np.abs(mine + theirs)) if name in TURNED else np.inf)
         assert off < 1e-12 * np.max(np.abs(mine)), name
 
 
 def test_a_long_chain_of_dyads_moves_and_balances():
     it = chain(30)
     structure = mobile(it)
-    motion = move(it, assemble(it, structure), np.linspace(0, 6.28, 25), Law(1.0, 10.0, 0.0, 1))
+    motion = move(it, assemble(it, structure), np.linspace(0, 6.28, 25), DriverMotion(1.0, 10.0, 0.0, 1))
     assert len(structure.groups) == 30 and bool(np.all(motion.moving))
     loads = applied(motion, None)
     drivers = power(motion, react(motion, structure, loads))
@@ -60,17 +61,17 @@ def test_the_verdict():
     bad = replace(good, ours=150.0)
     growth = Growth("links", (3, 5), (1.0, 1.7), 1.07)
     rival = Rival("kinepy", "shaper", 2000.0, 100.0)
-    found = Speed((good, bad), (growth,), (rival,), (), False).failures
+    found = Speed((good, bad), (growth,), (rival,)).failures
     assert found == (
         "six-bar, 1 x 360: 1.50 times the code by hand, target 1.3",
         "growth with links: exponent 1.070, target 1 +- 0.05",
         "kinepy, shaper: 20.0 times as long, target 30",
     )
-    assert Speed((good, bad), (growth,), (rival,), (), True).failures == ()  # twice as wide in a reduced run
+    assert Speed((good, bad), (growth,), (rival,), reduced=True).failures == ()  # twice as wide in a reduced run
 
 
 def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
-    few = {"REDUCED_TURNS": 1, "LEAST": 0.0, "GROWING": {k: v[:4] for k, v in speed.GROWING.items()}}
+    few = {"REDUCED_TURNS": 1, "LEAST": 0.0, "GROWING": {k: (words, n[:4]) for k, (words, n) in speed.GROWING.items()}}
     for name, value in few.items():
         monkeypatch.setattr(speed, name, value)
     done = tmm("bench", "speed", "--reduced", "--json", "-o", tmp_path)

@@ -17,12 +17,12 @@ import pytest
 from write_stability_references import NUMBERS, Closely, circles, closed, starts, written
 
 from tmm_cli.accuracy import digits
-from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Unable
-from tmm_cli.accuracy.following import close
 from tmm_cli.bench import stability
+from tmm_cli.bench.chart_stability import charts
 from tmm_cli.bench.families import BY_NAME, FAMILIES
+from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, Unable
+from tmm_cli.bench.methods.following import close
 from tmm_cli.bench.stability import OURS, RIVALS, WRONG, limit, measure, ours
-from tmm_cli.bench.stability_chart import charts
 from tmm_cli.bench.truths import KEYS, known, seeds
 from tmm_cli.linkage import FRAME
 
@@ -236,7 +236,7 @@ def test_an_answer_is_right_wrong_in_another_assembly_or_not_given():
     true, size = complex(at.exact["positions"]), at.largest["positions"]
 
     def verdict(method):
-        return stability._shoot(method, method.prepare(None), at).verdict
+        return stability.judged(method, method.prepare(None), at).verdict
 
     assert verdict(answering(true)) == "right"
     assert verdict(answering(true + 2 * WRONG * size)) == "wrong"
@@ -265,7 +265,7 @@ def test_newtons_method_gives_nothing_where_it_does_not_converge():
     class Parabola:
         """x^2 = q: no root on the negative side."""
 
-        def gaps(self, X, q):
+        def residuals(self, X, q):
             return X**2 - q[:, None]
 
         def matrix(self, X, q):

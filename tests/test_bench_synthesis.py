@@ -12,6 +12,7 @@ from test_commands import ROOT, tmm
 
 from tmm_cli.bench import speed
 from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, Rate, Searches, known, prepared, text
+from tmm_cli.synthesis.optimal.closely import exactly
 
 RATE = Rate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND)
 FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
@@ -20,7 +21,7 @@ FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
 def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_72_positions():
     assert text(SEARCHED) == (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
     search = prepared(SEARCHED)
-    assert (len(search.low), len(search.limits) - 1, search.places.count) == (
+    assert (len(search.low), len(search.constraints) - 1, search.places.count) == (
         5,
         3,
         72,
@@ -30,9 +31,9 @@ def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_7
 def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
     best, search = known(), prepared(SEARCHED)
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
-    values = search.exactly(x)
+    values = exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)
-    assert all(limit.missed(v) < 1e-7 for limit, v in zip(search.limits, values[1:], strict=True))
+    assert all(limit.missed(v) < 1e-7 for limit, v in zip(search.constraints, values[1:], strict=True))
     assert best["objective"] == min(run["objective"] for run in best["runs"]) and len(best["runs"]) == 10
 
 
@@ -48,7 +49,7 @@ def test_a_generation_at_once_is_what_its_candidates_are_one_by_one(name):
 def test_the_verdict():
     ten = tuple(replace(FOUND, seed=k) for k in range(10))
     far = replace(FOUND, off=2e-3)
-    whole = Searches((RATE,), (*ten[:9], far), {}, False)
+    whole = Searches((RATE,), (*ten[:9], far), {})
     assert whole.failures == () and whole.near == 9
     slow = replace(whole, rates=(replace(RATE, per_second=60_000.0),))
     assert slow.failures == ("crank-rocker, generations of 100: 60000 candidates a second, target 100000",)

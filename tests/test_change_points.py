@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from models import SI, results_of
 
-from tmm_cli.pipeline import at_positions
+from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.results.warnings import warnings
 
 DIGITS = 1e-12  # rad
@@ -94,7 +94,7 @@ def near(found, expected, digits=DIGITS):
 def test_the_plate_is_dead_where_its_rods_come_into_line(kind):
     it = plate(kind)
     results = results_of(it.problem(), "kinematics")
-    assert results.way.full
+    assert results.driver_range.full
     near([d.place for d in results.dead], it.dead())
     assert {d.group for d in results.dead} == {results.kernels[-1].group.title}
 
@@ -105,7 +105,7 @@ def test_it_does_not_matter_where_the_sketch_is_drawn(off):
     dead = plate(DRAG_LINK).dead()
     it = plate(DRAG_LINK, float(dead[0]) + off)
     results = results_of(it.problem(), "kinematics")
-    assert results.way.full
+    assert results.driver_range.full
     near([d.place for d in results.dead], dead)
 
 
@@ -113,7 +113,7 @@ def test_it_does_not_matter_where_the_sketch_is_drawn(off):
 def test_the_plate_goes_on_without_turning(kind):
     it = plate(kind)
     results = results_of(it.problem(), "kinematics")
-    q = np.linspace(results.way.start, results.way.end, 400)
+    q = np.linspace(results.driver_range.start, results.driver_range.end, 400)
     motion = at_positions(results, q)
     assert np.all(motion.moving)
     assert np.max(np.abs(motion.poses["3"].z - 1)) < 1e-11
@@ -155,7 +155,7 @@ def test_a_plate_on_three_equal_rods_is_dead_where_all_come_into_line():
     """There its determinant only touches zero: crank and both rods are in line with the pivots at once."""
     it = Plate("0.2", "0.5", "0.2", ("0.3", "-0.2"), ("0.5", "0"), ("0.2", "0.2"), 0.7)
     results = results_of(it.problem(), "kinematics")
-    assert results.way.full
+    assert results.driver_range.full
     near([d.place for d in results.dead], [mp.mpf(0), mp.pi])
     motion = at_positions(results, np.linspace(-0.3, 3.4, 300))
     assert np.all(motion.moving)
@@ -191,7 +191,7 @@ def test_a_symmetric_linkage_stays_symmetric_where_it_could_tilt():
         "sketch": {"at": 1, "A": A, "E": [-A[0], A[1]], "C": [-0.1, y], "D": [0.1, y], "B": [0, y + 0.6]},
     }  # fmt: skip
     results = results_of(problem, "kinematics")
-    assert results.way.full
+    assert results.driver_range.full
     exact = mp.findroot(meets_above, mp.mpf("0.66"))
     near([d.place for d in results.dead], [exact, -exact])
     motion = at_positions(results, np.linspace(-0.9, 0.9, 100))
@@ -225,9 +225,9 @@ def test_with_a_rod_that_is_longer_the_driver_turns_back(longer):
     """However little it is: what was a dead position to pass is a gap then, as wide as the root of the difference."""
     it = plate(DRAG_LINK)
     results = results_of(it.problem(longer), "kinematics")
-    assert not results.way.full
+    assert not results.driver_range.full
     assert results.dead == ()
-    for limit, inside in zip(sorted(x.place for x in results.way.limits), (1, -1), strict=True):
+    for limit, inside in zip(sorted(x.place for x in results.driver_range.limits), (1, -1), strict=True):
         pose = at_positions(results, np.array([limit + 1e-7 * inside])).poses["3"]
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), limit)
         root = mp.findroot(folds(it, longer), tuple(mp.mpf(float(v)) for v in start))

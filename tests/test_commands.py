@@ -19,9 +19,13 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from rich.console import Console
 
 from tmm_cli import load, solve
 from tmm_cli.cli.app import main
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.compare import Difference, difference_table
+from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
 
 ROOT = Path(__file__).parent.parent
 PROBLEMS = sorted(
@@ -282,19 +286,19 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     assert [len(case) for case in suite] == [0, 1]
 
 
-def test_a_table_that_is_cut_advises_only_options_that_its_command_has(capsys):
-    from tmm_cli.cli.check import _show
-    from tmm_cli.results.compare import Difference
-    from tmm_cli.results.terminal import MOST_ROWS
-    from tmm_cli.words.results import WORDS
-
-    _show([("shaper", "", [Difference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)])])
-    assert "... and 7 rows more\n" in capsys.readouterr().out
-    for commands, word in ((("run", "structure", "forces"), "table.more"), (("schemes",), "table.more_json")):
-        advised = set(re.findall(r"(?<=\s)-{1,2}\w+", WORDS[word]))
+def test_a_table_that_is_cut_advises_only_options_that_its_command_has():
+    for advice, commands in ((MORE_ROWS, ("run", "structure", "forces")), (MORE_ROWS_AS_JSON, ("schemes",))):
+        advised = set(re.findall(r"(?<=\s)-{1,2}\w+", advice))
         assert advised
         for command in commands:
             assert advised <= set(re.findall(r"(?<!\S)-{1,2}\w+", tmm(command, "--help").stdout))
+
+
+def test_a_table_of_differences_that_is_cut_says_how_many_are_left_out():
+    table = difference_table({"shaper": [Difference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)]})
+    console = Console(file=io.StringIO(), record=True)
+    show(table, UnitSystem(), console, more="... and {rows} rows more")
+    assert "... and 7 rows more\n" in console.export_text()
 
 
 def test_templates_run_as_they_are(tmp_path):
@@ -336,10 +340,7 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
 
 
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
-    from rich.console import Console
-
     from tmm_cli.results.reports import tables
-    from tmm_cli.results.terminal import show
 
     results = solve(load(str(SHAPER)))
     for width in (60, 80, 120, 300):

@@ -63,9 +63,7 @@ def test_a_sketch_beyond_the_stroke_is_refused():
     with pytest.raises(ProblemError) as caught:
         solved(SWINGING.replace("at: 550", "at: 650"))
     assert str(caught.value) == (
-        "cylinder.yaml:8:14: sketch.at: the sketch shows the driver beyond its stroke\n"
-        "  found:   650\n"
-        "  allowed: a place of the stroke, or another stroke"
+        "cylinder.yaml:8:14: sketch.at: the sketch shows the driver beyond its stroke\n  found:   650"
     )
 
 

@@ -23,12 +23,25 @@ from test_commands import ROOT, SHAPER, described, tmm
 from tmm_cli import load, solve
 from tmm_cli.accuracy.data import changed, lengths
 from tmm_cli.accuracy.digits import at, bare, bounds, exact
+from tmm_cli.accuracy.margins import relative, sizes
 from tmm_cli.accuracy.searches import searched
-from tmm_cli.assembly import assemble
-from tmm_cli.extended import WIDER
+from tmm_cli.accuracy.wide import Wide
+from tmm_cli.analysis.extended import WIDER
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.kinematics.driver_range import find_range
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
-from tmm_cli.quality import find_range
-from tmm_cli.results.digits import cells, computed_tables, trusted
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    SPEED,
+)
+from tmm_cli.results.cells import cells, computed_tables, keys_of
+from tmm_cli.results.digits import accuracy
 from tmm_cli.results.table import true_digits
 from tmm_cli.structure.assur import analyse
 
@@ -190,6 +203,51 @@ def test_nine_of_ten_bounds_are_narrow_near_dead_positions(many_digits):
     assert np.mean(np.array(found) <= 100) >= 0.9
 
 
+DIMENSIONS = {
+    "x": LENGTH, "v": SPEED, "a": ACCELERATION, "angle": ANGLE, "omega": ANGULAR_SPEED, "epsilon": ANGULAR_ACCELERATION,
+    "force": FORCE, "couple": MOMENT, "balancing": MOMENT,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kinds", [kinds for _, kinds in CLASSES])
+def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kinds):
+    for seed in range(6):
+        it = made(seed, kinds)
+        way = find_range(it, assemble(it, analyse(it)))
+        near = [] if way.full else way.end - 10.0 ** -np.random.default_rng(seed).uniform(1, 12, 3)
+        rows, results = judged(it, np.array([*(it.sketch.at + np.array([0.0, 0.02])), *near]))
+        share, size = relative(results), sizes(results)
+        places = np.repeat(np.flatnonzero(results.motion.moving), len(rows) // np.sum(results.motion.moving))
+        for place, (key, _, error, _) in zip(places, rows, strict=True):
+            assert error <= share[place] * size[DIMENSIONS[key[0]]], (seed, key)
+
+
+@pytest.mark.parametrize("name", ["shaper", "excavator", "five-point-line", "clamp"])
+def test_what_an_ordinary_run_says_of_its_digits_holds_in_extended_precision(name):
+    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
+    found, size = accuracy(results), len(results.numbers)
+    assert not found.chosen.size, "no position needs to be judged"
+    wide = cells(at(results, exact(results), results.motion.q.astype(np.longdouble), results.start))
+    for table in computed_tables(results):
+        keys = keys_of(table, size)
+        for k, column in enumerate(found.table(table).columns if keys else ()):
+            if column.dimension is not None:
+                true = np.stack([wide[key] for key in keys[k]], axis=1).ravel()
+                error = np.abs(column.values - true)
+                error = np.minimum(error, np.abs(2 * np.pi - error)) if column.dimension == ANGLE else error
+                assert np.all((error <= column.bound) | np.isnan(error)), (table.name, column.header)
+
+
+def test_digits_are_judged_when_they_are_asked_for_only(tmp_path):
+    done = tmm("forces", SHAPER, "-o", tmp_path)
+    result = json.loads((tmp_path / "shaper" / "result.json").read_text(encoding="utf-8"))
+    assert "digits" not in result and not (tmp_path / "shaper" / "digits.csv").exists()
+    assert "on paper" not in done.stdout
+    told = tmm("forces", SHAPER, "--digits").stdout
+    shares = [float(share) for share in re.findall(r"(?:off: up to|paper: up to) (\S+) %", " ".join(told.split()))]
+    assert shares and max(shares) < 100, "of the largest value of a column, or of the stroke"
+
+
 def test_half_a_unit_of_the_last_figure_is_not_below_the_bound():
     values, bound = np.array([3.14159, 3.14159, 3.14159, 9.99, 0.0, 5.0]), np.array([4e-6, 6e-6, 4.0, 1e-16, 0.0, 0.0])
     assert true_digits(values, bound).tolist() == [6, 5, 0, 15, 0, 16]
@@ -197,7 +255,9 @@ def test_half_a_unit_of_the_last_figure_is_not_below_the_bound():
 
 def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
     results = solve(load(str(ROOT / "problems" / "crank-slider.yaml")), "kinematics")
-    found = searched(results, lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])}, 0.001)
+    found = searched(
+        results, lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])}, Wide(results), 0.001
+    )
     for key, value, true in (("H", results.strokes.travel, mp.mpf("0.12")), ("k", results.strokes.k, mp.mpf(1))):
         assert abs(mp.mpf(value) - true) <= found.bound[key][0] < 1e-14
     assert found.lengths["H"][0] == pytest.approx(2 * 0.06e-3), "H = 2 r"
@@ -207,8 +267,8 @@ def test_sensitivity_is_that_of_a_larger_change_of_the_data():
     problem = load(str(ROOT / "problems" / "crank-rocker.yaml"))
     places = replace(problem.request, places=tuple(0.3 + 0.7 * k for k in range(8)))
     problem = replace(problem, request=places, extended=None)
-    found = trusted(solve(problem))
-    base, total = cells(found.results), {}
+    found = accuracy(solve(problem), full=True)
+    base, total = cells(found.there), {}
     for length in lengths(problem.linkage):
         by = 1e-3 * abs(length.value)
         moved = [
@@ -241,7 +301,7 @@ def test_digits_stand_beside_the_values():
 
 
 def test_what_is_zero_within_its_bound_prints_as_zero_and_files_hold_true_digits_only(tmp_path):
-    assert tmm("run", SHAPER, "-o", tmp_path, "--no-drawings").returncode == 0
+    assert tmm("run", SHAPER, "-o", tmp_path, "--no-drawings", "--digits").returncode == 0
     folder = tmp_path / "shaper"
     cycle = list(csv.DictReader((folder / "cycle.csv").open(encoding="utf-8")))
     assert cycle[0]["v of 5, m/s"] == "0", "at the end of its stroke the output stands still"
@@ -252,7 +312,7 @@ def test_what_is_zero_within_its_bound_prints_as_zero_and_files_hold_true_digits
 
 
 def test_result_json_has_a_bound_in_the_place_of_every_number():
-    result = json.loads(tmm("forces", SHAPER, "--json").stdout)
+    result = json.loads(tmm("forces", SHAPER, "--json", "--digits").stdout)
     described(result, json.loads(tmm("schema", "--result").stdout), "")
     digits = result["digits"]
     assert digits["scale"] > 0
@@ -267,7 +327,7 @@ def test_result_json_has_a_bound_in_the_place_of_every_number():
 def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_hold():
     problem = load(str(SHAPER))
     results = solve(replace(problem, request=replace(problem.request, count=2900)), "kinematics")
-    found = trusted(results)
+    found = accuracy(results, full=True)
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)

@@ -14,7 +14,6 @@ from tmm_cli import solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.actuators import BARREL, cylinder, springs
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.scheme import placer
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.draw.wheels import contact, extent, shape
 from tmm_cli.plans.acceleration import acceleration_plan
@@ -34,9 +33,14 @@ def solved(name):
     return solve(build(read_text(PROBLEMS[name], f"{name}.yaml")))
 
 
+def placed(results, k):
+    """Points of links in a position."""
+    return Scene(results.linkage, results.structure, results.motion.poses, k).place
+
+
 def shaped(name, k):
     results = solved(name)
-    return shape(results.linkage.meshes[0], results.linkage, placer(results.motion, k))
+    return shape(results.linkage.meshes[0], results.linkage, placed(results, k))
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -128,7 +132,7 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
     text = PROBLEMS["flat follower"].replace("offset: 60", "offset: 5")
     text = text.replace("B: [0, 140]", "B: [0, 85]").replace("D: [120, 230]", "D: [120, 175]")
     results = solve(build(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
-    found = shape(results.linkage.meshes[0], results.linkage, placer(results.motion, 0))
+    found = shape(results.linkage.meshes[0], results.linkage, placed(results, 0))
     assert not found.true
     turns = np.unwrap(np.angle(np.diff(found.disk[::6])))
     assert np.all(np.diff(turns) < 0.05) or np.all(np.diff(turns) > -0.05)  # convex all the same
@@ -163,7 +167,7 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
     heads = []
     for k in range(len(runs)):
         sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
-        place = placer(results.motion, k)
+        place = placed(results, k)
         middle, along = cylinder(sheet, results.linkage, slide, place, (min(runs), max(runs)))
         corners = sheet.axes.patches[-1].get_xy()
         length = max(abs(complex(*c) - middle) for c in corners)
@@ -180,7 +184,7 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
 def test_a_spring_is_drawn_from_end_to_end():
     results = solved("cylinder")
     sheet = Sheet("t", "c", [0j, 0.6 + 0.3j])
-    place = placer(results.motion, 4)
+    place = placed(results, 4)
     springs(sheet, results.linkage, place)
     zigzag = max((line.get_xydata() for line in sheet.axes.lines), key=len)
     ends = [sheet.on(place("0", 0.52 - 0.12j)), sheet.on(place("3", 0.2 + 0j))]

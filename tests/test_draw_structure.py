@@ -8,15 +8,18 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
 from test_commands import PROBLEMS, ROOT, SHAPER, moved, subprocess, sys, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.groups import _stem as stem_of
-from tmm_cli.draw.groups import groups, sheets_apart, side_by_side
-from tmm_cli.draw.scene import HINGE, Scene, form
+from tmm_cli.draw.forms import by_pairs
+from tmm_cli.draw.groups import groups, sheets_apart, side_by_side, stem_of
+from tmm_cli.draw.scene import Scene
+from tmm_cli.draw.sheet import Sheet
 from tmm_cli.draw.structure import Legend, at_sketch, parts, scheme, structure
-from tmm_cli.groups.base import Pose
+from tmm_cli.draw.symbols import STRUCTURAL
+from tmm_cli.groups.state import Pose
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -167,8 +170,6 @@ def test_the_legend_counts_mobility_after_chebyshev():
 
 
 def test_a_compound_hinge_has_a_circle_for_every_pair():
-    from matplotlib.patches import Circle
-
     figure = scheme("title", "", of_file(ROOT / "problems" / "six-bar.yaml")).finish()
     circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
     assert len(circles) == 6  # turning pairs
@@ -181,38 +182,30 @@ def test_the_driver_and_every_group_have_colours_of_their_own():
 
 
 def test_a_ternary_link_is_a_plate_and_a_binary_one_a_bar():
-    from tmm_cli.draw.sheet import Sheet
-
     sheet = Sheet("", "", [0j, 0.25 + 0.15j])
-    assert len(form(sheet, TRIAD, "3").hull) == 3
-    assert len(form(sheet, TRIAD, "2").hull) == 2
-    ends = form(sheet, TRIAD, "2").hull
+    assert len(by_pairs(sheet, TRIAD, "3").hull) == 3
+    assert len(by_pairs(sheet, TRIAD, "2").hull) == 2
+    ends = by_pairs(sheet, TRIAD, "2").hull
     assert abs(ends[0] - ends[1]) * sheet.mu == pytest.approx(abs(80 + 30j) / 1000)
 
 
 def test_a_hinge_beside_a_guide_is_joined_to_it_square():
-    from tmm_cli.draw.sheet import Sheet
-
     sheet = Sheet("", "", [0j, 0.25 + 0.15j])
-    shape = form(sheet, OFFSET, "3")
+    shape = by_pairs(sheet, OFFSET, "3")
     ((start, end),) = shape.struts
     assert ((end - start) * np.conj(shape.bars[0].along)).real == pytest.approx(0, abs=1e-9)
     assert len(shape.welds) == 2  # at the guide, and at the hinge: one link, not two
 
 
 def test_a_link_goes_on_beyond_a_hinge_in_its_middle():
-    from tmm_cli.draw.sheet import Sheet
-
     here = of_file(ROOT / "problems" / "whitworth.yaml")
     sheet = Sheet("", "", here.extent(here.structure.links))
     pivot = next(p for p in here.structure.pairs if p.name == "C")
-    assert form(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
-    assert form(sheet, here, "1").through(sheet.on(here.at(pivot))) is None
+    assert by_pairs(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
+    assert by_pairs(sheet, here, "1").through(sheet.on(here.at(pivot))) is None
 
 
 def test_symbols_shrink_where_pairs_are_near_one_another():
-    from matplotlib.patches import Circle
-
     near = scene(
         {"O": 0j, "A": 6 + 4j, "B": 230 + 30j, "C": 260 - 60j},
         {FRAME: "O C", "1": "O A", "2": "A B", "3": "B C"},
@@ -220,7 +213,7 @@ def test_symbols_shrink_where_pairs_are_near_one_another():
     figure = scheme("title", "", near).finish()
     circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
     o, a = sorted(circles, key=lambda c: c.center[0])[:2]
-    assert o.radius < HINGE
+    assert o.radius < STRUCTURAL.hinge
     assert math.dist(o.center, a.center) > o.radius + a.radius
     legible(figure)
 

@@ -9,30 +9,29 @@ import pytest
 from matplotlib.colors import to_rgba
 
 from tmm_cli import load, solve
-from tmm_cli.draw.construction import PAD, SMALLER, border, construction, field, granted, inside
+from tmm_cli.draw.construction import PAD, SMALLER, construction, granted, inside
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.scheme import BOX
-from tmm_cli.draw.sheet import LOAD
+from tmm_cli.draw.sheet import LOAD, border
+from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.draw.synthesis import sheets
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis import (
-    burmester_lines,
-    coupler_positions,
-    crank_slider,
-    four_bar_by_angles,
-    four_bar_by_k,
-    history,
-    shaper,
-    slotted_lever,
-)
-from tmm_cli.synthesis.evolution import Evolved
+from tmm_cli.synthesis.coupler_positions import solver as coupler_positions
+from tmm_cli.synthesis.coupler_positions.lines import frame
+from tmm_cli.synthesis.coupler_positions.task import Side
+from tmm_cli.synthesis.crank_slider import solver as crank_slider
+from tmm_cli.synthesis.four_bar_by_angles import solver as four_bar_by_angles
+from tmm_cli.synthesis.four_bar_by_k import solver as four_bar_by_k
+from tmm_cli.synthesis.optimal.drawings import history
+from tmm_cli.synthesis.optimal.evolution import Evolved
+from tmm_cli.synthesis.shaper import solver as shaper
+from tmm_cli.synthesis.slotted_lever import solver as slotted_lever
 
 ROOT = Path(__file__).parents[1]
 
 
-def drawn(module, **asked):
-    return [d for d in module.solve(module.Asked(**asked)).drawings if hasattr(d, "spots")]
+def drawn(solver, **asked):
+    return [d for d in solver.solve(solver.Task(**asked)).drawings if hasattr(d, "spots")]
 
 
 def rocker(k, low, high, **more):
@@ -56,7 +55,7 @@ CASES = {
        for k in (1.1, 1.5, 2.0)},
     "pivots": (lambda: drawn(
         coupler_positions, places=(0j, 0.06 + 0.06j, 0.09 + 0.14j), angles=tuple(np.radians([0.0, 20, 60])),
-        sides={"AB": coupler_positions.Side(pivot=-0.06j), "DC": coupler_positions.Side(pivot=0.12 - 0.04j)}), ()),
+        sides={"AB": Side(pivot=-0.06j), "DC": Side(pivot=0.12 - 0.04j)}), ()),
     "four positions": (lambda: drawn(
         coupler_positions, places=(0j, 0.05 + 0.01j, 0.1 + 0.05j, 0.12 + 0.12j),
         angles=tuple(np.radians([0.0, 20, 50, 90]))), ()),
@@ -164,10 +163,12 @@ def test_the_history_is_never_empty():
 
     def drawn(polished, *, each=False):
         evolved = Evolved(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, every=each)
-        return history.diagram(evolved, lambda f: f, polished, "length", "length")
+        return history(evolved, lambda f: f, polished, "length", "length")
 
     shown = drawn(2.7)
-    assert [line.words.rpartition(".")[2] for line in shown.lines] == ["leading", "polished"]
+    assert [line.text for line in shown.lines] == [
+        "leading candidate (a new population where it rises)", "after the polish"
+    ]  # fmt: skip
     assert list(shown.lower[0].y) == [0.4, 0.1, 1e-3, 1e-5]
     rows[2:, 1] = 0
     shown = drawn(2.4)
@@ -182,7 +183,7 @@ def test_no_label_stands_on_the_hatching_of_a_guide(k):
         sheet = construction("", one, UnitSystem())
         guide = next(s for s in one.segments if s.style == "guide")
         left, right = sorted(sheet.on(z).real for z in (guide.start, guide.end))
-        rail = sheet.on(guide.start).imag - BOX[1] / 2 - 0.5
+        rail = sheet.on(guide.start).imag - MEASURED.box[1] / 2 - 0.5
         for name, a, b, low, high in boxes(sheet.finish())[2:]:
             if name not in {s.name for s in one.spots}:  # a point may be on the rail
                 assert min(b, right) - max(a, left) < 0.5 or min(high, rail) - max(low, rail - 1.5) < 0.3, name
@@ -213,9 +214,7 @@ def test_curves_of_four_positions_have_neither_gaps_nor_corners_and_pass_through
 
 def test_a_curve_that_comes_back_is_on_the_sheet_as_a_whole():
     turn = np.exp(1j * np.linspace(0, 2 * np.pi, 400))
-    low, high = burmester_lines.frame(
-        [0j, 1 + 1j], [tuple(-0.4 + 0.8 * turn), tuple(np.linspace(0, 1.2, 50) * (3 + 0j))]
-    )
+    low, high = frame([0j, 1 + 1j], [tuple(-0.4 + 0.8 * turn), tuple(np.linspace(0, 1.2, 50) * (3 + 0j))])
     assert (low, high) == pytest.approx((-1.2 - 0.8j, 1.3 + 1j), abs=0.1)
 
 
@@ -232,7 +231,7 @@ def test_a_size_too_short_for_its_text_has_it_beside_the_arrows():
 def test_an_arc_ends_in_an_arrow_where_the_edge_cuts_it(k, ratio, cut):
     (one,) = slider(k, ratio)
     sheet = construction("", one, UnitSystem())
-    low, high = field(sheet)
+    low, high = sheet.field
     bold = [a for a in one.arcs if a.style == "bold"]
     ends = [sheet.on(a.centre + a.radius * np.exp(1j * t)) for a in bold for t in (a.start, a.end)]
     assert sum(not (low.real < z.real < high.real and low.imag < z.imag < high.imag) for z in ends) == cut

@@ -2,35 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch import everything, prepare
-from tmm_cli.family import Iterated, family
+from tmm_cli.linkage import Request
 from tmm_cli.problem import schema
-from tmm_cli.problem.build import _Builder
+from tmm_cli.problem.build import Builder
 from tmm_cli.problem.expressions import evaluate_quantity, resolve_parameters
+from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.units import Quantity, UnitSystem
-from tmm_cli.problem.varied import VariedUnits
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem.values import ValueReader
 from tmm_cli.tape import record
-from tmm_cli.tape.varied import Varied
+from tmm_cli.tape.traced_number import TracedNumber
+from tmm_cli.variants.batch import everything, prepare
+from tmm_cli.variants.taped import Taped
+from tmm_cli.variants.variant import NoTapeError, Places, Variant
 
 
 def maker(name, given):
     """The linkage of a file of the bank for other values of some parameters, and their values in the file."""
     tree = read_file(str(ROOT / "problems" / f"{name}.yaml"))
     shape = schema.File.model_validate(tree.data)
-    builder = _Builder(shape, tree, False)
-    known = builder.sense.parameters
+    known = resolve_parameters(shape.parameters, UnitSystem(shape.units))
     rest = {key: value for key, value in shape.parameters.items() if key not in given}
 
     def make(numbers):
         units = UnitSystem(shape.units)
-        units = VariedUnits(units) if any(isinstance(x, Varied) for x in numbers) else units
-        varied = {key: Quantity(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
-        return builder.variant(varied | resolve_parameters(rest, units, varied), units).linkage
+        units = VariedUnits(units) if any(isinstance(x, TracedNumber) for x in numbers) else units
+        varied = {key: PhysicalValue(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
+        values = ValueReader(varied | resolve_parameters(rest, units, varied), units)
+        linkage = Builder(shape, tree, values).problem().linkage
+        always = tuple(replace(load, when="always") for load in linkage.loads if load.table is None)
+        linkage = replace(linkage, loads=always)
+        return Variant(linkage, Request(start=linkage.sketch.at))
 
     return make, [known[key].value for key in given]
 
@@ -46,12 +54,12 @@ def test_a_family_is_what_the_file_builds_for_the_same_numbers(name):
     make, first = maker(name, given)
     columns = np.array(first) * (1 + 0.02 * np.random.default_rng(1).uniform(-1, 1, (5, len(first))))
     q = np.linspace(0.1, 6.1, 12)
-    loads = [x for x in make(first).loads if x.table is not None and x.table.against != "crank angle"]
-    found = family(make, first, everything, forces=not loads)(*columns.T[:, :, None], q)
-    known = prepare([make(row) for row in columns], everything, forces=not loads)
+    found = Taped(make, first, everything, forces=True)(columns, Places(np.zeros(0), q))
+    known = prepare([make(row).linkage for row in columns], everything)
     expected, sound = known(q), known.sound(q)["moving"]
-    if make(first).driver.acceleration:
-        sound = sound & (q > make(first).sketch.at)  # before it starts there is no motion
+    linkage = make(first).linkage
+    if linkage.driver.acceleration:
+        sound = sound & (q > linkage.sketch.at)  # before it starts there is no motion
     for key in expected:
         size = np.max(np.abs(expected[key][sound])) or 1.0
         assert np.max(np.abs((found[key] - expected[key])[sound])) < 1e-11 * size, key
@@ -70,14 +78,14 @@ def test_arithmetic_of_a_file_on_numbers_that_vary(text):
 
     def value(x, y, own):
         length = units_of("1 mm")
-        return evaluate_quantity(text, {"a": Quantity(x, length), "b": Quantity(y, length)}, own).value
+        return evaluate_quantity(text, {"a": PhysicalValue(x, length), "b": PhysicalValue(y, length)}, own).value
 
     def units_of(sample):
         return evaluate_quantity(sample, {}, units).dimension
 
-    found = record(lambda x, y: {"y": value(Varied(0.02, x), Varied(0.09, y), VariedUnits(units)).stand}, 1, 1)(a, b)[
-        "y"
-    ]
+    found = record(
+        lambda x, y: {"y": value(TracedNumber(0.02, x), TracedNumber(0.09, y), VariedUnits(units)).stand}, 1, 1
+    )(a, b)["y"]
     assert found[:, 0] == pytest.approx([value(x, y, units) for x, y in zip(a[:, 0], b[:, 0], strict=True)], rel=1e-13)
 
 
@@ -85,5 +93,5 @@ def test_groups_found_by_iteration_are_no_family():
     make, first = maker(
         "press-class-iii", list(read_file(str(ROOT / "problems/press-class-iii.yaml")).data["parameters"])[:1]
     )
-    with pytest.raises(Iterated):
-        family(make, first, everything)
+    with pytest.raises(NoTapeError):
+        Taped(make, first, everything)

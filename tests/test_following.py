@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from random_linkages import any_linkage
 
-from tmm_cli.assembly import assemble
-from tmm_cli.motion import Law, move
-from tmm_cli.quality import find_range
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.driver_range import find_range
+from tmm_cli.kinematics.motion import move
 from tmm_cli.structure.assur import analyse
 
 # the last ones: barred only after more than a turn; the second group stops the driver; a rack that goes on and on;
@@ -35,7 +36,7 @@ def test_a_linkage_goes_its_whole_way_without_a_jump(case):
     it, kernels, way = followed(*case)
     ends = 1e-5 * (way.end - way.start) * (not way.full)
     q = np.linspace(way.start + ends, way.end - ends, 1500 * way.turns + 1)
-    motion = move(it, kernels, q, Law(it.sketch.at, 1.0, 0.0, 1))
+    motion = move(it, kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assert np.all(motion.placed)
     step = q[1] - q[0]
     for kernel in kernels:
@@ -51,7 +52,7 @@ def test_the_group_that_stops_the_driver_is_dead_there(case):
     it, kernels, way = followed(*case)
     for limit in way.limits:
         inside = limit.place + np.sign(it.sketch.at - limit.place) * 1e-8
-        motion = move(it, kernels, np.array([inside]), Law(it.sketch.at, 1.0, 0.0, 1))
+        motion = move(it, kernels, np.array([inside]), DriverMotion(it.sketch.at, 1.0, 0.0, 1))
         margins = {k.group.title: float(at.margin[0]) for k, at in zip(kernels, motion.placements, strict=True)}
         assert margins[limit.group] < 1e-3
 
@@ -60,7 +61,7 @@ def test_the_group_that_stops_the_driver_is_dead_there(case):
 def test_what_repeats_is_back_after_its_cycle(case):
     it, kernels, way = followed(*case)
     if way.full:
-        ends = move(it, kernels, np.array([way.start, way.end]), Law(it.sketch.at, 1.0, 0.0, 1))
+        ends = move(it, kernels, np.array([way.start, way.end]), DriverMotion(it.sketch.at, 1.0, 0.0, 1))
         back = all(abs(p.z[1] - p.z[0]) + abs(p.x[1] - p.x[0]) < 1e-9 for p in ends.poses.values())
         assert back == way.repeats
 
@@ -70,7 +71,7 @@ def test_a_limit_at_infinity_is_found_to_all_digits():
     it, kernels, way = followed(95, ("IV",), "crank")
     place = way.start
     offsets = 1e-3 * 0.6 ** np.arange(8)
-    motion = move(it, kernels, place + offsets, Law(it.sketch.at, 1.0, 0.0, 1))
+    motion = move(it, kernels, place + offsets, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     far = max(kernels[-1].group.links, key=lambda link: abs(motion.poses[link].x[-1]))
     near = 1 / np.abs(motion.poses[far].x)  # falls to nothing at the limit, smoothly
     exact = place + np.polyval(np.polyfit(near, offsets, 5), 0.0)

@@ -13,11 +13,12 @@ import pytest
 from multibody import compared
 
 from tmm_cli import load, solve
-from tmm_cli.drive import redriven
+from tmm_cli.analysis.other_driver import redriven
+from tmm_cli.analysis.pipeline import at_places
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
-from tmm_cli.motion import Law, move
-from tmm_cli.pipeline import at_places
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
@@ -107,7 +108,7 @@ def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
         others=tuple(replace(d, sense=-d.sense) for d in it.others),
     )  # fmt: skip
     start = it.sketch.at if it.others else results.start
-    law = Law(start, it.driver.rate, 0.0, -it.driver.sense)
+    law = DriverMotion(start, it.driver.rate, 0.0, -it.driver.sense)
     other = move(back, results.kernels, motion.q, law)
     for link in it.moving:
         one, two = motion.centre(link), other.centre(link)
@@ -215,7 +216,7 @@ def test_class_iv_ratio_by_instant_centres():
 def test_class_iv_is_one_of_class_iii_when_driven_from_the_other_end():
     problem = load(str(BANK / "class-iv.yaml"))
     assert analyse(problem.linkage).mechanism_class == 4
-    assert analyse(redriven(problem, "4").linkage).formula == "I(0,4) -> III(1,2,3,5)"
+    assert analyse(redriven(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
 
 
 def test_cardan_gear_draws_an_exact_straight_line():
@@ -283,14 +284,14 @@ def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
     """The sector only swings, so that its wheel is back when it is; of wheels that go round teeth would tell."""
     text = (BANK / "gear-doubling.yaml").read_text(encoding="utf-8")
     results = solve(build(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics")
-    assert (results.way.full, results.way.turns, results.way.repeats) == (True, 1, True)
-    run = at_places(results, results.way.start + 2 * np.pi * np.arange(4)).motion.named("F").x
+    assert (results.driver_range.full, results.driver_range.turns, results.driver_range.repeats) == (True, 1, True)
+    run = at_places(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x
     assert np.max(np.abs(run - run[0])) < 1e-14
 
 
 def test_summing_lever_repeats_after_three_turns_only():
     results = solved("summing-lever")
-    assert results.way.turns == 3
+    assert results.driver_range.turns == 3
     q = results.start + 2 * np.pi * np.arange(4)
     run = at_places(results, q).motion.named("E").x.imag
     assert run[3] == pytest.approx(run[0], abs=1e-14)
@@ -339,7 +340,7 @@ def test_five_bar_with_both_cranks_upright():
     assert 1000 * c.x[3] == pytest.approx(complex(100, 60 + root), abs=1e-11)
     one, two = 0.06 * 2 * math.pi, 0.06 * 4 * math.pi
     assert c.v[3] == pytest.approx(complex((two - one) / 2, -(two + one) / 2 * 100 / root), abs=1e-14)
-    assert results.way.turns == 1
+    assert results.driver_range.turns == 1
 
 
 def test_excavator_by_cosines():

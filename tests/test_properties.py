@@ -11,12 +11,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from random_linkages import TYPES, linkage
 
-from tmm_cli.assembly import assemble
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.forces.lever import lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME, Link
-from tmm_cli.motion import Law, move
 from tmm_cli.structure.assur import analyse
 from tmm_cli.vectors import cross, dot
 
@@ -31,7 +32,7 @@ def solved(it, offsets=(0.0, 0.01, -0.01), law=None):
     kernels = assemble(it, structure)
     q = it.sketch.at + np.array(offsets)
     d = it.driver
-    motion = move(it, kernels, q, law or Law(q[0], d.rate, d.acceleration, d.sense))
+    motion = move(it, kernels, q, law or DriverMotion(q[0], d.rate, d.acceleration, d.sense))
     loads = applied(motion, None)
     reactions = react(motion, structure, loads)
     return structure, motion, loads, reactions
@@ -102,7 +103,7 @@ def test_velocities_and_accelerations_are_derivatives_of_places(seed, kinds):
     generic(it)
     kernels = assemble(it, structure)
     q = it.sketch.at + step * np.arange(-2, 3)
-    motion = move(it, kernels, q, Law(it.sketch.at, 1.0, 0.0, 1))
+    motion = move(it, kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assume(min(float(np.min(p.margin)) for p in motion.placements) > 0.2)
     for point in it.sketch.points:
         x = motion.named(point)
@@ -192,11 +193,11 @@ def test_time_reversed_velocities_turn_round_and_forces_stay(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, _, reactions = generic(it)
     driver = it.driver
-    law = Law(float(motion.q[0]), driver.rate, driver.acceleration, driver.sense)
+    law = DriverMotion(float(motion.q[0]), driver.rate, driver.acceleration, driver.sense)
     back = replace(it, driver=replace(driver, sense=-1, acceleration=-driver.acceleration))
     speed, accel = law.speed(motion.q), driver.acceleration
     for k in range(len(motion.q)):  # the same instant, run backward: rate -> -rate, acceleration as it was
-        at = Law(float(motion.q[k]), float(abs(speed[k])), -accel, -1)
+        at = DriverMotion(float(motion.q[k]), float(abs(speed[k])), -accel, -1)
         _, other, _, forces = solved(back, (motion.q[k] - it.sketch.at,), at)
         for name in it.moving:
             one, two = motion.centre(name), other.centre(name)

@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from random_linkages import DRIVERS, HIGH, OTHERS, TYPES, any_linkage
 from transforms import mirrored, renamed, reversed_in_time, sized, turned
 
-from tmm_cli.assembly import assemble
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.forces.energy import energy
 from tmm_cli.forces.lever import lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import power, react
-from tmm_cli.motion import Law, move
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 from tmm_cli.structure.assur import analyse
 from tmm_cli.vectors import cross
 
@@ -26,7 +27,7 @@ CLOSE = 1e-9  # relative; groups may be 1/200 from a dead position, and several 
 
 
 def law_of(it):
-    return Law(it.sketch.at, it.driver.rate, it.driver.acceleration, it.driver.sense)
+    return DriverMotion(it.sketch.at, it.driver.rate, it.driver.acceleration, it.driver.sense)
 
 
 def solved(it, offsets=OFFSETS):
@@ -183,7 +184,7 @@ def test_velocities_and_accelerations_are_derivatives_of_places(it):
     _, motion, *_ = found(it)
     step = 2e-3
     q = it.sketch.at + step * np.arange(-4, 5)
-    motion = move(it, motion.kernels, q, Law(it.sketch.at, 1.0, 0.0, 1))
+    motion = move(it, motion.kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assume(bool(np.all(motion.moving)))
     assume(all(on_one_piece(mesh, motion) for mesh in it.meshes if mesh.law is not None))
     weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step

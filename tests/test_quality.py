@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from models import SI, results_of
 
-from tmm_cli.pipeline import at_positions
+from tmm_cli.analysis.pipeline import at_positions
 
 DIGITS = 1e-12  # rad (m for a cylinder)
 
@@ -45,7 +45,7 @@ def crank_slider(r, rod, e, at, B, driver="1"):
 
 def ends(problem):
     """Places of the limits, in growing order."""
-    way = results_of(problem, "kinematics").way
+    way = results_of(problem, "kinematics").driver_range
     assert not way.full
     return sorted(limit.place for limit in way.limits)
 
@@ -134,7 +134,7 @@ def test_strokes_of_a_slotted_lever_end_where_it_is_square_to_the_crank():
 def test_a_slotted_lever_as_long_as_the_crank_fails_where_the_stone_meets_its_pivot(pivot):
     """Also where the distance of the two comes out as exactly nothing, and the lever has no direction at all."""
     results = results_of(slotted_lever(math.hypot(*pivot), pivot, 0.7), "kinematics")
-    assert results.way.full
+    assert results.driver_range.full
     near([d.place for d in results.dead], [mp.atan2(*map(mp.mpf, pivot[::-1]))], 2 * mp.pi)
 
 
@@ -211,7 +211,7 @@ def determinant(equations, x, y, t, q):
 def folds(problem, equations):
     """Limits, and where in 50 digits the three equations have a double root, from a state beside each limit."""
     results = results_of(problem, "kinematics")
-    found = sorted(limit.place for limit in results.way.limits)
+    found = sorted(limit.place for limit in results.driver_range.limits)
     exact = []
     for place, inside in zip(found, (1, -1), strict=True):
         motion = at_positions(results, np.array([place + 1e-6 * inside]))

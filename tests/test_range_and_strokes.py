@@ -32,7 +32,7 @@ def test_the_group_that_stops_the_driver_is_named():
         "sketch": {"at": 0, "B": [400, 120], "C": [380, 190], "D": [300, 120], "E": [320, 200]},
         "positions": {"at": [0]},
     }, "kinematics")  # fmt: skip
-    assert {limit.group for limit in results.way.limits} == {"II(4,5)"}
+    assert {limit.group for limit in results.driver_range.limits} == {"II(4,5)"}
 
 
 def test_a_dwell_at_the_end_of_a_stroke_makes_no_strokes_of_rounding():

@@ -66,7 +66,7 @@ def test_the_second_coupler_of_a_parallelogram_is_passive_and_named():
 
 def test_the_parallelogram_with_two_couplers_moves_as_one():
     results = solved(PARALLELOGRAM)
-    assert results.way.full
+    assert results.driver_range.full
     turned = results.motion.link("3")
     assert np.max(np.abs(np.angle(np.exp(1j * (turned.angle - results.motion.q))))) < 1e-14
     assert np.max(np.abs(turned.omega - 2 * math.pi)) < 1e-12
@@ -87,7 +87,7 @@ def test_another_length_of_the_second_coupler_locks_it():
     with pytest.raises(ProblemError) as caught:
         solved(PARALLELOGRAM.replace("{DE: 300}", "{DE: 305}"))
     assert str(caught.value) == (
-        "rank.yaml:8:16: driver.link: mobility is not 1: the driver cannot move, its links are a truss\n"
+        "rank.yaml:8:16: driver.link: link 1 cannot be driven: pairs or other drivers hold it already\n"
         "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
         "  allowed: W = 1"
     )

@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_cli.problem import composer
-from tmm_cli.problem.errors import Mark, ProblemError, clean, nearest, quote
+from tmm_cli.problem.errors import ProblemError, clean, nearest, quote
 from tmm_cli.problem.reader import MAX_BYTES, decimal_comma_hint, read_file, read_text
+from tmm_cli.problem.tree import Mark
 
 
 @pytest.fixture(params=[name for name in ("CSafeLoader", "SafeLoader") if hasattr(yaml, name)])
@@ -84,9 +85,9 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
         ("tmm:1", "f:1:1: the top level is not a mapping\n  found:   'tmm:1'\n  allowed: lines 'key: value'"),
         ("a: 1\n---\nb: 2", "f:2:1: a second document\n  found:   ---\n  allowed: one document in a file"),
         ("a:\n  k: 1\n  k: 2", "f:3:3: a.k: duplicate key\n  found:   'k'"
-         "\n  allowed: one 'k' in a; the first is at line 2, column 3"),
+         "\n  allowed: the first is at line 2"),
         ("1: x\n'1': y", "f:2:1: 1: duplicate key\n  found:   '1'"
-         "\n  allowed: one '1' in the file; the first is at line 1, column 1"),
+         "\n  allowed: the first is at line 1"),
         ("a:\n\tb: 1", "f:2:1: a tab is used for indentation\n  found:   a tab"
          "\n  allowed: spaces, two for each level"),
         ("a:\n  -\tb: 1", "f:2:4: a tab is used for indentation\n  found:   a tab"
@@ -103,15 +104,14 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
          "\n  allowed: 'key: value', a space after ':'"),
         *((f"a: {w}", f"f:1:4: a: not a finite number\n  found:   '{w}'\n  allowed: a finite number")
           for w in (".nan", "NaN", ".inf", "-.Inf", "inf", "+Infinity")),
-        ("a: 1e999", "f:1:4: a: the number is too large\n  found:   '1e999'"
+        ("a: 1e999", "f:1:4: a: the number is too large or too small\n  found:   '1e999'"
          "\n  allowed: sizes from 1e-300 to 1e300"),
-        ("a: 1e-999", "f:1:4: a: the number is too small\n  found:   '1e-999'"
+        ("a: 1e-999", "f:1:4: a: the number is too large or too small\n  found:   '1e-999'"
          "\n  allowed: sizes from 1e-300 to 1e300"),
         ("a: " + "9" * 26, f"f:1:4: a: the number is too long\n  found:   '{'9' * 26}'"
          "\n  allowed: at most 25 digits"),
-        ("a: &x 1", "f:1:4: a: aliases are not part of a problem file\n  found:   '&x'" + ALIAS),
-        ("a: *x", "f:1:4: a: aliases are not part of a problem file\n  found:   '*x'" + ALIAS),
-        ("a: 1\n<<: {b: 1}", "f:2:1: <<: merge keys are not part of a problem file\n  found:   <<"),
+        ("a: &x 1", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
+        ("a: *x", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
         ("a: !!python/object:os.system x", "f:1:4: a: tags are not part of a problem file"
          "\n  found:   'tag:yaml.org,2002:python/object:os.system'\n  allowed: plain values"),
         ("a: !!str 5", "f:1:4: a: tags are not part of a problem file"
@@ -122,7 +122,6 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
          "\n  allowed: printable text"),
         ('a: "\\e[31m"', "f:1:4: a: a control character\n  found:   '\\x1b'\n  allowed: printable text"),
         ("? [1]\n: 2", "f:1:3: a list or mapping is used as a key\n  allowed: a word or number"),
-        ("'': 1", "f:1:1: a key that cannot be read\n  found:   ''\n  allowed: a word or number"),
         ("a: 1\n  - 2", "f:1:4: a: a value and a list below it\n  found:   '1 - 2'"
          "\n  allowed: one of the two"),
         ("a: b: c", "f:1:5: a ':' where none can be\n  found:   ': c'"
@@ -168,7 +167,7 @@ def test_hostile_shapes_are_bounded() -> None:
 
 
 def test_too_many_values() -> None:
-    message = "f:1:149996: a[49997]: too many values\n  allowed: at most 50000 keys and values"
+    message = "f:1:149996: a[49997]: too many values\n  allowed: at most 50000"
     assert refused("a: [" + "1, " * 60_000 + "]") == message
 
 

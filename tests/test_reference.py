@@ -103,7 +103,7 @@ def test_the_class_iii_reference_starts_next_to_a_dead_position():
     It is met all the same, because such positions are computed from the decimals of the file in extended precision.
     """
     _, (row,), results = solved_row(reference(CLASS_III), 0)
-    assert 2.0e-5 < results.way.end - float(row["input"]) < 2.1e-5
+    assert 2.0e-5 < results.driver_range.end - float(row["input"]) < 2.1e-5
     assert results.motion.finer is not None
 
 

@@ -13,16 +13,17 @@ import pytest
 from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
-from tmm_cli import load, solve
+from tmm_cli import load, solve, structure_of
+from tmm_cli.bench.chart_savings import chart
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
-from tmm_cli.bench.savings import Saving, savings
+from tmm_cli.bench.savings import Saving, Savings, savings
 from tmm_cli.draw import files as drawings
-from tmm_cli.draw.savings import chart
-from tmm_cli.motion import Law, NotComputed, move, towards
+from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
+from tmm_cli.kinematics.motion import move
 from tmm_cli.problem.build import build
-from tmm_cli.problem.dimensions import LENGTH, NUMBER
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
 from tmm_cli.results.stages import heavy, stages
 from tmm_cli.results.table import Column, Table
@@ -55,7 +56,7 @@ def into_numpy(work):
 def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
     problem = read(path)
     with counted() as count:
-        called = into_numpy(lambda: solve(problem, "structure").structure.formula)
+        called = into_numpy(lambda: structure_of(problem).structure.formula)
     if analyse(problem.linkage).sound:
         assert count.all == 0
         assert called == []
@@ -64,12 +65,12 @@ def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
 
 
 def test_the_structure_of_a_chain_in_space_builds_no_arrays():
-    from tmm_cli.chain import count_chain
+    from tmm_cli import count
     from tmm_cli.problem.build_chain import build_chain
     from tmm_cli.problem.reader import read_file
 
     problem = build_chain(read_file(str(ROOT / "problems" / "spatial-six-bar.yaml")))
-    assert into_numpy(lambda: count_chain(problem)) == []
+    assert into_numpy(lambda: count(problem)) == []
 
 
 def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_turn():
@@ -90,7 +91,7 @@ def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(pat
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
         q = whole.motion.q[:3]
-        alone = move(problem.linkage, kernels, q, Law(float(q[0]), 1.0, 0.0, 1), 1)
+        alone = move(problem.linkage, kernels, q, DriverMotion(float(q[0]), 1.0, 0.0, 1), 1)
         there = alone.placed & whole.motion.placed[:3]
         here, known = alone.poses[link].x[there], whole.motion.poses[link].x[:3][there]
         assert np.allclose(here, known, rtol=1e-12, atol=1e-13)  # where it is iterated, to rounding
@@ -148,7 +149,7 @@ def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_th
 
     def quality():
         found = solve(problem, "structure").mechanism
-        return found.way, found.strokes, found.dead, found.roles, found.further
+        return found.driver_range, found.strokes, found.dead, found.roles, found.further
 
     with counted() as count:
         lean = quality()
@@ -157,10 +158,16 @@ def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_th
         assert repr(quality()) == repr(lean)
 
 
+def test_without_the_saving_every_place_has_accelerations():
+    with all_orders(), counted() as count:
+        solve(load(str(SHAPER)), "structure").driver_range  # noqa: B018
+    assert count.accelerations == count.velocities > 0
+
+
 def test_places_alone_have_no_velocities_and_asking_for_them_is_an_error():
     results = solve(load(str(SHAPER)), "kinematics")
     q = results.motion.q
-    law = Law(float(q[0]), 1.0, 0.0, 1)
+    law = DriverMotion(float(q[0]), 1.0, 0.0, 1)
     places, rates = (move(results.linkage, results.kernels, q, law, order) for order in (0, 1))
     assert np.allclose(places.spot("E"), results.motion.named("E").x, rtol=1e-15, atol=0)
     assert np.array_equal(rates.first["5"].v, results.motion.first["5"].v)
@@ -189,10 +196,10 @@ def test_every_group_with_a_closed_form_is_solved_by_it():
 def test_closed_form_and_newton_give_the_same_places():
     results = solve(load(str(ROOT / "problems" / "six-bar.yaml")), "kinematics")
     with no_closed_form():
-        from tmm_cli.assembly import assemble
+        from tmm_cli.assembly.choose import assemble
 
         iterated = assemble(results.linkage, results.structure)
-    motion = move(results.linkage, iterated, results.motion.q, Law(0.0, 1.0, 0.0, 1), 0)
+    motion = move(results.linkage, iterated, results.motion.q, DriverMotion(0.0, 1.0, 0.0, 1), 0)
     assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
     for link, pose in motion.poses.items():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
@@ -229,7 +236,9 @@ def test_every_saving_is_one():
     assert [saving.name for saving in found if saving.why] == []
     names = ("structure", "groups", "positions", "orders", "massless", "closed", "drawings")
     assert tuple(saving.name for saving in found) == names
-    assert chart("A shaper", found, "png").startswith(b"\x89PNG")
+    figure = chart(Savings("shaper", "A shaper", tuple(found)))
+    names = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
+    assert "structure alone is counted" in names and "drawings when asked for" in names
 
 
 def test_a_crank_alone_has_nothing_to_save_and_says_so():
@@ -324,8 +333,9 @@ def test_a_run_of_36_000_positions_needs_less_than_400_MB(tmp_path):
     assert "count: 36000" in text
     (tmp_path / "long.yaml").write_text(text, encoding="utf-8")
     code = (
-        "import resource, sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\n"
-        "except SystemExit: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, file=sys.stderr)"
+        "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\nexcept SystemExit:\n"
+        "    with open('/proc/self/status') as status: lines = dict(line.split(':') for line in status)\n"
+        "    print(int(lines['VmHWM'].split()[0]) / 1024, file=sys.stderr)"  # ru_maxrss: the parent too
     )
     done = subprocess.run(
         [sys.executable, "-c", code, "run", str(tmp_path / "long.yaml"), "--no-drawings", "-o", str(tmp_path / "out")],

@@ -16,17 +16,18 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
+from tmm_cli.cli.scheme_files import skeleton
+from tmm_cli.cli.schemes import named_types
 from tmm_cli.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.schemes import named_types, schemes_table
-from tmm_cli.results.skeleton import skeleton
+from tmm_cli.results.schemes import schemes_table
 from tmm_cli.results.terminal import show
+from tmm_cli.schemes.chains import KinematicChain, chains
+from tmm_cli.schemes.isomorphism import canonical
+from tmm_cli.schemes.schemes import MOST_SCHEMES, TooManySchemes, schemes
 from tmm_cli.structure.assur import analyse
-from tmm_cli.structure.chains import Chain, chains
-from tmm_cli.structure.isomorphism import canonical
-from tmm_cli.structure.schemes import MOST_SCHEMES, TooManySchemes, schemes
 
 MULTI_LINK = ("RRR", "III", "IV")  # every group of turning pairs with at most four links
 
@@ -95,7 +96,7 @@ def test_the_canonical_form_does_not_depend_on_labels(links, mobility):
     for chain in chains(links, mobility):
         order = chance.sample(range(links), links)
         pairs = [tuple(sorted((order[i], order[j]))) for i, j in chain.pairs]
-        assert Chain(links, tuple(chance.sample(pairs, len(pairs)))).form == chain.form
+        assert KinematicChain(links, tuple(chance.sample(pairs, len(pairs)))).form == chain.form
 
 
 def test_the_canonical_form_tells_colours_and_kinds_apart_and_the_petersen_graph_from_another_cubic_one():
@@ -161,7 +162,7 @@ def test_schemes_of_turning_pairs_are_the_chains_with_a_frame_and_a_crank(links)
     small = [s for s in found if all(len(g.links) <= 4 for g in s.groups)]
     attached = schemes(links - 1, 1, MULTI_LINK)
     assert len(small) == len(attached)
-    grades = Counter(tuple(sorted(g.grade for g in s.groups)) for s in small)
+    grades = Counter(tuple(sorted(g.group_class for g in s.groups)) for s in small)
     assert grades == Counter(tuple(sorted(g.type.grade for g in s.groups)) for s in attached)
     assert len(found) == len(small) or links == 8  # from eight links on there are groups of six
 
@@ -212,13 +213,18 @@ def test_the_problem_of_a_higher_scheme_has_its_structure(scheme):
     problem = build(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
     structure = analyse(problem.linkage)
     assert structure.formula == scheme.formula
-    assert (structure.mobility, structure.freedom, structure.idle, structure.loose) == (1, 1, (), ())
+    assert (structure.mobility, structure.freedom, structure.redundant_pairs, structure.under_constrained) == (
+        1,
+        1,
+        (),
+        (),
+    )
 
 
 def test_a_crank_rocker_and_crank_sliders_of_all_kinds_turn_fully():
     for scheme in (*schemes(3)[:4], *schemes(5, 1, ("RRR", "RRP"))[::10]):
         problem = build(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
-        assert solve(problem, "kinematics").way.full, scheme.joints
+        assert solve(problem, "kinematics").driver_range.full, scheme.joints
 
 
 def test_a_problem_is_the_same_every_time_and_its_dimensions_are_whole():

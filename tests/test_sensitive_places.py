@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tmm_cli import redrive
+from tmm_cli import load, redrive, solve
 from tmm_cli.accuracy.data import changed, lengths
 from tmm_cli.accuracy.places import Changed
-from tmm_cli.motion import Law, move
-from tmm_cli.pipeline import solve
-from tmm_cli.problem.build import build, load
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
+from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
 BARRED = """tmm: 1
@@ -33,15 +34,13 @@ def told_and_found(results, place):
     kernels = results.kernels
     for length in lengths(results.linkage):
         other = changed(results.linkage, length, BY)
-        both = (kernels, tuple(kernel.again(other) for kernel in kernels))
+        both = (kernels, tuple(kernel.rebind(other) for kernel in kernels))
 
         def motions(q, both=both, other=other):
-            q, law = np.atleast_1d(np.asarray(q, float)), Law(0.0, 1.0, 0.0, 1)
+            q, law = np.atleast_1d(np.asarray(q, float)), DriverMotion(0.0, 1.0, 0.0, 1)
             return move(results.linkage, both[0], q, law), move(other, both[1], q, law)
 
-        anew = solve(
-            type(results.problem)(**{**vars(results.problem), "linkage": other, "extended": None}), "kinematics"
-        )
+        anew = solve(replace(results.problem, linkage=other, extended=None), "kinematics")
         yield place(results, Changed(motions, both, 1.0)), place(anew, None) - place(results, None)
 
 
@@ -53,7 +52,7 @@ def agree(results, place):
 
 def test_a_limit_of_two_links():
     def end(results, after):
-        limit = results.way.limits[-1]
+        limit = results.driver_range.limits[-1]
         return limit.place if after is None else after.limit(limit.place, limit.group)
 
     agree(solve(build(read_text(BARRED, "barred.yaml")), "kinematics"), end)
@@ -61,11 +60,11 @@ def test_a_limit_of_two_links():
 
 def test_a_limit_of_a_class_iii_group():
     def end(results, after):
-        limit = results.way.limits[-1]
+        limit = results.driver_range.limits[-1]
         return limit.place if after is None else after.limit(limit.place, limit.group)
 
     results = solve(redrive(load("problems/class-iv.yaml"), "4"), "kinematics")
-    assert results.way.limits and re.match("III", results.way.limits[-1].group)
+    assert results.driver_range.limits and re.match("III", results.driver_range.limits[-1].group)
     agree(results, end)
 
 

@@ -10,7 +10,7 @@ from models import SI, results_of
 from test_commands import PROBLEMS, ROOT, SHAPER, problem
 
 from tmm_cli import load, solve
-from tmm_cli.pipeline import at_places
+from tmm_cli.analysis.pipeline import at_places
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
@@ -185,7 +185,7 @@ def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
         },
         "driver": {"link": "1", "speed": 1}, "sketch": {"at": 60, "B": [350, 86]},
     }  # fmt: skip
-    way = results_of(problem, "kinematics").way
+    way = results_of(problem, "kinematics").driver_range
     blocked = math.acos((100**2 + 300**2 - (200 + short) ** 2) / (2 * 100 * 300))
     assert not way.full
     assert way.start == pytest.approx(blocked, rel=1e-5)

@@ -1,27 +1,18 @@
-"""Optimal synthesis of linkages of every kind: variants solved together are those solved one by one."""
+"""Optimal synthesis of linkages of every kind, by the tape or one by one."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
-import numpy as np
 import pytest
 from test_commands import ROOT
 
 from tmm_cli import solve
-from tmm_cli.batch import everything
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.search import search_of
-from tmm_cli.problem.synthesis.driven import asked_over, driven
-from tmm_cli.stack import changed, numbers
-from tmm_cli.synthesis.candidates import Search
 from tmm_cli.synthesis.check import measured
-from tmm_cli.variants.apart import Apart
-from tmm_cli.variants.together import Together
-from tmm_cli.variants.way import Places
+from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.reading import build, task_of
 
 
 def text_of(name, *edits):
@@ -30,51 +21,6 @@ def text_of(name, *edits):
         text, count = re.subn(pattern, new, text, count=1)
         assert count == 1, pattern
     return text
-
-
-ALIKE = {
-    "press-class-iii": (),
-    "cam-lever": (),
-    "two-strokes": (),
-    "rack-doubling": (),
-    "planetary-dwell-press": (),
-    "tilter": (("checks|output", "friction: {coefficient: 0.1, radius: 20}\noutput"),),
-    "crank-slider-offset": (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),),
-    "loader": (("speed: v}", "speed: v, stroke: [240, 300]}"),),  # the sketch is at its end
-    "clamp": (),  # through its positions
-    "positioner": (("speed: v}", "speed: v, stroke: [200, 280]}"),),  # a cylinder in closed form
-}
-
-
-@pytest.mark.parametrize("name", ALIKE)
-def test_variants_solved_together_are_those_solved_one_by_one(name):
-    problem = build(read_text(text_of(name, *ALIKE[name]), "x.yaml"))
-    linkage, over = problem.linkage, asked_over(None, problem.linkage.driver, problem)
-    given = [(p, v) for p, v in numbers(linkage) if re.fullmatch(r"links\.[^0].*\.points\..*", p) and abs(v) > 0][:5]
-    first = [abs(v) for _, v in given]
-
-    def make(x):
-        new = {path: v * (size / abs(v)) for (path, v), size in zip(given, x, strict=True)}
-        return driven(replace(problem, linkage=replace(changed(linkage, new), sketch=linkage.sketch)), over)
-
-    def asked(motion, reactions):
-        return {**everything(motion, reactions), "moves": motion.moving}
-
-    variants = np.array(first) * (1 + 0.01 * np.random.default_rng(2).uniform(-1, 1, (3, len(first))))
-    together, apart = (way(make, first, asked, forces=True) for way in (Together, Apart))
-    closed = together.way(variants).closed
-    places = Places(np.arange(12) / 12 if closed else np.linspace(0, 1, 12), np.zeros(0))
-    found, expected = together(variants, places), apart(variants, places)
-    moves = expected["moves"] == 1
-    for key in ("moves", "placed", "moving"):
-        del found[key], expected[key]
-    assert np.any(moves)
-    sizes = {key[-1]: 1e-9 for key in expected}
-    for key, values in expected.items():
-        sizes[key[-1]] = max(sizes[key[-1]], float(np.nanmax(np.abs(values))))
-    for key, values in expected.items():
-        off = np.abs(found[key] - values)[moves]
-        assert np.max(off) < 1e-11 * sizes[key[-1]], key
 
 
 SHORT = "positions: 24\n  population: 8\n  generations: 3\n"
@@ -145,7 +91,7 @@ def test_what_is_found_for_any_linkage_is_measured_on_it(kind):
     name, edits, *task = OPTIMAL[kind]
     problem = build(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
     for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
-        assert m.met, (m.demand.words, m.demand.value, m.value)
+        assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
 def test_a_stroke_has_no_k():
@@ -176,19 +122,12 @@ def test_a_stroke_has_no_k():
 
 
 def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
-    """The radii 3 OA/2 and OA/2 roll alike for every OA: the cycle is the same, and variants go together."""
-    text = text_of("planetary-dwell-press", ("OA: 100, ", ""), (r"points: \{", block("{OA: [90, 110]}", "mass", "")))
-    search = Search(search_of(read_text(text, "x.yaml")))
-    assert isinstance(search.program, Together)
-    other = text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm")
-    assert isinstance(Search(search_of(read_text(other, "x.yaml"))).program, Apart)
-    over = other.replace("population: 8", "population: 8\n  over: [0, 90]")
-    search = Search(search_of(read_text(over, "x.yaml")))
-    assert isinstance(search.program, Together)
-    apart = Apart(search.asked.make, search.first, search._outputs)
-    x, places = np.array([[0.095], [0.107]]), Places(np.linspace(0, 1, 9), np.zeros(0))
-    found, expected = search.program(x, places), apart(x, places)
-    assert expected and all(np.allclose(found[key], expected[key], rtol=1e-11, atol=1e-12) for key in expected)
+    """The radii 3 OA/2 and OA/2 roll alike for every OA: the cycle is the same for all."""
+    text = text_of("planetary-dwell-press", ("OA: 100, ", ""), (r"points: \{", block("{OA: [90, 110]}", "box", "")))
+    assert Search(task_of(read_text(text, "x.yaml"))).closed
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm"), "x.yaml"))
+    assert caught.value.message == "after how many turns all comes round again rests on this parameter"
 
 
 def refused(name, edits, *task):
@@ -219,7 +158,7 @@ def test_a_cycle_that_rests_on_what_varies_is_none_to_search_over():
     assert error.message == "after how many turns all comes round again rests on this parameter"
     both = (*edits, ("speed: 120 rpm", "speed: 2*n"))
     text = text_of("five-bar", *both, (r"points: \{", block("{n: [50 rpm, 70 rpm]}", "moment", "")))
-    assert Search(search_of(read_text(text, "x.yaml"))).closed
+    assert Search(task_of(read_text(text, "x.yaml"))).closed
 
 
 def test_a_law_is_asked_where_the_driver_goes_whatever_its_ends():

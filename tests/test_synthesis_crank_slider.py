@@ -11,23 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tmm_cli import solve
-from tmm_cli.batch import prepare
 from tmm_cli.linkage import Sketch
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.crank_slider import (
-    Asked,
-    find,
-    k_of,
-    largest_k,
-    largest_theta,
-    least_pressure,
-    shortest,
-    theta_of,
-)
+from tmm_cli.synthesis.crank_slider.solver import Task, find, largest_k, largest_theta, least_pressure, shortest
+from tmm_cli.synthesis.mean_ratio import k_of, theta_of
+from tmm_cli.synthesis.reading import build
+from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
 points: {{O: [0, 0]}}
@@ -106,7 +98,7 @@ def comes_back(asked):
 @given(thousand)
 def test_stroke_comes_back_from_ratio_and_offset(drawn):
     a, b, c = drawn
-    comes_back(Asked(stroke=metres(c), ratio=1.05 + 9 * a, nu=0.95 * b * (0.05 + 9 * a)))
+    comes_back(Task(stroke=metres(c), ratio=1.05 + 9 * a, nu=0.95 * b * (0.05 + 9 * a)))
 
 
 @settings(max_examples=2)
@@ -114,7 +106,7 @@ def test_stroke_comes_back_from_ratio_and_offset(drawn):
 def test_stroke_and_k_come_back_from_the_ratio(drawn):
     a, b, c = drawn
     ratio = 1.05 + 9 * a
-    comes_back(Asked(stroke=metres(c), ratio=ratio, k=k_of(0.97 * b * largest_theta(ratio))))
+    comes_back(Task(stroke=metres(c), ratio=ratio, k=k_of(0.97 * b * largest_theta(ratio))))
 
 
 @settings(max_examples=2)
@@ -123,14 +115,14 @@ def test_stroke_k_and_pressure_come_back_from_the_shortest_rod(drawn):
     a, b, c = drawn
     k = 1 + 1.2 * a
     least = least_pressure(theta_of(k))
-    comes_back(Asked(stroke=metres(c), k=k, pressure=least + (0.02 + 0.9 * b) * (1.5 - least)))
+    comes_back(Task(stroke=metres(c), k=k, pressure=least + (0.02 + 0.9 * b) * (1.5 - least)))
 
 
 @settings(max_examples=2)
 @given(thousand)
 def test_stroke_and_pressure_come_back_from_the_offset(drawn):
     a, b, c = drawn
-    comes_back(Asked(stroke=metres(c), nu=3 * a, pressure=0.1 + 1.3 * b))
+    comes_back(Task(stroke=metres(c), nu=3 * a, pressure=0.1 + 1.3 * b))
 
 
 @settings(max_examples=2)
@@ -138,7 +130,7 @@ def test_stroke_and_pressure_come_back_from_the_offset(drawn):
 def test_stroke_and_k_come_back_from_the_offset_in_metres(drawn):
     a, b, c = drawn
     theta, stroke = 0.02 + 1.2 * a, metres(c)
-    comes_back(Asked(stroke=stroke, k=k_of(theta), e=(0.05 + 0.9 * b) * stroke / np.tan(theta)))
+    comes_back(Task(stroke=stroke, k=k_of(theta), e=(0.05 + 0.9 * b) * stroke / np.tan(theta)))
 
 
 @settings(max_examples=2)
@@ -146,7 +138,7 @@ def test_stroke_and_k_come_back_from_the_offset_in_metres(drawn):
 def test_the_mean_speed_comes_back(drawn):
     a, b, c = drawn
     ratio, speed = 1.2 + 5 * a, 1 + 90 * b
-    found = find(Asked(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
+    found = find(Task(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
     assert on_mechanism(found)[0] * speed / np.pi == pytest.approx(c + 0.1, rel=MET, abs=0)
 
 
@@ -166,20 +158,20 @@ def test_no_other_length_keeps_the_pressure_angle_and_is_shorter():
     theta, limit = theta_of(1.15), math.radians(45)
     length = float(shortest(theta, limit))
     shorter = np.linspace(1.0001, length * (1 - 1e-9), 5000)
-    assert np.all(find(Asked(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
+    assert np.all(find(Task(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
 
 
 def test_the_least_pressure_angle_is_the_least_over_all_lengths():
     for k in (1.01, 1.2, 1.5, 2.0, 2.8):
         longest = 1 / math.tan(float(theta_of(k)) / 2) ** 2
         lengths = np.geomspace(1, longest, 200_003)[1:-1]
-        least = np.min(find(Asked(stroke=1.0, k=k, ratio=lengths)).pressure)
+        least = np.min(find(Task(stroke=1.0, k=k, ratio=lengths)).pressure)
         assert float(least_pressure(theta_of(k))) == pytest.approx(least, rel=1e-7)
         assert float(largest_k(least_pressure(theta_of(k)))) == pytest.approx(k, rel=1e-12)
 
 
 def test_h_and_nu_obey_the_relations_of_the_course():
-    found = find(Asked(stroke=0.12, k=1.3, ratio=3.0))
+    found = find(Task(stroke=0.12, k=1.3, ratio=3.0))
     theta = math.pi * 0.3 / 2.3
     assert found.h == pytest.approx(math.sqrt(2 * (10 - 8 * math.cos(theta))), rel=1e-14)
     assert found.nu == pytest.approx(8 * math.sin(theta) / found.h, rel=1e-14)
@@ -191,22 +183,22 @@ def test_h_and_nu_obey_the_relations_of_the_course():
 
 
 def test_the_printed_nu_is_right_for_small_theta_only():
-    errors = [float(find(Asked(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)]
+    errors = [float(find(Task(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)]
     assert errors == sorted(errors) and errors[0] < 1e-5 and errors[-1] > 0.05
 
 
 def test_the_mean_speed_gives_the_stroke_by_30_v_over_n():
     n, v = 300.0, 0.8
-    found = find(Asked(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
+    found = find(Task(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
     assert found.stroke == pytest.approx(30 * v / n, rel=1e-15)
     assert found.r == pytest.approx(found.stroke / 2, rel=1e-15)
 
 
 def test_the_triangle_of_both_extreme_positions_worked_by_hand():
     # 3-4-5: A above B2 at e = 3 is the limit; sides l + r = 5, l - r = 3 with H = 4
-    found = find(Asked(stroke=4.0, ratio=4.0, nu=2.999999))
+    found = find(Task(stroke=4.0, ratio=4.0, nu=2.999999))
     assert (found.r, found.l) == (pytest.approx(1, rel=1e-2), pytest.approx(4, rel=1e-2))
-    found = find(Asked(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
+    found = find(Task(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
     assert (found.r, found.l) == (pytest.approx(2.5, rel=1e-14), pytest.approx(17.5, rel=1e-14))
 
 
@@ -214,7 +206,7 @@ def test_the_triangle_of_both_extreme_positions_worked_by_hand():
 def test_a_k_just_below_the_bound_is_met_and_one_just_above_is_refused(drawn):
     ratio = 1.1 + 8 * drawn[0]
     most = float(k_of(largest_theta(ratio)))
-    with pytest.raises(ProblemError, match="k is too large for L"):
+    with pytest.raises(ProblemError, match="k is too large for this ratio"):
         problem({"stroke": 100, "ratio": ratio, "k": most * (1 + 1e-9)})
     found = problem({"stroke": 100, "ratio": ratio, "k": 1 + (most - 1) * (1 - 1e-6)})
     link = found.linkage.links
@@ -238,7 +230,8 @@ def test_extended_precision_solves_the_task_in_extended_precision():
 ])  # fmt: skip
 def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
     outcome = problem({"stroke": 120, **keys}).synthesis.outcome
-    told = {v.words.rpartition(".")[2]: float(v.value) for v in (*outcome.asked, *outcome.found) if v.kind != "word"}
-    approximate = math.sqrt((told["h"] - 2) * (told["ratio"] ** 2 - 1))
-    assert told["printed"] == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k"] >= 1
-    assert told["error"] == pytest.approx(told["printed"] / told["nu"] - 1 if told["nu"] else 0, abs=1e-12)
+    told = {v.text: float(v.value) for v in (*outcome.asked, *outcome.found)}
+    printed, nu = told["nu by sqrt((h - 2)(L^2 - 1)), for small theta only"], told["nu = e/r"]
+    approximate = math.sqrt((told["h = H/r"] - 2) * (told["L = l/r"] ** 2 - 1))
+    assert printed == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k"] >= 1
+    assert told["relative error of that"] == pytest.approx(printed / nu - 1 if nu else 0, abs=1e-12)

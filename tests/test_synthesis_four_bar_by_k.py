@@ -10,18 +10,18 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.batch import prepare
 from tmm_cli.linkage import FRAME, Sketch
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.crank_slider import k_of
-from tmm_cli.synthesis.four_bar_arcs import ARC, Asked, Found, arcs, at, bound, places, widest
-from tmm_cli.synthesis.four_bar_by_k import choose
-from tmm_cli.synthesis.grashof import FourBar, four_bar
+from tmm_cli.synthesis.four_bar import FourBar, turning
+from tmm_cli.synthesis.four_bar_by_k.arcs import ARC, Found, Task, arcs, at, bound, places, widest
+from tmm_cli.synthesis.four_bar_by_k.solver import choose
+from tmm_cli.synthesis.mean_ratio import k_of
+from tmm_cli.synthesis.reading import build
 from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
 points: {A: [xA, yA], D: [30, -20]}
@@ -51,7 +51,7 @@ def drawn(seed, way, count=1000, least=0.0):
     most = np.where(side > 0, np.pi / 2 - half, np.pi / 2 + half)
     theta = np.minimum(least + (0.9 * most - least) * a[2], 2.6)
     psi1 = 7 * a[3] - 3.5
-    task = Asked(l3=0.02 * 100 ** a[4], psi1=psi1, psi2=psi1 + way * 2 * half, k=k_of(theta), support=a[5] - 0.5 + 0.3j)
+    task = Task(l3=0.02 * 100 ** a[4], psi1=psi1, psi2=psi1 + way * 2 * half, k=k_of(theta), support=a[5] - 0.5 + 0.3j)
     beta = widest(task, side) * (0.05 + 0.85 * a[6])
     w = np.where(theta > 0, np.sin(beta + theta / 2) / np.sin(np.maximum(theta, 1e-9) / 2), 1.1 + 10 * a[6])
     return task, w, side
@@ -134,7 +134,7 @@ def test_what_a_thousand_choices_ask_for_comes_back():
     task, w, side = drawn(4, 1, least=0.05)
     family, chosen = at(task, w, side), []
     for n in range(1000):
-        one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         way = ("best", "l4", "near", "level")[n % 4]
         if way == "level":  # turned until the pivot of the family is as high as D
             turn = -float(np.angle(family.a[n] - task.support[n]))
@@ -157,13 +157,13 @@ def test_what_a_thousand_choices_ask_for_comes_back():
 def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_positions_on_one_side():
     task, _, _ = drawn(5, 1, 200)
     for n in range(200):
-        one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         c1, c2 = (one.support + one.l3 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
         for side in (-1, 1):
             beta = np.linspace(0, (np.pi - one.theta) / 2, 402)[1:-1]
             f = at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), side)
             inside = beta < widest(one, side)
-            turns = four_bar(FourBar(f.l1, f.l2, one.l3, f.l4)).turns[:, 0]
+            turns = turning(FourBar(f.l1, f.l2, one.l3, f.l4)).turns[:, 0]
             assert np.all(turns)  # every circle's triangles make a crank; the sides of AD decide
             sides = [np.imag((f.a - one.support) * np.conj(c - one.support)) for c in (c1, c2)]
             same = sides[0] * sides[1] > 0
@@ -177,7 +177,7 @@ def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_p
 def test_the_frame_grows_or_shrinks_all_along_an_arc_and_the_slope_is_that_of_the_pivot():
     task, _, _ = drawn(6, 1, 200, least=0.02)
     for n in range(200):
-        one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         for side in arcs(one):
             w = places(one, side)
             f = at(one, w, side)
@@ -189,7 +189,7 @@ def test_the_frame_grows_or_shrinks_all_along_an_arc_and_the_slope_is_that_of_th
 
 
 def test_the_pressure_angle_is_a_right_angle_at_the_ends_of_the_arcs():
-    one = Asked(1.0, 0.3, 1.4, 1.25)
+    one = Task(1.0, 0.3, 1.4, 1.25)
     for side in arcs(one):
         assert float(at(one, bound(one, side), side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
         assert float(at(one, 1.0, side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
@@ -198,7 +198,7 @@ def test_the_pressure_angle_is_a_right_angle_at_the_ends_of_the_arcs():
 def test_the_best_transmission_of_goessner_to_his_printed_digits():
     # S. Goessner, crocker (crank-rocker design), Examples/optimal.js: d = 120, psi = 80 deg, k = 10/9 printed with
     # a = 46.7, b = 116, c = 73.9, least transmission angle 37.7 deg; any size of the rocker gives the same shape
-    f = choose(Asked(1.0, 0.0, math.radians(80), 10 / 9))
+    f = choose(Task(1.0, 0.0, math.radians(80), 10 / 9))
     size = 120 / f.l4
     assert (round(f.l1 * size, 1), round(f.l2 * size), round(size, 1)) == (46.7, 116, 73.9)
     assert round(90 - math.degrees(f.pressure), 1) == 37.7
@@ -206,7 +206,7 @@ def test_the_best_transmission_of_goessner_to_his_printed_digits():
 
 def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
     # the same, Examples/simple.js: a = 60, d = 120 printed with b = 103, c = 94, least transmission angle 35 deg
-    one = Asked(1.0, 0.0, math.radians(80), 10 / 9, sense=1)
+    one = Task(1.0, 0.0, math.radians(80), 10 / 9, sense=1)
     (side,) = arcs(one)
 
     def crank(x):
@@ -262,35 +262,34 @@ REFUSED = [
      "[160.535 mm, 132.11 mm]: the nearest pivot with a largest pressure angle of 80 deg or less"),
     ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position, "
      "or stand all but in it",
-     "5", "k 4.74945 or less, or psi2 110.23 deg or more"),
+     "5", "4.74945 or less"),
     ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
-     "0.8", "1.00001 or more; 1.25 for the same strokes"),
+     "0.8", "1.00001 or more"),
     ("", {"k": 1}, ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
-     "1", "k 1.00001 or more; or l4 211.242 mm, with a pressure angle of 59 deg or less "
-     "(it is more than 27.5 deg always)"),
+     "1", "1.00001 or more"),
     ("", {"psi2": "50 deg"}, ".psi2: a rocker swings by more than zero and less than 180 deg",
-     "'psi2'", "psi2 from 50.0006 deg to 229.77 deg, or 49.9994 deg to -129.77 deg"),
+     "'psi2'", "50.0006 deg or more"),
     (", l4: 900", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "900", "200.009 mm to 672.651 mm"),
+     "900", "672.651 mm or less"),
     (", l4: 100", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "100", "200.009 mm to 672.651 mm"),
+     "100", "200.008 mm or more"),
     (", l4: -3", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "-3", "200.009 mm to 672.651 mm"),
+     "-3", "200.008 mm or more"),
     (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
-     "900", "200.009 mm to 443.23 mm"),
+     "900", "443.23 mm or less"),
     (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
-     "'cw'", "turns: ccw, or k 2.06084 or less"),
+     "'cw'", "ccw"),
     (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
      ".choose: no pivot of the admissible arcs is as high as D",
-     "'supports level'", "k 1.05739 or less; now A is at best 137.749 mm higher than D"),
+     "'supports level'", "best transmission"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
      "choose and l4", "one of choose, l1, l2, l4, near"),
     (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
-     "95", "30.866 mm to 92.3472 mm"),
+     "95", "92.3472 mm or less"),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
-     "70", "k 1.00001 or more; or l4 211.242 mm in the place of l1: the crank is 92.3497 mm then"),
+     "70", "another task: no other value of this one helps"),
     (", l2: 60", {}, ".l2: no pivot of the admissible arcs gives such a coupler",
-     "60", "92.3535 mm to 612.354 mm"),
+     "60", "92.3535 mm or more"),
     (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs gives such a coupler",
      "60", "92.3535 mm or more"),
 ]  # fmt: skip
@@ -303,7 +302,7 @@ def test_what_cannot_be_is_refused_with_the_reason_and_the_nearest_that_can(more
 
 def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_just_passes_it():
     # the pivots of this arc are from 2.2e-6 below D to 1.99 above it
-    one = Asked(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
+    one = Task(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
     f = choose(one)
     assert abs(f.a.imag) < 1e-14 and f.pressure < np.radians(89)
     beta = widest(one, 1) * np.linspace(0, 1, 2_000_001)[1:-1]
@@ -315,7 +314,7 @@ def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_ju
 def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
     task, _, _ = drawn(9, 1, 50, least=0.02)
     for n in range(50):
-        one = Asked(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
+        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
         scan = [at(one, places(one, side), side).a.imag for side in arcs(one)]
         if any(np.any(np.diff(np.sign(offsets))) for offsets in scan):
             f = choose(one)
@@ -327,7 +326,7 @@ def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
 
 @pytest.mark.parametrize("way", ["best", "level", "near"])
 def test_a_support_that_is_far_away_takes_no_digits(way):
-    one = Asked(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None)
+    one = Task(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None)
     here = choose(one)
     for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
         there = choose(replace(one, support=far, near=None if one.near is None else one.near + far))
@@ -335,7 +334,7 @@ def test_a_support_that_is_far_away_takes_no_digits(way):
 
 
 def test_a_place_that_no_pivot_is_near_to_is_refused_with_the_nearest_sound_pivot():
-    one = Asked(0.1, math.radians(10), math.radians(50), 1.2, choose="near", near=0.1 + 0.03j)
+    one = Task(0.1, math.radians(10), math.radians(50), 1.2, choose="near", near=0.1 + 0.03j)
     with pytest.raises(Infeasible) as caught:
         choose(one)
     told = complex(*(caught.value.values[name][0] for name in "xy"))
@@ -347,7 +346,7 @@ def test_a_place_that_no_pivot_is_near_to_is_refused_with_the_nearest_sound_pivo
 
 
 def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
-    one = Asked(0.2, math.radians(50), math.radians(105), 1.2)
+    one = Task(0.2, math.radians(50), math.radians(105), 1.2)
     most = float(k_of(np.pi / 2 + one.swing / 2 - ARC))
     assert arcs(replace(one, k=most * (1 - 1e-6))) == [-1] and arcs(replace(one, k=most * (1 + 1e-9))) == []
     for side in arcs(one):
@@ -358,7 +357,7 @@ def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
 
 
 def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_arcs():
-    one = Asked(0.2, math.radians(50), math.radians(105), 1.2)
+    one = Task(0.2, math.radians(50), math.radians(105), 1.2)
     for name, value in (("l1", 0.088), ("l2", 0.25)):
         found = choose(replace(one, choose=name, **{name: value}))
         assert getattr(found, name) == pytest.approx(value, rel=1e-14)
@@ -369,11 +368,11 @@ def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_
 def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     found = problem(", l4: 400", k=1)
     outcome = found.synthesis.outcome
-    assert outcome.notes == ("synthesis_four_bar_by_k.line",)
+    assert outcome.notes == ("with k = 1 the circle is the line C1C2: A is any place of it beyond C1",)
     for m in measured(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
     assert refusal(", l4: 190", k=1) == (
-        ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: 200.009 mm or more"
+        ".l4: no pivot of the admissible arcs is at this distance from D\n  found:   190\n  allowed: 200.008 mm or more"
     )
 
 

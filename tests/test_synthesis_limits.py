@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.synthesis.alone import alone
-from tmm_cli.problem.synthesis.limits import shown
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis import coupler_positions
 from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.reading import alone, build
 from tmm_cli.synthesis.record import Infeasible, Outcome, Value, sound
+from tmm_cli.synthesis.refusals import shown
 
 SEEDS = range(4)
 FARTHER = 1e-4  # relative: beyond the limit
@@ -78,30 +76,27 @@ ALONE, ALONE_MORE = r"^([^ ,]+(?: mm| deg)?) or less", r"^([^ ,]+(?: mm| deg)?) 
 LOW, HIGH = r"(?:^|psi2 from )([^ ,]+(?: mm| deg)?) to ", r" to ([^ ,]+(?: mm| deg)?)"
 K, RATIO = LESS.format("k"), LESS.format("ratio")
 CASES = {  # a task that cannot be, and where the limit of each key stands in the message
-    "k too large for L": (slider(k=between(2, 2.9), ratio=between(4, 60)), {"k": K, "ratio": RATIO}),
-    "k of 3 or more": (slider(k=between(3, 9), ratio=between(1.1, 9)), {"k": K}),
+    "k too large for L": (slider(k=between(2, 2.9), ratio=between(4, 60)), {"k": ALONE}),
+    "k of 3 or more": (slider(k=between(3, 9), ratio=between(1.1, 9)), {"k": ALONE}),
     "pressure angle too small": (
-        slider(k=between(1.2, 2.5), pressure=between(3, 20)), {"k": K, "pressure": MORE.format("pressure")}),
-    "k of 3 or more, pressure": (slider(k=between(3, 9), pressure=between(20, 80)), {"k": K}),
-    "offset too large": (slider(k=between(1.8, 2.8), e=between(400, 900)), {"k": K, "e": LESS.format("e")}),
-    "k of 3 or more, offset": (slider(k=between(3, 9), e=between(4, 900)), {"k": K}),
+        slider(k=between(1.2, 2.5), pressure=between(3, 20)), {"pressure": ALONE_MORE}),
+    "k of 3 or more, pressure": (slider(k=between(3, 9), pressure=between(20, 80)), {"k": ALONE}),
+    "offset too large": (slider(k=between(1.8, 2.8), e=between(400, 900)), {"k": ALONE}),
+    "k of 3 or more, offset": (slider(k=between(3, 9), e=between(4, 900)), {"k": ALONE}),
     "nu too large": (slider(ratio=between(1.1, 4), nu=between(3.2, 9)),
-                     {"nu": LESS.format("nu"), "ratio": MORE.format("ratio")}),
+                     {"nu": ALONE}),
     "rod too short": (slider(ratio=between(0.1, 1), nu=between(0, 3)), {"ratio": ALONE_MORE}),
     "rod too short, k": (slider(ratio=between(0.1, 1), k=between(1, 2.5)), {"ratio": ALONE_MORE}),
-    "k too large for the swing": (rocker(k=between(7, 40)), {"k": K, "psi2": MORE.format("psi2")}),
-    "k too large for the swing, clockwise": (down(rocker(k=between(7, 40))), {"k": K}),
-    "swing too large": (rocker(k=between(1.1, 2), psi2=between(230, 300)), {"psi2": HIGH}),
-    "sense": (rocker(k=between(3, 3.3), turns=lambda r: "cw"), {"k": K}),
-    "frame too long": (rocker(k=between(1.1, 2), l4=between(2e4, 9e4)), {"l4": HIGH}),
-    "frame too short": (rocker(k=between(1.1, 1.3), l4=between(0.1, 1)), {"l4": LOW}),
-    "crank too long": (rocker(k=between(1.1, 2), l1=between(2e3, 9e3)), {"l1": HIGH}),
-    "coupler too long": (rocker(k=between(1.1, 2), l2=between(2e5, 9e5)), {"l2": HIGH}),
-    "coupler too short": (rocker(k=between(1.1, 2), l2=between(0.1, 1)), {"l2": LOW}),
+    "k too large for the swing": (rocker(k=between(7, 40)), {"k": ALONE}),
+    "k too large for the swing, clockwise": (down(rocker(k=between(7, 40))), {"k": ALONE}),
+    "swing too large": (rocker(k=between(1.1, 2), psi2=between(230, 300)), {"psi2": ALONE}),
+    "frame too long": (rocker(k=between(1.1, 2), l4=between(2e4, 9e4)), {"l4": ALONE}),
+    "frame too short": (rocker(k=between(1.1, 1.3), l4=between(0.1, 1)), {"l4": ALONE_MORE}),
+    "crank too long": (rocker(k=between(1.1, 2), l1=between(2e3, 9e3)), {"l1": ALONE}),
+    "coupler too long": (rocker(k=between(1.1, 2), l2=between(2e5, 9e5)), {"l2": ALONE}),
+    "coupler too short": (rocker(k=between(1.1, 2), l2=between(0.1, 1)), {"l2": ALONE_MORE}),
     "frame too short, k = 1": (rocker(k=lambda r: 1, l4=between(0.1, 9)), {"l4": ALONE_MORE}),
-    "no level supports": (
-        rocker(k=between(2.3, 2.7), psi2=between(60, 70), choose=lambda r: "supports level"), {"k": K}),
-    "stone passes": (lever(within=lambda r: [r.uniform(1000, 1100), 2000]), {"within": r"bound of (\S+ mm) or less"}),
+    "stone passes": (lever(within=lambda r: [r.uniform(1000, 1100), 2000]), {"within": ALONE}),
     "slot too short": (ram(k=between(1.1, 4), OC=between(5000, 9000), DE=between(5e3, 9e3)), {"OC": ALONE}),
     "slot too short, crank": (ram(k=between(1.1, 4), OA=between(5000, 9000), DE=between(5e3, 9e3)), {"OA": ALONE}),
     "slot too short, ratio": (
@@ -111,28 +106,20 @@ CASES = {  # a task that cannot be, and where the limit of each key stands in th
         ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)), {"rod_ratio": ALONE_MORE}),
     "ram turns back, pressure": (
         ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)), {"pressure": ALONE}),
-    "pressure angle of no k": (slider(k=between(1.1, 1.5), pressure=between(95, 150)), {"pressure": LOW}),
-    "pressure angle of a right angle": (slider(nu=between(0, 1), pressure=between(95, 150)), {"pressure": HIGH}),
+    "pressure angle of no k": (slider(k=between(1.1, 1.5), pressure=between(95, 150)), {"pressure": ALONE}),
+    "pressure angle of a right angle": (slider(nu=between(0, 1), pressure=between(95, 150)), {"pressure": ALONE}),
     "no stroke": (lambda r: {"task": "crank-slider", "stroke": -r.uniform(0, 9), "ratio": 4, "nu": 0.5},
                   {"stroke": ALONE_MORE}),
     "no stroke, speed": (
         lambda r: {"task": "crank-slider", "speed": -r.uniform(0, 9), "crank_speed": 9, "ratio": 4, "nu": 0.5},
         {"speed": r"^([^ ,]+ m/s) or more"}),
     "no rocker": (lambda r: rocker(k=between(1.1, 2))(r) | {"l3": -r.uniform(0, 9)}, {"l3": ALONE_MORE}),
-    "no crank": (rocker(k=between(1.1, 2), l1=between(-9, 0)), {"l1": LOW}),
-    "crank of k = 1": (lambda r: rocker(k=between(1, 1))(r) | {"l3": 300, "l1": r.uniform(60, 80)},
-                       {"k": MORE.format("k")}),
-    "k too large, frame": (
-        lambda r: rocker(k=between(7, 9), psi1=between(40, 40), psi2=between(100, 110))(r) | {"l3": 300, "l4": 340},
-        {"k": K}),
-    "k too large, supports level": (
-        rocker(k=between(7, 9), psi1=between(20, 25), psi2=between(60, 80), choose=lambda r: "supports level"),
-        {"k": K}),
-    "sense, k too large": (rocker(k=between(30, 40), turns=lambda r: "cw"), {"k": K}),
+    "no crank": (rocker(k=between(1.1, 2), l1=between(-9, 0)), {"l1": ALONE_MORE}),
+    "sense, k too large": (rocker(k=between(30, 40), turns=lambda r: "cw"), {"k": ALONE}),
     "no lever": (lever(OC=between(1, 9), CB=between(-9, 0)), {"CB": ALONE_MORE}),
     "swing of half a turn": (
         lambda r: {"task": "slotted-lever", "CB": 500, "OC": 90, "swing": r.uniform(181, 300)},
-        {"swing": r" to ([^ ]+ deg)$"}),
+        {"swing": ALONE}),
     "no frame": (ram(k=between(1.1, 4), OC=between(-9, 0), DE=between(5e3, 9e3)), {"OC": ALONE_MORE}),
     "no rod": (ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), DE=between(-9, 0)), {"DE": ALONE_MORE}),
     "no rod, ratio": (
@@ -143,14 +130,8 @@ CASES = {  # a task that cannot be, and where the limit of each key stands in th
     "no ram's stroke, crank": (
         lambda r: ram(k=between(1.1, 4), OA=between(20, 90), DE=between(5e3, 9e3))(r) | {"stroke": -r.uniform(0, 9)},
         {"stroke": ALONE_MORE}),
-    "shaper's swing of half a turn": (
-        ram(k=between(7e6, 9e6), frame_ratio=between(0.1, 0.3), rod_ratio=between(5e5, 9e5)), {"k": ALONE}),
-    "shaper's swing of half a turn, rod": (
-        ram(k=between(7e6, 9e6), OC=between(9, 20), DE=between(50, 900)), {"k": ALONE}),
-    "shaper's swing of half a turn, pressure": (
-        ram(k=between(7e6, 9e6), OC=between(9, 20), pressure=between(20, 60)), {"k": ALONE}),
     "pressure angle of a ram": (
-        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), pressure=between(95, 150)), {"pressure": HIGH}),
+        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), pressure=between(95, 150)), {"pressure": ALONE}),
     "no link": (
         lambda r: {"task": "grashof", "l1": -r.uniform(0, 9), "l2": 10, "l3": 12, "l4": r.uniform(30, 40)},
         {"l1": ALONE_MORE}),
@@ -159,11 +140,11 @@ CASES = {  # a task that cannot be, and where the limit of each key stands in th
         {"l1": ALONE_MORE}),
     "links do not close": (
         lambda r: {"task": "grashof", "l1": r.uniform(31, 90), **{f"l{k}": r.uniform(1, 10) for k in (2, 3, 4)}},
-        {"l1": LESS.format("l1")}),
+        {"l1": ALONE}),
     "link does not reach": (
         lambda r: {"task": "coupler-positions", "positions": [[0, 0, 0], [r.uniform(50, 90), 80, r.uniform(20, 60)]],
                    "B": [0, 0], "C": [100, 0], "AB": r.uniform(1, 40), "DC": 400, "defects": "keep"},
-        {"AB": MORE.format("AB")}),
+        {"AB": r"^AB (\S+ mm)$"}),
 }  # fmt: skip
 
 
@@ -178,7 +159,7 @@ def test_a_printed_limit_typed_in_is_allowed_and_a_little_farther_is_not(case, s
         assert match, told
         printed = match[1]
         number, _, unit = printed.partition(" ")
-        least = pattern in (ALONE_MORE, LOW) or "more" in pattern
+        least = pattern in (ALONE_MORE, LOW) or "more" in pattern or key == "AB"
         beyond = f"{float(number) * (1 - FARTHER if least else 1 + FARTHER)!r} {unit}".rstrip()
         wrap = (lambda text, k=key: [text, 2000]) if key == "within" else (lambda text: text)
         solved(block | {key: wrap(printed)})
@@ -239,7 +220,8 @@ output: 3
 
 
 @pytest.mark.parametrize("case", [
-    "k too large for the swing", "k too large for the swing, clockwise", "sense", "frame too long", "frame too short",
+    "k too large for the swing", "k too large for the swing, clockwise", "sense, k too large", "frame too long",
+    "frame too short",
     "crank too long", "coupler too long", "coupler too short",
 ])  # fmt: skip
 def test_at_a_printed_limit_the_four_bar_still_moves_as_it_was_asked(case):
@@ -258,17 +240,12 @@ def test_limits_are_rounded_to_their_side_and_never_onto_a_limit_that_is_not_all
     units = UnitSystem({"length": "mm"})
     rows = {
         "most": (0.1234567654, "length", "most"), "least": (0.1234561196, "length", "least"),
-        "below": (3.0, "number", "below"),
-        "above": (2.0, "number", "above"), "plain": (0.1234567654, "length"), "exact": (0.25, "length", "most"),
-        "name": ("AB", "word"),
+        "below": (3.0, "number", "below"), "above": (2.0, "number", "above"), "plain": (0.1234567654, "length"),
+        "whole": (0.25, "length", "most"), "exact": (0.1234567654, "length", "exact"), "name": ("AB", "word"),
     }  # fmt: skip
     assert shown(rows, units) == {
-        "most": "123.456765 mm", "least": "123.45612 mm", "below": "2.999997", "above": "2.000002",
-        "plain": "123.456765 mm", "exact": "250 mm", "name": "AB",
-    }  # fmt: skip
-    apart = {name: rows[name] for name in ("most", "below", "above", "plain", "exact")}
-    assert shown(apart, units) == {
-        "most": "123.456 mm", "below": "2.99999", "above": "2.00001", "plain": "123.457 mm", "exact": "250 mm",
+        "most": "123.456 mm", "least": "123.457 mm", "below": "2.99999", "above": "2.00001", "plain": "123.457 mm",
+        "whole": "250 mm", "exact": "123.4567654 mm", "name": "AB",
     }  # fmt: skip
 
 
@@ -300,33 +277,3 @@ def guided(r, count):
     b, c = r.uniform(-50, 50, (2, 2)).tolist()
     lengths = {"AB": r.uniform(60, 200), "DC": r.uniform(60, 200)} if count == 2 else {}
     return block | {"B": b, "C": c} | lengths
-
-
-@pytest.mark.parametrize("count", [2, 3, 4])
-@pytest.mark.parametrize("seed", range(2))
-def test_the_choice_that_is_told_for_a_coupler_has_no_defect(count, seed, monkeypatch):
-    monkeypatch.setattr(coupler_positions, "told", lambda asked, error, solves: error)  # other positions are not sought
-    r = np.random.default_rng([seed, count])
-    told = []
-    for _ in range(4 if count == 4 else 10):
-        block = guided(r, count)
-        try:
-            solved(block)
-        except ProblemError as error:
-            told.append((block, error.allowed))
-    assert told or count == 2
-    for block, allowed in told:
-        if match := re.search(
-            r"AB_turn (\S+ deg) with AB_branch: (.) and DC_turn (\S+ deg) with DC_branch: (.)", allowed
-        ):
-            keys = ("AB_turn", "AB_branch", "DC_turn", "DC_branch")
-            solved(block | dict(zip(keys, match.groups(), strict=True)))
-        elif match := re.search(r"^(?:(AB|DC|AB_turn|DC_turn) )?([^ ,;]+ (?:mm|deg))", allowed):
-            key = match[1] or refused(block).path[-1]
-            solved(block | {key: match[2]})
-        elif match := re.search(r"^([BC]) \[([^ ]+ mm), ([^ ]+ mm)\]", allowed):
-            solved(block | {match[1]: [match[2], match[3]]})
-        elif match := re.search(r"AB_side: (\w+), DC_side: (\w+)", allowed):
-            solved(block | {"AB_side": match[1], "DC_side": match[2]})
-        else:
-            assert "DC as the driver" in allowed or "other positions" in allowed, allowed

@@ -26,10 +26,10 @@ from test_synthesis_four_bar_by_k import problem as by_k
 from test_synthesis_slotted_lever import lever, shaping
 
 from tmm_cli import solve
-from tmm_cli.batch import prepare
-from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.reading import build
+from tmm_cli.variants.batch import prepare
 
 
 def found(problem):
@@ -80,8 +80,9 @@ def test_the_crank_rocker_of_webkinematik():
     problem = by_k(", l1: 100/1.1", "60 deg", "120 deg", "8/7")
     lengths = {name: 1100 * value for name, value in found(problem).items()}
     assert prints(lengths["l1"], "100") and prints(lengths["l2"], "449.66") and prints(lengths["l4"], "408.88")
-    shown = {v.words.rpartition(".")[2]: v.value for v in problem.synthesis.outcome.found}
-    assert prints(math.degrees(shown["theta"]), "12.00") and prints(90 - math.degrees(shown["pressure"]), "38.34")
+    shown = {v.text: v.value for v in problem.synthesis.outcome.found}
+    assert prints(math.degrees(shown["theta = C1AC2"]), "12.00")
+    assert prints(90 - math.degrees(shown["largest pressure angle"]), "38.34")
 
 
 POINTS = (0.50 + 1.06j, -0.83 - 0.27j, -0.34 + 0.22j, -0.13 + 0.43j, 0.22 + 0.78j)
@@ -167,7 +168,7 @@ def test_chebyshevs_linkage_from_three_positions_on_its_line():
     problem = guided(f"positions: [{positions}], B: [-1 m, 0], C: [1 m, 0], defects: keep")
     values = found(problem)
     assert [values[name] for name in ("l4", "l1", "l2", "l3")] == pytest.approx([4, 5, 2, 5], rel=1e-14)
-    limits = sorted(math.degrees(limit.place) for limit in solve(problem, "kinematics").way.limits)
+    limits = sorted(math.degrees(limit.place) for limit in solve(problem, "kinematics").driver_range.limits)
     assert prints(limits[0], "36.8699") and prints(limits[1], "101.537")
 
 

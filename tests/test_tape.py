@@ -13,11 +13,11 @@ from random_linkages import TYPES, linkage
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.batch import CHECKS, everything, prepare
-from tmm_cli.stack import NotAlikeError, varying
 from tmm_cli.structure.assur import analyse
 from tmm_cli.tape import DependsOnData, record
 from tmm_cli.tape.program import CHUNK
+from tmm_cli.variants.batch import CHECKS, everything, prepare
+from tmm_cli.variants.stack import NotAlikeError, varying
 
 Q = np.linspace(0.1, 6.3, 24)
 KINDS = st.lists(st.sampled_from(TYPES), min_size=1, max_size=4).map(tuple)

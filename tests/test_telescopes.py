@@ -13,31 +13,31 @@ from test_cylinders import SWINGING, solved
 
 from tmm_cli import load, solve
 from tmm_cli.accuracy.data import widened
-from tmm_cli.assemblies import find_assemblies
-from tmm_cli.assembly import assemble
-from tmm_cli.batch import everything, prepare
-from tmm_cli.batch import solved as stages
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.enumerate import find_assemblies
+from tmm_cli.assembly.solvable import mobile
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
+from tmm_cli.groups.branch_trace import State
 from tmm_cli.groups.newton import Newton
-from tmm_cli.groups.telescope import Chain, Telescope
-from tmm_cli.groups.track import State
-from tmm_cli.mobile import mobile
-from tmm_cli.motion import Law, move
-from tmm_cli.problem.build import build
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.groups.telescope import Telescope, TelescopeParts
+from tmm_cli.kinematics.motion import move
 from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.search import search_of
-from tmm_cli.synthesis.candidates import Search
 from tmm_cli.synthesis.check import measured
-from tmm_cli.variants.apart import Apart
+from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.reading import build, task_of
+from tmm_cli.variants.batch import everything, prepare
+from tmm_cli.variants.batch import solved as stages
+from tmm_cli.variants.one_by_one import OneByOne
 from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.way import Places
+from tmm_cli.variants.variant import Places
 
 # pairs of the arm with what it hangs on, of the arm with the cylinder's far end, and of its near end
 CHAINS = ("RRR", "RRP", "PRR", "RPR", "PRP", "RPP", "PPR")
 
 
-LAW = Law(0.0, 2.0, 0.0, 1)
+LAW = DriverMotion(0.0, 2.0, 0.0, 1)
 
 
 def swinging(seed, chain):
@@ -125,7 +125,7 @@ def test_in_extended_precision_it_has_all_of_its_digits(chain):
     _, closed, iterated = both(linkage)
     rounding = np.finfo(np.longdouble).eps
     q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5).astype(np.longdouble)
-    one, other = (move(wide, [kernel.again(wide)], q, LAW) for kernel in (closed, iterated))
+    one, other = (move(wide, [kernel.rebind(wide)], q, LAW) for kernel in (closed, iterated))
     for link in linkage.moving:
         assert one.second[link].a.dtype == np.clongdouble
         assert np.max(np.abs(one.poses[link].x - other.poses[link].x)) < 200 * rounding
@@ -142,8 +142,8 @@ def test_its_gap_grows_as_fast_as_it_says(chain, seed):
     step = 1e-3
     motion = move(linkage, [kernel], linkage.sketch.at + step * np.arange(-2, 3), LAW, 1)
     at = kernel.closed(motion.poses, motion.drives)
-    rate = kernel.closing(at, motion.poses, motion.first, motion.drives)
-    b2, b1, _, a1, a2 = at.gap
+    rate = kernel.residual_rate(at, motion.poses, motion.first, motion.drives)
+    b2, b1, _, a1, a2 = at.residual
     assert rate[2] == pytest.approx((8 * (a1 - b1) - (a2 - b2)) / (12 * step), rel=1e-8, abs=1e-9)
 
 
@@ -151,8 +151,10 @@ def test_its_driver_turns_back_where_the_triangle_is_flat():
     """Lever of 200 mm, hinges hypot(350, 300) apart: the cylinder is the difference or the sum of them long."""
     results = solved(SWINGING.replace(", stroke: [400, 600]", "").replace("{count: 5}", "{at: [550]}"))
     base = np.hypot(0.35, 0.3)
-    assert np.allclose([results.way.start, results.way.end], [base - 0.2, base + 0.2], rtol=0, atol=1e-15)
-    assert [limit.group for limit in results.way.limits] == ["II(1,2,3)"] * 2
+    assert np.allclose(
+        [results.driver_range.start, results.driver_range.end], [base - 0.2, base + 0.2], rtol=0, atol=1e-15
+    )
+    assert [limit.group for limit in results.driver_range.limits] == ["II(1,2,3)"] * 2
     assert not results.dead
 
 
@@ -202,7 +204,7 @@ def test_links_that_are_not_such_a_chain_stay_with_newtons_method():
     """A drive in a hinge, or a cylinder between links of a larger group."""
     loader = load(str(ROOT / "problems" / "loader.yaml")).linkage
     for linkage in (loader, any_linkage(1, ("arm",)), any_linkage(1, ("III",))):
-        assert all(Chain.of(group) is None for group in mobile(linkage).groups)
+        assert all(TelescopeParts.of(group) is None for group in mobile(linkage).groups)
 
 
 LIFT = """tmm: 1
@@ -234,12 +236,12 @@ positions: {at: [first, (first + last)/2, last]}
 
 def test_candidates_whose_strokes_vary_are_on_one_tape():
     """The boom goes from 10 to 60 deg in each of them, so that the cylinder goes another way in each."""
-    search = Search(search_of(read_text(LIFT, "x.yaml")))
+    search = Search(task_of(read_text(LIFT, "x.yaml")))
     assert isinstance(search.program, Taped)
     variants = search.numbers(np.random.default_rng(3).random((5, 3)))
     places = Places(np.linspace(0, 1, 7), np.zeros(0))
     found = search.program(variants, places)
-    expected = Apart(search.asked.make, search.first, search._outputs, forces=True)(variants, places)
+    expected = OneByOne(search.task.make, search.first, search.outputs, forces=True)(variants, places)
     for name in found:
         assert near(found[name], expected[name]), name
 
@@ -247,7 +249,7 @@ def test_candidates_whose_strokes_vary_are_on_one_tape():
 def test_what_is_found_for_a_lift_is_measured_on_it():
     problem = build(read_text(LIFT, "x.yaml"))
     for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
-        assert m.met, (m.demand.words, m.demand.value, m.value)
+        assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
 def digger():
@@ -259,22 +261,25 @@ def digger():
     for old, new in (("s1: sqrt(600^2", "s1: sqrt(HX^2"), ("H: [600, 0]", "H: [HX, 0]"), ("points: {O", asked)):
         assert old in text
         text = text.replace(old, new, 1)
-    return Search(search_of(read_text(text, "x.yaml")))
+    return Search(task_of(read_text(text, "x.yaml")))
 
 
 def test_drivers_of_each_candidate_pass_through_its_own_sketch():
     search = digger()
     variants = np.array([[0.56], [0.6], [0.64]])
-    places = Places(np.linspace(0, 1, 7), np.zeros(0))
-    found = search.program(variants, places)
-    expected = Apart(search.asked.make, search.first, search._outputs, forces=True)(variants, places)
-    assert near(found["0.y0"], expected["0.y0"])
+    found = search.program(variants, Places(np.linspace(0, 1, 7), np.zeros(0)))
+    for k, numbers in enumerate(variants):
+        own = search.task.make(numbers.tolist())
+        structure, q = mobile(own.linkage), np.linspace(*own.ends, 7)
+        kernels = assemble(own.linkage, structure)
+        expected = stages(own.linkage, structure, kernels, q, search.outputs, True, None)
+        assert near(found["0.y"][k], 1.0 * expected["0.y"])
     at = [search.program.sketch(numbers).at for numbers in variants]
     assert np.allclose(at, np.hypot(variants[:, 0], 0.9), rtol=1e-15)
 
 
 def test_a_batch_of_linkages_with_sketches_of_their_own_moves_each_from_its_own():
-    make = digger().asked.make
+    make = digger().task.make
     linkages = [make([x]).linkage for x in (0.58, 0.62)]
     q = 1.1 + np.linspace(0, 0.02, 5)
     found = prepare(linkages, everything)(q)

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import (
+from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem, parse_unit
+from tmm_cli.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
@@ -21,13 +22,8 @@ from tmm_cli.problem.units import (
     MOMENT,
     NUMBER,
     SPEED,
-    SYMBOLS,
     TIME,
     Dimension,
-    Quantity,
-    UnitError,
-    UnitSystem,
-    parse_unit,
 )
 
 
@@ -146,8 +142,8 @@ def test_radians_come_and_go_but_an_angle_is_not_a_number() -> None:
 
 def test_words() -> None:
     units = UnitSystem()
-    assert units.show(Quantity(0.11, LENGTH)) == "a length (110 mm)"
-    assert units.show(Quantity(0.5, NUMBER)) == "a number (0.5)"
-    assert units.show(Quantity(5)) == "a bare number (5)"
-    assert units.show(Quantity(1, TIME.power(2))) == "a quantity in s^2 (1 s^2)"
+    assert units.show(PhysicalValue(0.11, LENGTH)) == "a length (110 mm)"
+    assert units.show(PhysicalValue(0.5, NUMBER)) == "a number (0.5)"
+    assert units.show(PhysicalValue(5)) == "a bare number (5)"
+    assert units.show(PhysicalValue(1, TIME.power(2))) == "a quantity in s^2 (1 s^2)"
     assert ANGLE.example == "an angle, e.g. 30 deg or 0.5 rad"

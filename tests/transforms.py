@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.camlaw import CamLaw, Piece
 from tmm_cli.linkage import FRAME, Hinge, Linkage, Mesh
+from tmm_cli.pairs.cam_law import CamLaw, Piece
 
 
 def mirrored(it: Linkage) -> Linkage:

@@ -14,8 +14,9 @@ import mpmath as mp
 import numpy as np
 from multibody import Multibody
 
-from tmm_cli.accuracy.case import Case
-from tmm_cli.pipeline import at_positions, solve
+from tmm_cli import solve
+from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.bench.methods.case import Case
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
@@ -41,11 +42,12 @@ def text(value):
     )
 
 
-def solved(name):
-    """The results of a problem of the bank at the positions of its reference, and the problem's text."""
+def solved(name, q=None):
+    """The results of a problem of the bank at places q of its driver, else over a cycle, and the problem's text."""
     source = (BANK / f"{name}.yaml").read_text(encoding="utf-8")
     results = solve(build(read_text(source, f"{name}.yaml")), "kinematics")
-    q = results.start + results.linkage.driver.sense * 2 * np.pi * (np.arange(COUNT) + OFF) / COUNT
+    if q is None:
+        q = results.start + results.linkage.driver.sense * 2 * np.pi * (np.arange(COUNT) + OFF) / COUNT
     return results, at_positions(results, q), source
 
 

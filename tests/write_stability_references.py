@@ -17,11 +17,11 @@ import mpmath as mp
 import numpy as np
 from multibody import Multibody
 
-from tmm_cli.assembly import assemble
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.families import BY_NAME, FAMILIES, shape, triad
+from tmm_cli.errors import LinkageError
+from tmm_cli.kinematics.driver_range import find_range
 from tmm_cli.linkage import FRAME
-from tmm_cli.quality import find_range
-from tmm_cli.refused import Refused
 from tmm_cli.structure.assur import analyse
 
 DATA = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "stability"
@@ -107,7 +107,7 @@ class Fold(Closely):
         """Places and driver where coordinate k has a value; derivatives of the driver and of the places by it."""
         X = X.copy()
         for _ in range(60):
-            gaps = [*self.gaps(X, [q]), X[k] - value]
+            gaps = [*self.residuals(X, [q]), X[k] - value]
             M = mp.matrix(self.size + 1, self.size + 1)
             M[: self.size, : self.size] = self.jacobian(X, [q])
             M[self.size - 1, self.size], M[self.size, k] = -1, 1
@@ -306,7 +306,7 @@ def folding(r, seed):
         it = triad(n)
         try:
             way = find_range(it, assemble(it, analyse(it)))
-        except Refused:
+        except LinkageError:
             continue
         if not way.full and min(abs(end - 1.5) for end in (way.start, way.end)) > 0.4:
             return n | {"end": Decimal(way.end), "sense": Decimal(-1)}

@@ -16,7 +16,7 @@ import numpy as np
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:
-    from tmm_cli.camlaw import CamLaw
+    from tmm_cli.pairs.cam_law import CamLaw
 
 FRAME = "0"
 
@@ -166,7 +166,7 @@ class Load:
     """A force and a couple on a link.
 
     `force` (N) acts at `at` (the link's axes, m) and keeps its direction in the drawing, or in the link when
-    `follows`; `moment` in N m. With a table, both are multiplied by its value.
+    `follows`; `moment` in N m. With a table, both are multiplied by its value. when: "always", "working stroke".
     """
 
     name: str
@@ -175,9 +175,13 @@ class Load:
     force: complex = 0j
     moment: float = 0.0
     follows: bool = False
-    working_stroke_only: bool = False
+    when: str = "always"
     table: Table | None = None
     point: str = ""
+
+    @property
+    def working_stroke_only(self) -> bool:
+        return self.when == "working stroke"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.vectors import Real
 
-HALVINGS = 60  # from a step of a scan to the last bit
+SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
 DEGREE = 8  # of the polynomial that tells where an extreme lies
 THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
 
@@ -16,16 +16,18 @@ THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
 def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """Roots between places where a function has different signs, of all intervals at once, to the last bit.
 
-    Inverse quadratic interpolation where it is safe, else halving: T. R. Chandrupatla, A new hybrid quadratic/bisection
-    algorithm for finding the zero of a nonlinear function, Advances in Engineering Software 28 (1997).
+    In the precision of the places, float64 at least. Inverse quadratic interpolation where it is safe, else halving:
+    T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function,
+    Advances in Engineering Software 28 (1997).
     """
-    b, a = np.asarray(low, float), np.asarray(high, float)
+    kind = np.result_type(np.asarray(low), np.asarray(high), float)
+    b, a = np.asarray(low, kind), np.asarray(high, kind)
     fb, fa = function(b), function(a)
     if bool(np.any((fa == 0) | (fb == 0))):
         return _edges(function, b, a, fb)
     c, fc, share = b, fb, np.full(np.shape(a), 0.5)
     with np.errstate(all="ignore"):
-        for _ in range(HALVINGS):
+        for _ in range(halvings_of(a)):
             place = a + share * (b - a)
             value = function(place)
             same = np.sign(value) == np.sign(fa)
@@ -45,13 +47,29 @@ def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
     return found
 
 
+def bisect(
+    holds: Callable[[Real], Real], inside: Real, outside: Real, halvings: int | None = None
+) -> tuple[Real, Real]:
+    """The last places at which a condition holds and the first at which it does not, of all intervals at once.
+
+    It holds at `inside` and not at `outside`; by default they are neighbours in the end, in their own precision.
+    """
+    for _ in range(halvings_of(inside) if halvings is None else halvings):
+        middle = (inside + outside) / 2
+        good = holds(middle)
+        inside, outside = np.where(good, middle, inside)[()], np.where(good, outside, middle)[()]
+    return inside, outside
+
+
+def halvings_of(places: Real) -> int:
+    """How many halvings leave nothing of an interval in the precision of its ends."""
+    return int(np.finfo(np.result_type(places, float)).nmant) + SPARE
+
+
 def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
     """Where the sign of the lower end ends, by halving: beside a dwell that is its edge, not any place of it."""
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        same = np.sign(function(middle)) == np.sign(at_low)
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return (low + high) / 2
+    same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
+    return (same + other) / 2
 
 
 def least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:

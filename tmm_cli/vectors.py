@@ -1,17 +1,20 @@
-"""Planar vectors as complex numbers: x + iy, metres; turning is multiplying."""
+"""Planar vectors as complex numbers, x + iy, metres, turning is multiplying; and records that hold arrays of them."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_cli.tolerances import CONSTRUCTION_ROUNDINGS
+
 Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
 Vector = NDArray[Any]  # complex arrays, likewise
+Record = TypeVar("Record")
 
-
-ROUNDING = 16  # units of the last place that a construction of a few steps may lose
 PI = "3.14159265358979323846264338327950288"
 
 
@@ -48,7 +51,7 @@ def unit(angle: Any) -> Any:
 def settled(values: Any, size: Any) -> Any:
     """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
     values = np.asarray(values)
-    least = ROUNDING * np.finfo(values.dtype).eps * size
+    least = CONSTRUCTION_ROUNDINGS * np.finfo(values.dtype).eps * size
     if not np.iscomplexobj(values):
         return np.where(np.abs(values) > least, values, values.dtype.type(0))[()]
     return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
@@ -57,3 +60,47 @@ def settled(values: Any, size: Any) -> Any:
 def left(a: Any) -> Any:
     """a turned through +90 degrees."""
     return 1j * a
+
+
+def mapped(
+    change: Callable[..., Any], record: Record, *others: Any, skip: Collection[str] = (), path: str = ""
+) -> Record:
+    """A record like this one with change(path, leaf, *leaves of the others) in the place of each leaf.
+
+    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. The others have the same shape.
+    skip: names of fields that stay as they are. A path reads links.2.points.A or loads[0].force.
+    """
+
+    def at(name: str, part: Any, rest: Any) -> Any:
+        return mapped(change, part, *rest, skip=skip, path=name)
+
+    found: Any
+    if is_dataclass(record) and not isinstance(record, type):
+        names = [f.name for f in fields(record) if f.init and f.name not in skip]
+        new = {n: at(f"{path}.{n}" if path else n, getattr(record, n), [getattr(o, n) for o in others]) for n in names}
+        found = replace(record, **new)
+    elif isinstance(record, Mapping):
+        found = {key: at(f"{path}.{key}", part, [o[key] for o in others]) for key, part in record.items()}
+    elif isinstance(record, tuple | list):
+        rows = enumerate(zip(record, *others, strict=True))
+        found = type(record)(at(f"{path}[{k}]", part, rest) for k, (part, *rest) in rows)
+    else:
+        found = change(path, record, *others)
+    whole: Record = found
+    return whole
+
+
+def leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
+    """Paths and leaves of a record, as `mapped` has them."""
+    if is_dataclass(record) and not isinstance(record, type):
+        for f in fields(record):
+            if f.name not in skip:
+                yield from leaves(getattr(record, f.name), skip, f"{path}.{f.name}" if path else f.name)
+    elif isinstance(record, Mapping):
+        for key, value in record.items():
+            yield from leaves(value, skip, f"{path}.{key}")
+    elif isinstance(record, tuple | list):
+        for k, value in enumerate(record):
+            yield from leaves(value, skip, f"{path}[{k}]")
+    else:
+        yield path, record

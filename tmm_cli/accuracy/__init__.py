@@ -1,1 +1,1 @@
-"""How many digits are to be trusted, and the rival methods that the bench compares."""
+"""How many digits are to be trusted."""

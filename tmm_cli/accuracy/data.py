@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.linkage import Linkage
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, Record, mapped
 
-Record = TypeVar("Record")
-Place = tuple[str, str, str]  # what it is of (links, slides, loads, springs), its name, and the field or point
 NOTHING = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 
 
@@ -20,68 +18,59 @@ NOTHING = 1e-12  # of the linkage's size: a coordinate below that is zero but fo
 class Length:
     """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed.
 
-    along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0.
+    along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0. paths: where it
+    stands in the linkage (vectors.mapped).
     """
 
     link: str
     along: complex | float
     value: float
-    places: tuple[Place, ...]
+    paths: frozenset[str]
 
 
 def lengths(linkage: Linkage) -> tuple[Length, ...]:
     """Every coordinate of every link that is not zero. The same number on the same link is one length."""
-    found: dict[tuple[str, complex, float], list[Place]] = {}
+    found: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_vectors(linkage))
     least = NOTHING * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
-    for link, place, value in vectors:
+    for link, path, value in vectors:
         for along, part in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
             if abs(part) > least:
-                found.setdefault((link, along, part), []).append(place)
-    return tuple(Length(link, along, value, tuple(places)) for (link, along, value), places in found.items())
+                found.setdefault((link, along, part), []).append(path)
+    return tuple(Length(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items())
 
 
 def angles(linkage: Linkage) -> tuple[Length, ...]:
     """The angles of guides and between links that slide on each other, as lengths are given."""
     return tuple(
-        Length(slide.carrier, 1.0, float(getattr(slide, part)), (("slides", slide.name, part),))
-        for slide in linkage.slides for part in ("direction", "turned")
+        Length(slide.carrier, 1.0, float(getattr(slide, part)), frozenset((f"slides[{k}].{part}",)))
+        for k, slide in enumerate(linkage.slides) for part in ("direction", "turned")
     )  # fmt: skip
 
 
 def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
     """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
-    links, slides = dict(linkage.links), {s.name: s for s in linkage.slides}
-    loads, springs = {x.name: x for x in linkage.loads}, {x.name: x for x in linkage.springs}
     more = length.along * by
-    for kind, name, part in length.places:
-        if kind == "points":
-            link = links[name]
-            links[name] = replace(link, points={**link.points, part: link.points[part] + more})
-        else:
-            record: Any = {"links": links, "slides": slides, "loads": loads, "springs": springs}[kind]
-            record[name] = replace(record[name], **{part: getattr(record[name], part) + more})
-    linkage = replace(linkage, links=links, slides=tuple(slides.values()))
-    return replace(linkage, loads=tuple(loads.values()), springs=tuple(springs.values()))
+    return mapped(lambda path, value: value + more if path in length.paths else value, linkage)
 
 
-def _vectors(linkage: Linkage) -> Any:
+def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
     """Every vector in axes of a link: that link, where it stands, its value."""
     for name, link in linkage.links.items():
         for point, value in link.points.items():
-            yield name, ("points", name, point), value
+            yield name, f"links.{name}.points.{point}", value
         if np.any(link.mass != 0):
-            yield name, ("links", name, "centre"), link.centre
-    for slide in linkage.slides:
-        yield slide.carrier, ("slides", slide.name, "through"), slide.through
-        yield slide.runner, ("slides", slide.name, "at"), slide.at
-    for load in linkage.loads:
+            yield name, f"links.{name}.centre", link.centre
+    for k, slide in enumerate(linkage.slides):
+        yield slide.carrier, f"slides[{k}].through", slide.through
+        yield slide.runner, f"slides[{k}].at", slide.at
+    for k, load in enumerate(linkage.loads):
         if load.force != 0:
-            yield load.link, ("loads", load.name, "at"), load.at
-    for spring in linkage.springs:
+            yield load.link, f"loads[{k}].at", load.at
+    for k, spring in enumerate(linkage.springs):
         if not spring.turns:
-            yield spring.i, ("springs", spring.name, "at_i"), spring.at_i
-            yield spring.j, ("springs", spring.name, "at_j"), spring.at_j
+            yield spring.i, f"springs[{k}].at_i", spring.at_i
+            yield spring.j, f"springs[{k}].at_j", spring.at_j
 
 
 def shaken(linkage: Linkage, q: Real, trial: int) -> tuple[Linkage, Real]:
@@ -94,18 +83,10 @@ def shaken(linkage: Linkage, q: Real, trial: int) -> tuple[Linkage, Real]:
 
 def widened(record: Record) -> Record:
     """The same record with every float and complex number in longdouble, as exactly as it stands."""
-    found: Any = record
-    if isinstance(record, bool | int | str) or record is None:
-        return record
-    if isinstance(record, float):
-        found = np.longdouble(record)
-    elif isinstance(record, complex):
-        found = np.clongdouble(record)
-    elif is_dataclass(record) and not isinstance(record, type):
-        found = replace(record, **{f.name: widened(getattr(record, f.name)) for f in fields(record) if f.init})
-    elif isinstance(record, Mapping):
-        found = {key: widened(value) for key, value in record.items()}
-    elif isinstance(record, tuple):
-        found = tuple(widened(value) for value in record)
-    wide: Record = found
-    return wide
+
+    def wide(path: str, value: Any) -> Any:
+        if isinstance(value, float):
+            return np.longdouble(value)
+        return np.clongdouble(value) if isinstance(value, complex) else value
+
+    return mapped(wide, record)

@@ -16,27 +16,25 @@ Math. Comput. Simul. 35 (1993)). It holds as the other does, and is wider.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.accuracy.data import Length, angles, changed, lengths, shaken, widened
-from tmm_cli.extended import WIDER, near_dead, refined
+from tmm_cli.accuracy.data import angles, changed, lengths, shaken, widened
+from tmm_cli.analysis.extended import WIDER, near_dead, refined
+from tmm_cli.analysis.inputs import Inputs
+from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
+from tmm_cli.analysis.selection import values as leading_values
 from tmm_cli.groups.base import Kernel
-from tmm_cli.linkage import FRAME, Linkage, Request
-from tmm_cli.mechanism import Mechanism
-from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pipeline import Results, given, with_forces
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.strokes import Strokes, output_run
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.kinematics.motion import move
+from tmm_cli.kinematics.strokes import Strokes, output_run
+from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from tmm_cli.pressure import Pressure
 
 U = 2.0**-53
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
@@ -72,50 +70,48 @@ def judged(
     *,
     mu: float = float("nan"),
     blur: Real | float = 0.0,
-    turning: Callable[[Hashable], bool] = lambda key: False,
     kind: Callable[[Hashable], Hashable] = lambda key: key,
     wider: bool = WIDER,
 ) -> Digits:
     """Digits of what `of` reads out of results with a motion, at all their positions.
 
     mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m). turning: whether a value is an angle, a full turn from itself. kind: values of a kind are
-    sums of parts of one size. wider: False is for machines whose longdouble is a double.
+    (rad or m). kind: values of a kind are sums of parts of one size. wider: False is for machines whose longdouble is
+    a double.
     """
     motion = results.motion
     assert motion is not None
-    found, values = Digits(mu=mu), of(results)
-    for part in (found.bound, found.lengths, found.paper):
-        part.update({key: np.full(np.shape(value), np.nan) for key, value in values.items()})
-    blur = np.broadcast_to(blur, np.shape(motion.q))
-    for chosen, near in _chunks(results, wider):
-        _judge(results, of, values, found, (chosen, near, wider), blur[chosen], (turning, kind))
-    return found
+    values = of(results)
+    judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)), kind, wider)
+    found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
+    near = near_dead(motion) if motion.where is None else motion.where
+    for these, close in ((~near & motion.placed, False), (near, True)):
+        places = np.flatnonzero(these)
+        for start in range(0, len(places), CHUNK):
+            chosen = places[start : start + CHUNK]
+            found[:, :, chosen] = judge.at(chosen, close, mu)
+    bound, share, paper = (dict(zip(values, part, strict=True)) for part in found)
+    return Digits(bound, share, paper, mu)
+
+
+def is_angle(key: Hashable) -> bool:
+    """Whether a value is an angle, a full turn from itself: its key begins with True or with its name."""
+    return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
 def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel, ...]) -> Results:
     """Motion and reactions of a linkage without a file, at places q of its driver (position 0 first)."""
-    problem = Problem("", "", linkage, Request(places=tuple(q.tolist())), UnitSystem())
-    lead = linkage.driver
-    law = Law(linkage.sketch.at if linkage.others else float(q[0]), lead.rate, lead.acceleration, lead.sense)
+    law = driver_motion(linkage, float(q[0]))
     motion = move(linkage, kernels, q, law)
     where = near_dead(motion)
     if WIDER and bool(np.any(where)):
         motion = refined(motion, widened(linkage), q[where].astype(np.longdouble), law, where)
-    mechanism = Mechanism(linkage, structure)
-    nothing: dict[str, Any] = {
-        "way": None,
-        "output": None,
-        "outputs": (),
-        "strokes": None,
-        "further": (),
-        "dead": (),
-        "roles": {},
-    }
-    vars(mechanism).update(nothing, kernels=kernels)  # nothing but the positions themselves is looked for
-    results = Results(problem, structure, mechanism, tuple(range(len(q))), motion)
-    vars(results).update(travels=(), pressure=())
-    return with_forces(results, cycle=False)
+    inputs = Inputs(linkage)
+    mechanism = Mechanism(inputs, structure).known(
+        kernels=kernels, driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False), asked=q, dead=(),
+        output=None, outputs=(), strokes=None, further=(), travels=(), pressure=(),
+    )  # fmt: skip
+    return with_forces(Results(inputs, structure, mechanism, tuple(range(len(q))), motion), cycle=False)
 
 
 def bounds(results: Results, *, wider: bool = WIDER) -> tuple[Cells, Digits]:
@@ -124,149 +120,102 @@ def bounds(results: Results, *, wider: bool = WIDER) -> tuple[Cells, Digits]:
     Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
     links, force and couple of pairs, balancing of drivers.
     """
-    return quantities(results), judged(results, quantities, turning=_turns, kind=_quantity, wider=wider)
-
-
-def _quantity(key: Hashable) -> Hashable:
-    return key[0] if isinstance(key, tuple) else key
-
-
-def _turns(key: Hashable) -> bool:
-    return isinstance(key, tuple) and key[0] == "angle"
+    found = judged(results, quantities, kind=lambda key: key[0] if isinstance(key, tuple) else key, wider=wider)
+    return quantities(results), found
 
 
 def quantities(results: Results) -> Cells:
     """The motion and reactions of results, by quantity, name and component."""
-    motion = results.motion
+    assert results.motion is not None
     found: dict[Hashable, Real] = {}
-    assert motion is not None
-
-    def put(quantity: str, name: str, value: Real) -> None:
-        for component, part in (("x", value.real), ("y", value.imag)) if np.iscomplexobj(value) else (("", value),):
-            found[quantity, name, component] = part
-
-    fixed = results.linkage.links[FRAME].points
-    for name, link in results.linkage.links.items():
-        if name == FRAME:
-            continue
-        turning = motion.link(name)
-        for quantity in ("angle", "omega", "epsilon"):
-            put(quantity, name, getattr(turning, quantity))
-        moved = {point: motion.named(point) for point in link.points if point not in fixed}
-        for point, motion_of in {**moved, f"S{name}": motion.centre(name)}.items():
-            for quantity in "xva":
-                put(quantity, point, getattr(motion_of, quantity))
-    if results.reactions is not None:
-        for reaction in results.reactions.all:
-            put("force", reaction.pair.name, reaction.force)
-            if reaction.couple is not None:
-                put("couple", reaction.pair.name, reaction.couple)
-        for balance in results.reactions.balances:
-            put("balancing", balance.driver.link, balance.generalized)
+    for quantity, name, value in leading_values(results.motion, results.reactions):
+        for component, part in (("x", value.real), ("y", value.imag)) if quantity.vector else (("", value),):
+            found[quantity.name, name, component] = part
     return found
 
 
-def _chunks(results: Results, wider: bool) -> Iterator[tuple[Real, bool]]:
-    """Positions to be judged together, and whether they are near a dead one."""
-    motion = results.motion
-    assert motion is not None
-    near = near_dead(motion) if motion.where is None else motion.where
-    for these, close in ((~near & motion.placed, False), (near, True)):
-        places = np.flatnonzero(these)
-        for start in range(0, len(places), CHUNK):
-            yield places[start : start + CHUNK], close
+@dataclass(frozen=True)
+class _Judge:
+    """Judges values read out of results, at some positions together; arrays are (values, positions)."""
 
+    results: Results
+    of: Callable[[Results], Cells]
+    values: Cells
+    blur: Real
+    kind: Callable[[Hashable], Hashable]
+    wider: bool
 
-def _judge(
-    results: Results,
-    of: Callable[[Results], Cells],
-    values: Cells,
-    found: Digits,
-    where: tuple[Real, bool, bool],
-    blur: Real,
-    sorts: tuple[Callable[[Hashable], bool], Callable[[Hashable], Hashable]],
-) -> None:
-    """Fill in the digits of the chosen positions."""
-    motion, (turning, kind) = results.motion, sorts
-    assert motion is not None
-    chosen, near, wider = where
-    first = results.start if results.way is not None else float(motion.q[0])
-    wide = plain = None
-    if wider:
-        linkage, asked = exact(results), motion.q.astype(np.longdouble)
-        if results.problem.extended is not None and results.problem.request.places:
-            places = np.array(results.problem.extended().request.places)
-            asked, first, blur = places[list(results.numbers)], places[0], np.zeros(len(chosen))
-        wide = at(results, linkage, asked[chosen], first, chosen)
-    if wide is None or not near:
-        plain = at(results, results.linkage, motion.q[chosen], results.start if results.way else motion.q[0], chosen)
-    base = wide if near and wide is not None else plain
-    assert base is not None
-    assert base.motion is not None
-    start = of(base)
-    exactly = start if wide is base else {} if wide is None else of(wide)
+    def at(self, chosen: Real, near: bool, mu: float) -> Real:
+        """Bounds and both sensitivities at the chosen positions, all of which are near a dead one or none is."""
+        results, motion = self.results, self.results.motion
+        assert motion is not None
+        first, blur, q = results.start, self.blur[chosen], motion.q[chosen]
+        exactly = base = None
+        if self.wider:
+            wide = motion.q.astype(np.longdouble)
+            if results.inputs.extended is not None and results.inputs.request.places:
+                wide = np.array(results.inputs.extended().request.places)
+                first, wide, blur = wide[0], wide[list(results.numbers)], np.zeros(len(chosen))
+            exactly = base = at(results, exact(results), wide[chosen], first, chosen)
+        if base is None or not near:
+            base = at(results, results.linkage, q, results.start, chosen)
+        rows = self.rows(self.of(base))
 
-    nothing = np.zeros(len(chosen))
-    turns_round, there = (np.array([[told(key)] for key in values]) for told in (turning, start.__contains__))
+        def gap(other: Results) -> Real:
+            return self.gap(self.rows(self.of(other)), rows)
 
-    def stacked(cells: Cells) -> Real:
-        return np.stack([cells.get(key, nothing) for key in values])
-
-    rows = stacked(start)
-
-    def slope(linkage: Linkage, q: Real, by: float) -> Real:
-        """How fast every value changes, (values, chosen)."""
-        moved = stacked(of(at(base, linkage, q, first)))
-        with np.errstate(invalid="ignore"):
-            away = np.where(turns_round, _gap(moved, rows, True), _gap(moved, rows, False))
-            return np.where(there, away / by, 0.0).astype(float)
-
-    step = _step(base, near)
-    response, share, paper = np.zeros((3, len(values), len(chosen)))
-    data = lengths(results.linkage)
-    size = max((abs(length.value) for length in data), default=1.0)
-    for length in (*data, *(angles(results.linkage) if near else ())):
-        turns = not isinstance(length.along, complex)
-        by = base.motion.q.dtype.type(step * (1.0 if turns else max(abs(length.value), _size(data, length.link))))
-        slopes = slope(changed(base.linkage, length, by), base.motion.q, float(by))
-        response += slopes * abs(length.value)
-        if not turns:
-            share += slopes * (SHARE * abs(length.value))
-            paper += np.where(there, slopes * (PAPER * found.mu), 0.0)
-    spread, largest = (dict.fromkeys(keys, nothing) for keys in (values, map(kind, values)))
-    for key, value in start.items():
-        largest[kind(key)] = np.fmax(largest[kind(key)], np.abs(value).astype(float))
-    for trial in range(0 if wider else TRIALS):
-        moved = of(at(base, *shaken(base.linkage, motion.q[chosen], trial), first))
-        for key, value in start.items():
-            spread[key] = np.maximum(spread[key], _gap(moved.get(key, nothing), value, turning(key)))
-    reach = 1.0 if results.linkage.driver.kind == "turn" else size
-    by_place = slope(base.linkage, base.motion.q + base.motion.q.dtype.type(step * reach), step * reach)
-    for row, (key, value) in enumerate(values.items()):
-        y = np.abs(np.asarray(value[..., chosen], float))
-        by_q = by_place[row]
-        kappa = response[row] + by_q * (np.abs(motion.q[chosen].astype(float)) + reach * near)
-        if wider:
+        values = np.stack([value[..., chosen] for value in self.values.values()])
+        kappa, share, paper, by_q = self.responses(base, first, near, gap)
+        kappa = kappa + by_q * np.abs(q.astype(float))
+        if exactly is not None:
             fine = float(np.finfo(np.longdouble).eps) / 2
-            away = _gap(np.asarray(value[chosen]), exactly.get(key, nothing), turning(key)).astype(float)
-            bound = 2 * away + U * y + ROUNDINGS * fine * kappa
+            away = self.gap(values, rows if exactly is base else self.rows(self.of(exactly))).astype(float)
+            bound = 2 * away + U * np.abs(values.astype(float)) + ROUNDINGS * fine * kappa
         else:
-            bound = SPREAD * spread[key] + 4 * U * largest[kind(key)]
-            bound = np.where(spread[key] > LOST * largest[kind(key)], np.nan, bound)
-        with np.errstate(invalid="ignore"):
-            bound = bound + np.where(blur > 0, by_q * blur, 0.0)
-        found.bound[key][chosen] = np.where(np.isfinite(y), bound, np.nan)
-        found.lengths[key][chosen] = share[row]
-        found.paper[key][chosen] = paper[row]
+            bound = self.by_trials(rows, [gap(at(base, *shaken(base.linkage, q, k), first)) for k in range(TRIALS)])
+        bound = bound + np.where(blur > 0, by_q * blur, 0.0)
+        return np.stack([np.where(np.isfinite(values.astype(float)), bound, np.nan), share, paper * mu])
 
+    def responses(self, base: Results, first: float, near: bool, gap: Callable[[Results], Real]) -> tuple[Real, ...]:
+        """How much values change per unit relative change of all data, by 0.1 % of lengths, by 0.5 m, and by place."""
+        assert base.motion is not None
+        number, step = base.motion.q.dtype.type, _step(base, near)
+        data = lengths(self.results.linkage)
+        sizes: dict[str, float] = {}
+        for length in data:
+            sizes[length.link] = max(sizes.get(length.link, 0.0), abs(length.value))
+        reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
+        q = base.motion.q + number(step * reach)
+        by_q = (gap(at(base, base.linkage, q, first)) / (step * reach)).astype(float)
+        kappa, share, paper = by_q * reach * near, np.zeros(np.shape(by_q)), np.zeros(np.shape(by_q))
+        for length in (*data, *(angles(self.results.linkage) if near else ())):
+            turns = not isinstance(length.along, complex)
+            by = number(step * (1.0 if turns else sizes[length.link]))
+            slopes = (gap(at(base, changed(base.linkage, length, by), base.motion.q, first)) / by).astype(float)
+            kappa = kappa + slopes * abs(length.value)
+            if not turns:
+                share, paper = share + slopes * (SHARE * abs(length.value)), paper + slopes * PAPER
+        return kappa, share, paper, by_q
 
-def _gap(one: Real, other: Real, turns: bool) -> Real:
-    away: Real = np.abs(one - other)
-    return np.minimum(away, np.abs(2 * np.pi - away)) if turns else away
+    def by_trials(self, rows: Real, gaps: Sequence[Real]) -> Real:
+        """Bounds from what shaken data change."""
+        largest: dict[Hashable, Real] = {}
+        kinds = [self.kind(key) for key in self.values]
+        for kind, row in zip(kinds, np.abs(rows).astype(float), strict=True):
+            largest[kind] = np.fmax(largest.get(kind, 0.0), row)
+        size, spread = np.stack([largest[kind] for kind in kinds]), np.max(gaps, axis=0)
+        return np.where(spread > LOST * size, np.nan, SPREAD * spread + 4 * U * size)
 
+    def rows(self, cells: Cells) -> Real:
+        """The values one below the other; those that are not there are 0."""
+        nothing = np.zeros(np.shape(next(iter(cells.values()))))
+        return np.stack([cells.get(key, nothing) for key in self.values])
 
-def _size(data: tuple[Length, ...], link: str) -> float:
-    return max(abs(length.value) for length in data if length.link == link)
+    def gap(self, one: Real, other: Real) -> Real:
+        """How far values are from others; of angles the way round."""
+        away: Real = np.abs(one - other)
+        turning = np.array([[is_angle(key)] for key in self.values])
+        return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
 
 def _step(results: Results, near: bool) -> float:
@@ -281,7 +230,7 @@ def _step(results: Results, near: bool) -> float:
 
 def exact(results: Results) -> Linkage:
     """The linkage with the decimals of its file in longdouble; without a file, with its numbers as they stand."""
-    extended = results.problem.extended
+    extended = results.inputs.extended
     return widened(results.linkage) if extended is None else extended().linkage
 
 
@@ -290,18 +239,17 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
 
     first: the place of position 0. chosen: which of the positions these are; all of them when left out.
     """
-    lead = linkage.driver
-    law = Law(linkage.sketch.at if linkage.others else first, lead.rate, lead.acceleration, lead.sense)
-    solved = results.kernels if results.motion is None else results.motion.kernels
-    kernels = tuple(kernel.again(linkage) for kernel in solved)
-    moved = move(linkage, kernels, q, law)
+    assert results.motion is not None
+    kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
+    moved = move(linkage, kernels, q, driver_motion(linkage, first))
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         strokes = _begun(strokes, linkage, kernels, q)
-    found = given(
-        results, problem=replace(results.problem, linkage=linkage), structure=results.structure.again(linkage),
-        kernels=kernels, motion=moved, numbers=numbers, strokes=strokes, pressure=_pressed(results, moved),
+    found = replace(
+        results, inputs=replace(results.inputs, linkage=linkage), structure=results.structure.rebind(linkage),
+        mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes), motion=moved,
+        numbers=numbers,
     )  # fmt: skip
     return found if results.reactions is None else with_forces(found, cycle=False)
 
@@ -309,18 +257,5 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
     """Strokes whose output begins where it really is there, which loads tabulated against it are counted from."""
     places = np.array([s.start for s in strokes.strokes], dtype=q.dtype)
-    lows = output_run(move(linkage, kernels, places, Law(0.0, 1.0, 0.0, 1)), strokes.link)[0]
+    lows = output_run(move(linkage, kernels, places, DriverMotion(0.0, 1.0, 0.0, 1)), strokes.link)[0]
     return replace(strokes, strokes=tuple(replace(s, low=x) for s, x in zip(strokes.strokes, lows, strict=True)))
-
-
-def _pressed(results: Results, motion: Motion) -> tuple[Pressure, ...]:
-    """Pressure angles at the positions of the motion."""
-    angles = {}
-    if results.pressure:
-        from tmm_cli.pressure import angle, followers
-
-        with np.errstate(all="ignore"):
-            for kernel, there in zip(motion.kernels, motion.placements, strict=True):
-                for lead in followers(kernel.group):
-                    angles[kernel.group.title, lead[0]] = angle(motion, kernel, there, lead)
-    return tuple(replace(p, angles=angles[p.group, p.link]) for p in results.pressure)

@@ -13,10 +13,10 @@ import numpy as np
 
 from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
-from tmm_cli.groups.track import State
-from tmm_cli.motion import Motion
-from tmm_cli.pressure import angle, followers
-from tmm_cli.strokes import output_run
+from tmm_cli.groups.state import State
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.pressure import angle, followers
+from tmm_cli.kinematics.strokes import output_run
 from tmm_cli.vectors import Real
 
 STEP = 1e-5  # rad, or that share of the way: for derivatives by the driver's place
@@ -42,14 +42,14 @@ class Changed:
             return NOWHERE
         before, after = (kernels[number] for kernels in self.kernels)
         if isinstance(before, Closed):
-            return self._root(place, lambda motion, _: motion.placements[number].gap)
+            return self._root(place, lambda motion, _: motion.placements[number].residual)
         if not isinstance(before, Newton) or not isinstance(after, Newton) or before.followed is None:
             return NOWHERE
         track = before.followed
         end = 0 if abs(place - track.q[0]) < abs(place - track.q[-1]) else -1
         if not track.limits[end]:
             return NOWHERE
-        own = before.poses_of(State(track.states.x[[end]], track.states.turn[[end]]))
+        own = before.poses_of(State(track.states.x[[end]], track.states.unwrapped[[end]]))
         # where the matrix is singular, only the equations' sum by its left null vector tells of q
         (here, _) = self.motions(place)
         null = np.linalg.svd(before.matrix({**here.poses, **own})[0])[0][:, -1]
@@ -59,7 +59,7 @@ class Changed:
             poses = {name: pose for name, pose in motion.poses.items() if name not in own}
             wide = {name: type(pose)(*(np.repeat(part, len(motion.q)) for part in (pose.x, pose.z, pose.turned)))
                     for name, pose in own.items()}  # fmt: skip
-            found: Real = kernel.gaps({**poses, **wide}, motion.drives) @ null
+            found: Real = kernel.residuals({**poses, **wide}, motion.drives) @ null
             return found
 
         return self._root(place, lambda motion, side: short(motion, (before, after)[side]))
@@ -73,7 +73,9 @@ class Changed:
         def closing(motion: Motion, side: int) -> Real:
             kernel = self.kernels[side][number]
             assert isinstance(kernel, Closed)
-            return kernel.closing(kernel.closed(motion.poses, motion.drives), motion.poses, motion.first, motion.drives)
+            return kernel.residual_rate(
+                kernel.closed(motion.poses, motion.drives), motion.poses, motion.first, motion.drives
+            )
 
         return self._root(place, closing)
 
@@ -103,5 +105,5 @@ class Changed:
         with np.errstate(all="ignore"):
             before, after = self.motions(place + step * np.array([-1.0, 0.0, 1.0]))
             values, moved = function(before, 0), function(after, 1)
-            way = -(moved[1] - values[1]) * 2 * step / (values[2] - values[0])
-        return float(way) if np.isfinite(way) else NOWHERE
+            shift = -(moved[1] - values[1]) * 2 * step / (values[2] - values[0])
+        return float(shift) if np.isfinite(shift) else NOWHERE

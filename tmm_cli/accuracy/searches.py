@@ -7,105 +7,131 @@ sure. What follows from several such numbers is shifted by the bound of each of 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_cli.accuracy.data import Length, changed, lengths
-from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, U
+from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, Digits, U
 from tmm_cli.accuracy.places import Changed
 from tmm_cli.accuracy.wide import Wide
+from tmm_cli.analysis.pipeline import CYCLE, Results, cycle_losses
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.kinematics.pressure import pressure_at
+from tmm_cli.kinematics.strokes import Strokes, output_run
 from tmm_cli.linkage import Linkage
-from tmm_cli.motion import Law, Motion, move
-from tmm_cli.pipeline import CYCLE, Results, cycle_losses, given
-from tmm_cli.pressure import angle, followers
-from tmm_cli.strokes import RESTS, Strokes, output_run
-from tmm_cli.vectors import Real
+from tmm_cli.tolerances import RESTS
+from tmm_cli.vectors import Real, mapped
 
 Cells = Mapping[Hashable, Real]
-Shift = tuple[Results, float]  # results with one number shifted, and by how many of its bounds
 
 LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
+SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
 
 
-@dataclass
-class Searched:
-    """Bounds and sensitivities of the numbers of searches by key; blur: of the place of position 0, rad or m."""
+class Found(NamedTuple):
+    """A number of the mechanism that was searched for: its bound, and the results with it shifted by so much."""
 
-    bound: dict[Hashable, Real] = field(default_factory=dict)
-    lengths: dict[Hashable, Real] = field(default_factory=dict)
-    paper: dict[Hashable, Real] = field(default_factory=dict)
-    blur: float = 0.0
+    bound: float
+    shifted: Callable[[float], Results]
 
 
-def searched(results: Results, of: Callable[[Results], Cells], mu: float) -> Searched:
-    """Judge what `of` reads out of results that belongs to no position. mu: scale of the drawing (m a mm)."""
-    values, found = of(results), Searched()
-    shifts = list(_shifts(results, found))
+def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: float = float("nan")) -> Digits:
+    """Judge what `of` reads out of results that belongs to no position.
+
+    mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
+    """
+    values, told = of(results), Digits(mu=mu)
     for key, value in values.items():
-        found.bound[key] = 2 * U * np.abs(np.asarray(value, float))
-        found.lengths[key], found.paper[key] = np.zeros((2, *np.shape(value)))
-    with np.errstate(invalid="ignore"):
-        for shifted, times in shifts:
-            moved = of(shifted)
+        told.bound[key] = 2 * U * np.abs(np.asarray(value, float))
+        told.lengths[key], told.paper[key] = np.zeros((2, *np.shape(value)))
+    with np.errstate(all="ignore"):
+        for found in found_in(results, wide):
+            by = min(SHIFT, LARGE * found.bound)
+            moved = of(found.shifted(by)) if by else values
             for key, value in values.items():
-                found.bound[key] = found.bound[key] + np.where(np.isnan(value), 0.0, _gap(moved, key, value)) / times
-        for changed_ones, by, length in _responses(results):
+                gap = _gap(moved, key, value)
+                told.bound[key] = told.bound[key] + np.where(gap > 0, gap * (found.bound / by if by else 0.0), 0.0)
+        for changed_ones, by, length in () if np.isnan(mu) else _responses(results):
             moved = of(changed_ones)
             for key, value in values.items():
                 rate = _gap(moved, key, value) / by
-                found.lengths[key] = found.lengths[key] + rate * SHARE * abs(length.value)
-                found.paper[key] = found.paper[key] + rate * PAPER * mu
-    return found
+                told.lengths[key] = told.lengths[key] + rate * SHARE * abs(length.value)
+                told.paper[key] = told.paper[key] + rate * PAPER * mu
+    return told
 
 
 def _gap(moved: Cells, key: Hashable, value: Real) -> Real:
     """How far a number has moved; a full turn is no way, and what is not there any more has not moved."""
     if key not in moved or np.shape(moved[key]) != np.shape(value):
         return np.zeros(np.shape(value))
-    gap: Real = np.abs(np.asarray(moved[key], float) - np.asarray(value, float))
-    return np.where(np.abs(gap - 2 * np.pi) < 1e-3, np.abs(gap - 2 * np.pi), gap)
+    residual: Real = np.abs(np.asarray(moved[key], float) - np.asarray(value, float))
+    return np.where(np.abs(residual - 2 * np.pi) < 1e-3, np.abs(residual - 2 * np.pi), residual)
 
 
-def _shifts(results: Results, found: Searched) -> Iterator[Shift]:
-    """The results with each searched number shifted by its bound."""
-    way, problem = results.way, results.problem
-    if way is None:
+def found_in(results: Results, wide: Wide) -> Iterator[Found]:
+    """Everything that was searched for."""
+    driver_range = results.driver_range
+    if driver_range is None:
         return
-    wide = Wide(results)
-    span = way.end - way.start
-    for name, towards in (("start", -1), ("end", 1)):
-        place, limit = getattr(way, name), None if way.full else _limit(results, getattr(way, name))
-        bound = 2 * U * abs(place) if limit is None else wide.end(place, towards, limit, span)
-        found.blur = max(found.blur, 0.0 if way.full else bound)
-        yield _shifted(bound, partial(_with_way, results, name))
-    for number, strokes in enumerate((results.strokes, *results.further)):
+    span = driver_range.end - driver_range.start
+
+    def found(path: str, bound: float, sense: int = 1) -> Found:
+        return Found(float(bound), lambda by: _shifted(results, path, sense * by))
+
+    for name, bound in _ends(results, driver_range, wide):
+        yield found(f"driver_range.{name}", bound)
+    outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
+    for output, strokes in outputs.items():
         if strokes is None or not strokes.strokes:
             continue
-        places = np.array([s.start for s in strokes.strokes])
-        bounds = wide.turns(places, strokes.link)
-        if number == 0 and problem.request.start == "working stroke" and not problem.request.places:
-            found.blur = float(bounds[0])
-        lows = wide.lows(places, bounds, strokes)
-        after, high = np.roll(bounds, -1), np.roll(lows, -1)
-        for k, bound in enumerate(bounds):
-            own = {"start": bound, "length": bound + after[k], "low": lows[k], "run": lows[k] + high[k]}
-            for part, by in own.items():
-                yield _shifted(float(by), partial(_with_stroke, results, number, k, part))
-    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
-        yield given(results, losses=cycle_losses(results, CYCLE // 2)), 1.0
+        starts, lows = wide.strokes(strokes)
+        parts = {"start": starts, "length": starts + np.roll(starts, -1), "low": lows, "run": lows + np.roll(lows, -1)}
+        for k in range(len(starts)):
+            for part, bounds in parts.items():
+                yield found(f"{output}.strokes[{k}].{part}", bounds[k])
     for k, travel in enumerate(results.travels):
-        for part, by in wide.travel(travel).items():
-            yield _shifted(by, partial(_with, results, "travels", k, part))
+        for part, bound_at, bound in zip(("low", "high"), *wide.travel(travel), strict=True):
+            yield found(f"travels[{k}].{part}_at", bound_at)
+            yield found(f"travels[{k}].{part}", bound)
     for k, dead in enumerate(results.dead):
-        yield _shifted(wide.dead(dead.place, dead.group, span), partial(_with, results, "dead", k, "place"))
-        yield _shifted(dead.margin + 4 * U, partial(_with, results, "dead", k, "margin"))
+        yield found(f"dead[{k}].place", wide.dead(dead.place, dead.group, span))
+        yield found(f"dead[{k}].margin", dead.margin + 4 * U)
     for k, pressure in enumerate(results.pressure):
         largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
-        yield _shifted(largest, partial(_with, results, "pressure", k, "largest"), -1.0)
-        yield _shifted(there, partial(_with, results, "pressure", k, "place"))
+        yield found(f"pressure[{k}].largest", largest, -1)
+        yield found(f"pressure[{k}].place", there)
+    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
+        rough = cycle_losses(results, CYCLE // 2)
+
+        def towards(by: float) -> Results:
+            losses = mapped(lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked",))
+            return replace(results, losses=losses)
+
+        yield Found(1.0, towards)
+
+
+def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[tuple[str, float]]:
+    """Bounds of both ends of the driver's way."""
+    span = driver_range.end - driver_range.start
+    for name, towards, place in (("start", -1, driver_range.start), ("end", 1, driver_range.end)):
+        limit = None if driver_range.full else _limit(results, place)
+        yield name, 2 * U * abs(place) if limit is None else wide.end(place, towards, limit, span)
+
+
+def blur(results: Results, wide: Wide) -> float:
+    """How far position 0 may be from where it was asked for, rad or m."""
+    request, driver_range = results.inputs.request, results.driver_range
+    if driver_range is None or request.places:
+        return 0.0
+    if not driver_range.full:
+        return max(bound for _, bound in _ends(results, driver_range, wide))
+    if request.start != "working stroke" or results.strokes is None or not results.strokes.strokes:
+        return 0.0
+    return float(wide.strokes(results.strokes)[0][0])
 
 
 def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
@@ -114,23 +140,23 @@ def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
     At an extreme the place does not matter to first order, so values there are taken where they were found. Places that
     are no roots of anything known have no such answer: nan.
     """
-    way, linkage = results.way, results.linkage
-    if way is None:
+    driver_range, linkage = results.driver_range, results.linkage
+    if driver_range is None:
         return
-    span = way.end - way.start if linkage.driver.kind == "slide" else 1.0
+    span = driver_range.end - driver_range.start if linkage.driver.kind == "slide" else 1.0
     data = lengths(linkage)
     for length in data:
         by = STEP * max(abs(other.value) for other in data if other.link == length.link)
         moved = changed(linkage, length, by)
-        both = (results.kernels, tuple(kernel.again(moved) for kernel in results.kernels))
+        both = (results.kernels, tuple(kernel.rebind(moved) for kernel in results.kernels))
 
         def motions(places: Any, both: Any = both, moved: Linkage = moved) -> tuple[Motion, Motion]:
             q = np.atleast_1d(np.array(places, dtype=float))
-            law = Law(0.0, 1.0, 0.0, 1)
+            law = DriverMotion(0.0, 1.0, 0.0, 1)
             return move(linkage, both[0], q, law), move(moved, both[1], q, law)
 
         after = Changed(motions, both, span)
-        ends = {"start": way.start, "end": way.end}
+        ends = {"start": driver_range.start, "end": driver_range.end}
         moved_ends: dict[str, Any] = {name: at + after.limit(at, _limit(results, at)) for name, at in ends.items()}
         further = tuple(_strokes_after(strokes, motions) for strokes in results.further)
         travels = []
@@ -146,15 +172,15 @@ def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
             )  # fmt: skip
         pressure = []
         for p in results.pressure:
-            one, other = (_largest(m, p.group, p.link) for m in motions(p.place))
+            one, other = (float(pressure_at(m, p.group, p.link)[0]) for m in motions(p.place))
             there = p.place + after.pressure(p.place, p.group, p.link)
             pressure.append(replace(p, largest=p.largest + other - one, place=there))
         dead = tuple(replace(d, place=d.place + after.dead(d.place, d.group)) for d in results.dead)
         strokes = results.strokes and _strokes_after(results.strokes, motions)
         yield (
-            given(
+            _changed(
                 results,
-                way=way if way.full else replace(way, **moved_ends),
+                driver_range=driver_range if driver_range.full else replace(driver_range, **moved_ends),
                 dead=dead,
                 strokes=strokes,
                 further=further,
@@ -166,9 +192,9 @@ def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
         )
 
 
-def _end(results: Results) -> float:
-    """How far an end of what is asked for moves: not at all where the file names it."""
-    return 0.0 if results.problem.request.places else float("nan")
+def _changed(results: Results, **parts: Any) -> Results:
+    """The results with other parts of the mechanism."""
+    return replace(results, mechanism=results.mechanism.changed(**parts))
 
 
 def _inner(results: Results, place: float) -> bool:
@@ -201,47 +227,14 @@ def _strokes_after(strokes: Strokes, motions: Callable[[Any], tuple[Motion, Moti
     )  # fmt: skip
 
 
-def _largest(motion: Motion, group: str, link: str) -> float:
-    """The pressure angle of a link at the one place of a motion."""
-    for kernel, there in zip(motion.kernels, motion.placements, strict=True):
-        for lead in followers(kernel.group):
-            if (kernel.group.title, lead[0]) == (group, link):
-                with np.errstate(all="ignore"):
-                    return float(angle(motion, kernel, there, lead)[0])
-    return float("nan")
-
-
-def _shifted(bound: float, by: Callable[[float], Results], sense: float = 1.0) -> Shift:
-    times = max(1.0, min(LARGE, 1e-6 / bound if bound else LARGE))
-    return by(sense * bound * times), times
-
-
-def _with_way(results: Results, name: str, by: float) -> Results:
-    way: Any = results.way
-    return given(results, way=replace(way, **{name: getattr(way, name) + by}))
-
-
-def _with(results: Results, part: str, k: int, name: str, by: float) -> Results:
-    records: list[Any] = list(getattr(results, part))
-    records[k] = replace(records[k], **{name: getattr(records[k], name) + by})
-    changes: dict[str, Any] = {part: tuple(records)}
-    return given(results, **changes)
-
-
-def _with_stroke(results: Results, number: int, k: int, part: str, by: float) -> Results:
-    strokes = results.strokes if number == 0 else results.further[number - 1]
-    assert strokes is not None
-    own = list(strokes.strokes)
-    own[k] = replace(own[k], **{part: getattr(own[k], part) + by})
-    moved = replace(strokes, strokes=tuple(own))
-    if number == 0:
-        return given(results, strokes=moved)
-    further = list(results.further)
-    further[number - 1] = moved
-    return given(results, further=tuple(further))
+def _shifted(results: Results, path: str, by: float) -> Results:
+    """The results with one number of the mechanism shifted; path: travels[0].low, as in vectors.mapped."""
+    part = path.partition(".")[0].partition("[")[0]
+    moved = mapped(lambda at, value: value + by if at == path else value, getattr(results, part), path=part)
+    return _changed(results, **{part: moved})
 
 
 def _limit(results: Results, place: float) -> str | None:
     """The group that stops the driver at a place."""
-    assert results.way is not None
-    return next((limit.group for limit in results.way.limits if limit.place == place), None)
+    assert results.driver_range is not None
+    return next((limit.group for limit in results.driver_range.limits if limit.place == place), None)

@@ -1,8 +1,28 @@
-"""Axes that charts of measurements share."""
+"""What charts of measurements share: an A4 page with its title, plain numbers, light grids."""
 
 from __future__ import annotations
 
 from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from tmm_cli.plans.record import LANDSCAPE
+
+MM = 1 / 25.4  # inches
+DARK, GREY, RED, BLUE, GREEN, ORANGE = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c77700"
+PLAIN = FuncFormatter(lambda value, __: f"{value:g}")
+
+
+def page(title: str, caption: str, share: float = 1.0) -> Figure:
+    """A landscape sheet of A4, or this share of its height, with a title and a line below it."""
+    height = share * LANDSCAPE[1]
+    figure = Figure(figsize=(LANDSCAPE[0] * MM, height * MM))
+    FigureCanvasAgg(figure)
+    figure.text(0.05, 1 - 8 / height, title, fontsize=13, weight="bold")
+    figure.text(0.05, 1 - 13.7 / height, caption, fontsize=7.5, color="#404040", parse_math=False)
+    return figure
 
 
 def bare(axes: Any, title: str) -> None:
@@ -11,3 +31,18 @@ def bare(axes: Any, title: str) -> None:
     axes.tick_params(labelsize=8)
     axes.grid(True, color="#e2e2e2", lw=0.5)
     axes.set_axisbelow(True)
+
+
+def decades(axes: Any) -> None:
+    """Both axes logarithmic, with plain numbers."""
+    for set_scale, axis in ((axes.set_xscale, axes.xaxis), (axes.set_yscale, axes.yaxis)):
+        set_scale("log")
+        axis.set_major_formatter(PLAIN)
+        axis.set_minor_formatter(NullFormatter())
+
+
+def errors(axes: Any, powers: range) -> None:
+    """Errors upward, marked at these powers of ten; the axis ends where its limits are set."""
+    axes.set_yscale("log")
+    axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
+    axes.yaxis.set_minor_formatter(NullFormatter())

@@ -13,12 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli import assembly, assembly_newton, mechanism, motion, pipeline, pressure, quality, strokes
-from tmm_cli.groups import KERNELS
+from tmm_cli.analysis import mechanism, pipeline
+from tmm_cli.assembly import choose, search
+from tmm_cli.groups import sequence
 from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.dyads import DYADS
 from tmm_cli.groups.newton import Newton
+from tmm_cli.kinematics import driver_range as quality
+from tmm_cli.kinematics import motion, pressure, strokes
 
-STAGES = (assembly, assembly_newton, mechanism, motion, pipeline, pressure, quality, strokes)
+STAGES = (choose, search, mechanism, motion, pipeline, pressure, quality, strokes)
 
 
 @dataclass
@@ -52,10 +56,10 @@ def counted() -> Iterator[Count]:
         setattr(kind, name, watched)
 
     try:
-        for dyad in KERNELS.values():
+        for dyad in DYADS.values():
             watch(dyad, "closed", "places", lambda _, at: np.size(at.det))
-        watch(Newton, "gaps", "places", lambda _, gaps: np.size(gaps[..., 0]))
-        every: tuple[type[Kernel], ...] = (*KERNELS.values(), Newton)
+        watch(Newton, "residuals", "places", lambda _, gaps: np.size(gaps[..., 0]))
+        every: tuple[type[Kernel], ...] = (*DYADS.values(), Newton)
         for kind in every:
             watch(kind, "rates", "velocities", lambda _, rates: np.size(rates[0].w))
             watch(kind, "accelerations", "accelerations", lambda _, accels: np.size(accels[0].e))
@@ -81,17 +85,17 @@ def _instead(name: str, other: Any) -> Iterator[None]:
 @contextmanager
 def all_orders() -> Iterator[None]:
     """Every stage computes accelerations."""
-    given = motion.move
+    given = sequence.link_states
 
-    def whole(linkage: Any, kernels: Any, q: Any, law: Any, order: int = 2) -> Any:
-        return given(linkage, kernels, q, law, 2)
+    def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
+        return given(linkage, kernels, q, 2, **named)
 
-    with _instead("move", whole):
+    with _instead("link_states", whole):
         yield
 
 
 @contextmanager
 def no_closed_form() -> Iterator[None]:
     """Every group is solved by Newton's method."""
-    with _instead("KERNELS", {}):
+    with _instead("CLOSED", ()):
         yield

@@ -13,10 +13,13 @@ from dataclasses import dataclass
 from decimal import Decimal
 from typing import Literal
 
+from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch, Slide
 
 Numbers = Mapping[str, Decimal]
 NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or shares of a length
+LONGER = tuple(Decimal(10) ** k for k in range(1, 13))
+SIZES = tuple(Decimal(10) ** k for k in (0, 1, -1, 3, -3, 5, -5, 7, -7, 9, -9))
 Place = tuple[Decimal, Decimal]
 CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
@@ -39,6 +42,7 @@ class Family:
     """
 
     name: str
+    title: str
     scene: Callable[[Numbers, Decimal], Scene]
     distances: tuple[Decimal, ...]
     unit: Literal["rad", "share", "ratio", "m"] = "rad"
@@ -159,9 +163,18 @@ def _line(n: Numbers, distance: Decimal) -> Scene:
     return Scene(four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
 
 
-def _tangent(n: Numbers, share: Decimal, outer: bool) -> Scene:
-    """D lies from A along (ux, uy), nearer than b + c by a share of it, or farther than |b - c|."""
-    base = (n["b"] + n["c"]) * (1 - share) if outer else abs(n["b"] - n["c"]) * (1 + share)
+def _outer(n: Numbers, share: Decimal) -> Scene:
+    """D is nearer to A than b + c by a share of it."""
+    return _tangent(n, (n["b"] + n["c"]) * (1 - share))
+
+
+def _inner(n: Numbers, share: Decimal) -> Scene:
+    """D is farther from A than |b - c| by a share of it."""
+    return _tangent(n, abs(n["b"] - n["c"]) * (1 + share))
+
+
+def _tangent(n: Numbers, base: Decimal) -> Scene:
+    """D lies from A along (ux, uy), at this distance."""
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
@@ -202,15 +215,15 @@ def _fold(n: Numbers, distance: Decimal) -> Scene:
 
 
 FAMILIES: tuple[Family, ...] = (
-    Family("dead-position", _dead, NEAR, fixed=True),
-    Family("change-point", _dead, NEAR, fixed=True),
-    Family("outer-tangent", lambda n, d: _tangent(n, d, True), NEAR, "share"),
-    Family("inner-tangent", lambda n, d: _tangent(n, d, False), NEAR, "share"),
-    Family("stone-over-pivot", _stone, NEAR, "share"),
-    Family("short-rod", _short, NEAR[:12], "share"),
-    Family("long-rod", _long, tuple(Decimal(10) ** k for k in range(1, 13)), "ratio"),
-    Family("size", _size, tuple(Decimal(10) ** k for k in (0, 1, -1, 3, -3, 5, -5, 7, -7, 9, -9)), "m"),
-    Family("three-in-line", _line, NEAR),
-    Family("two-assemblies-lost", _fold, NEAR, fixed=True),
+    Family("dead-position", _("Dead position of the driven four-bar"), _dead, NEAR, fixed=True),
+    Family("change-point", _("Change point of a parallelogram"), _dead, NEAR, fixed=True),
+    Family("outer-tangent", _("Circles touching from outside, d → b + c"), _outer, NEAR, "share"),
+    Family("inner-tangent", _("Circles touching from inside, d → |b - c|"), _inner, NEAR, "share"),
+    Family("stone-over-pivot", _("Stone over the pivot of its slotted link"), _stone, NEAR, "share"),
+    Family("short-rod", _("Rod hardly longer than its crank"), _short, NEAR[:12], "share"),
+    Family("long-rod", _("Rod much longer than its crank"), _long, LONGER, "ratio"),
+    Family("size", _("Size"), _size, SIZES, "m"),
+    Family("three-in-line", _("Start with three points in line"), _line, NEAR),
+    Family("two-assemblies-lost", _("Class III group losing two assemblies"), _fold, NEAR, fixed=True),
 )
 BY_NAME = {family.name: family for family in FAMILIES}

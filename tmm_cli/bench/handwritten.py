@@ -2,7 +2,8 @@
 
 Kinematics of all joints and centres of mass, all reactions with inertia and weights, and the balancing moment; for
 places q (rad) of a crank that turns evenly at w (rad/s). Dimensions are numbers or arrays (variants, 1). Against these
-the general calculator is timed; the formulas are those of any course, and each value is written once.
+the general calculator is timed, and results have its names; the formulas are those of any course, and each value is
+written once.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def crank_slider(q: Any, *, r: Any, l: Any, s: float, m1: float, m2: float, J2: 
     RO = RA + 1j * (m1 * G)
     return {
         "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "S2.x": S, "S2.v": vS, "S2.a": aS,
-        "2.omega": omega, "2.epsilon": epsilon, "R.A": RA, "R.B": RB, "N": N, "R.O": RO, "T": T,
+        "2.omega": omega, "2.epsilon": epsilon, "R.A": RA, "R.B": RB, "R.x": N, "R.O": RO, "T.1": T,
     }  # fmt: skip
 
 
@@ -111,7 +112,7 @@ def six_bar(q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: com
         "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "F.x": F5, "F.v": vF, "F.a": aF,
         **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(4)},
         "2.omega": omega2, "3.omega": omega3, "4.omega": omega4, "2.epsilon": epsilon2, "3.epsilon": epsilon3,
-        "4.epsilon": epsilon4, "R.A": RA, "R.B": X, "R.B4": R4, "R.D": RD, "R.F": RF, "N": N, "R.O": RO, "T": T,
+        "4.epsilon": epsilon4, "R.A": RA, "R.B": X, "R.B''": R4, "R.D": RD, "R.F": RF, "R.x": N, "R.O": RO, "T.1": T,
     }  # fmt: skip
 
 
@@ -131,7 +132,6 @@ def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at:
     slide = u.real * vA.real + u.imag * vA.imag
     n3 = omega3 * omega3
     epsilon3 = (u.real * aA.imag - u.imag * aA.real - 2 * omega3 * slide) / rho
-    along = u.real * aA.real + u.imag * aA.imag + n3 * rho
     CD = c * u
     D = CD - 1j * f
     vD = 1j * omega3 * CD
@@ -168,7 +168,6 @@ def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at:
     return {
         "A.x": A, "A.v": vA, "A.a": aA, "D.x": D, "D.v": vD, "D.a": aD, "E.x": E, "E.v": vE, "E.a": aE,
         **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(5)},
-        "3.omega": omega3, "4.omega": omega4, "3.epsilon": epsilon3, "4.epsilon": epsilon4, "slide.v": slide,
-        "slide.a": along, "R.A": RA, "R.23": Q, "M.23": couple2, "R.C": RC, "R.D": RD, "R.E": RE, "N": N,
-        "M.5": couple5, "R.O": RO, "T": T,
+        "3.omega": omega3, "4.omega": omega4, "3.epsilon": epsilon3, "4.epsilon": epsilon4, "R.A": RA,
+        "R.A'": Q, "M.A'": couple2, "R.C": RC, "R.D": RD, "R.E": RE, "R.x": N, "M.x": couple5, "R.O": RO, "T.1": T,
     }  # fmt: skip

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.bench.accuracy import CLOCK, machine
-from tmm_cli.bench.speed import SLACK_WHEN_REDUCED, by_turns
+from tmm_cli.bench.measured import CLOCK, Measured
+from tmm_cli.bench.speed import by_turns
 from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.search import search_of
-from tmm_cli.synthesis.candidates import Search
-from tmm_cli.synthesis.optimal import best
+from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.optimal.solver import best
+from tmm_cli.synthesis.reading import task_of
 from tmm_cli.variants.taped import Taped
 
 SEARCHED = "crank-rocker"  # whose search is measured, and whose speed has a target
@@ -25,7 +25,6 @@ GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itse
 PER_SECOND = 100_000.0  # candidates, at the size that the search uses
 NEAR = 1e-3  # of the best known
 SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
-LONG_RUNS, LONGER = 10, 4  # for the best known: so many times the population in so many times the generations
 
 
 @dataclass(frozen=True)
@@ -65,15 +64,12 @@ class Found:
 
 
 @dataclass(frozen=True)
-class Searches:
+class Searches(Measured):
     """The whole measurement. known: what the long runs found (`known`)."""
 
     rates: tuple[Rate, ...]
     found: tuple[Found, ...]
     known: dict[str, Any]
-    reduced: bool
-    absent: tuple[str, ...] = ()
-    machine: dict[str, str] = field(default_factory=dict)
 
     @property
     def near(self) -> int:
@@ -87,10 +83,9 @@ class Searches:
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
         slow = [
             f"{r.problem}, generations of {r.generation}: {r.per_second:.0f} candidates a second, target {r.target:.0f}"
-            for r in self.rates if r.target is not None and r.per_second < r.target / slack
+            for r in self.rates if r.target is not None and r.per_second < r.target / self.slack
         ]  # fmt: skip
         if self.near < self.wanted:
             near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
@@ -99,10 +94,8 @@ class Searches:
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
-        return asdict(self) | {
-            "found": [asdict(one) | {"near": one.near} for one in self.found],
-            "near": self.near, "wanted": self.wanted, "failures": list(self.failures),
-        }  # fmt: skip
+        found = [asdict(one) | {"near": one.near} for one in self.found]
+        return super().to_dict() | {"found": found, "near": self.near, "wanted": self.wanted}
 
 
 @cache
@@ -121,7 +114,7 @@ def known() -> dict[str, Any]:
 
 def prepared(name: str) -> Search:
     """The task of a problem by its name, ready for evaluation."""
-    return Search(search_of(read_text(text(name), f"{name}.yaml")))
+    return Search(task_of(read_text(text(name), f"{name}.yaml")))
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
@@ -136,7 +129,7 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
     for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
         progress(f"{SEARCHED}, seed {seed}")
         found.append(searched(search, seed, reference["objective"]))
-    return Searches(tuple(rates), tuple(found), reference, reduced, (), machine())
+    return Searches(tuple(rates), tuple(found), reference, reduced=reduced)
 
 
 def rate(name: str, reduced: bool) -> list[Rate]:
@@ -150,7 +143,7 @@ def rate(name: str, reduced: bool) -> list[Rate]:
         seconds = by_turns({"": lambda: search.evaluate(x)}, reduced)[""]  # noqa: B023
         target = PER_SECOND if name == SEARCHED and size == search.population else None
         found.append(
-            Rate(name, parameters, len(search.limits) - 1, search.asked.positions, _operations(search), size,
+            Rate(name, parameters, len(search.constraints) - 1, search.task.positions, _operations(search), size,
                  size / seconds, target)
         )  # fmt: skip
     return found
@@ -158,7 +151,7 @@ def rate(name: str, reduced: bool) -> list[Rate]:
 
 def _operations(search: Search) -> int:
     """Of the tape, for all of a generation."""
-    return search.coarse.operations if isinstance(search.coarse, Taped) else 0
+    return search.coarse.program.operations if isinstance(search.coarse, Taped) else 0
 
 
 def searched(search: Search, seed: int, known: float) -> Found:
@@ -169,7 +162,7 @@ def searched(search: Search, seed: int, known: float) -> Found:
         if at == of:
             times.append(CLOCK())
 
-    search.asked = replace(search.asked, seed=seed, progress=watch)
+    search.task = replace(search.task, seed=seed, progress=watch)
     one = best(search)
     times.append(CLOCK())
     size = search.population
@@ -181,24 +174,3 @@ def searched(search: Search, seed: int, known: float) -> Found:
         seed, one.values[0], one.missed, one.values[0] / known - 1, size * len(f), times[1] - times[0],
         times[2] - times[1], tuple(history),
     )  # fmt: skip
-
-
-def long_runs(progress: Callable[[str], None] = lambda _: None) -> dict[str, Any]:
-    """The best of long runs of SEARCHED, as `known` reads it."""
-    search = prepared(SEARCHED)
-    population, generations = LONGER * search.population, LONGER * search.generations
-    search.asked = replace(search.asked, population=population, generations=generations)
-    runs = []
-    for seed in range(101, 101 + LONG_RUNS):  # others than those that are measured against them
-        progress(f"{SEARCHED}, long run from seed {seed}")
-        search.asked = replace(search.asked, seed=seed)
-        one = best(search)
-        runs.append(
-            (one.missed, one.values[0], seed, [float(v) for v in one.numbers], population * len(one.evolved.history))
-        )
-    _, objective, seed, numbers, _ = min(runs)
-    return {
-        "problem": SEARCHED, "objective": objective, "numbers": dict(zip(search.asked.low, numbers, strict=True)),
-        "seed": seed, "population": population, "generations": generations,
-        "runs": [{"seed": s, "objective": f, "missed": m, "evaluations": n} for m, f, s, _, n in runs],
-    }  # fmt: skip

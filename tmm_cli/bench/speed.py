@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Unable
-from tmm_cli.batch import Batch, everything, prepare
-from tmm_cli.bench.accuracy import CLOCK, machine
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.chains import chain
+from tmm_cli.bench.measured import Measured, times
+from tmm_cli.bench.methods import taped
+from tmm_cli.bench.methods.case import Unable
 from tmm_cli.bench.references import reference
+from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
-from tmm_cli.motion import Motion
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.variants.batch import Batch, prepare
 from tmm_cli.vectors import Real
 
 POSITIONS = (12, 360, 36_000)
@@ -28,11 +30,13 @@ LEAST = 2e-3  # s: what is quicker is repeated in one turn
 TARGETS = {(1, 360): 1.3, (1, 36_000): 1.0, (10_000, 12): 1.3}  # ours over by hand, by (variants, positions)
 RIVALS = {"pylinkage": 3.0, "kinepy": 30.0}  # theirs over ours, at least
 EXPONENT = 0.05  # growth may differ so much from linear
-SLACK_WHEN_REDUCED = 2.0
 
 DYADS = (1, 2, 3, 5, 8, 12, 18, 24, 30)
-GROWING = {"links": DYADS, "positions": (360, 1000, 3000, 9000, 18_000, 36_000, 72_000),
-           "variants": (30, 100, 300, 1000, 3000, 10_000)}  # fmt: skip
+GROWING = {  # what grows, and the numbers that are measured
+    "links": (_("moving links"), DYADS),
+    "positions": (_("positions"), (360, 1000, 3000, 9000, 18_000, 36_000, 72_000)),
+    "variants": (_("variants"), (30, 100, 300, 1000, 3000, 10_000)),
+}
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class Rival:
-    """Another program on a mechanism: nanoseconds a position of both, each giving what it can."""
+    """Another program on a mechanism: nanoseconds a position of both, the product giving what the other gives."""
 
     name: str
     mechanism: str
@@ -81,44 +85,39 @@ class Rival:
 
 
 @dataclass(frozen=True)
-class Speed:
+class Speed(Measured):
     """The whole measurement."""
 
     races: tuple[Race, ...]
     growths: tuple[Growth, ...]
     rivals: tuple[Rival, ...]
-    absent: tuple[str, ...]
-    reduced: bool
-    machine: dict[str, str] = field(default_factory=dict)
 
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        slack = SLACK_WHEN_REDUCED if self.reduced else 1.0
         found = [
             f"{r.mechanism}, {r.variants} x {r.positions}: {r.ratio:.2f} times the code by hand, target {r.target:g}"
-            for r in self.races if r.target is not None and r.ratio > slack * r.target
+            for r in self.races if r.target is not None and r.ratio > self.slack * r.target
         ]  # fmt: skip
         found += [
             f"growth with {g.what}: exponent {g.exponent:.3f}, target 1 +- {EXPONENT:g}"
-            for g in self.growths if abs(g.exponent - 1) > slack * EXPONENT
+            for g in self.growths if abs(g.exponent - 1) > self.slack * EXPONENT
         ]  # fmt: skip
         found += [
             f"{r.name}, {r.mechanism}: {r.ratio:.1f} times as long, target {RIVALS[r.name]:g}"
-            for r in self.rivals if r.ratio < RIVALS[r.name] / slack
+            for r in self.rivals if r.ratio < RIVALS[r.name] / self.slack
         ]  # fmt: skip
         return tuple(found)
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
-        return asdict(self) | {
+        return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
             "rivals": [asdict(r) | {"ratio": r.ratio, "target": RIVALS[r.name]} for r in self.rivals],
-            "failures": list(self.failures),
         }
 
 
-def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Speed:
+def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
     """All in one process, by turns, so that what disturbs the machine disturbs all alike."""
     races: list[Race] = []
     for mechanism in MECHANISMS:
@@ -129,7 +128,7 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
         progress(what)
         growths.append(growth(what, reduced))
     rivals, absent = against_rivals(reduced, progress)
-    return Speed(tuple(races), tuple(growths), rivals, absent, reduced, machine())
+    return Speed(tuple(races), tuple(growths), rivals, reduced=reduced, absent=absent)
 
 
 def race(mechanism: Mechanism, reduced: bool) -> list[Race]:
@@ -144,31 +143,18 @@ def race(mechanism: Mechanism, reduced: bool) -> list[Race]:
         ours(q)
         preparing = 1e3 * (perf_counter() - start)
         by_hand = mechanism.by_hand(linkages)
-        times = by_turns({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, reduced)  # noqa: B023
+        least = by_turns({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, reduced)  # noqa: B023
         share = 1e9 / (variants * positions)
         found.append(
-            Race(mechanism.name, variants, positions, times["ours"] * share, times["hand"] * share, preparing)
+            Race(mechanism.name, variants, positions, least["ours"] * share, least["hand"] * share, preparing)
         )  # fmt: skip
     return found
 
 
 def by_turns(runs: Mapping[str, Callable[[], Any]], reduced: bool) -> dict[str, float]:
     """Seconds of each, the least of its turns: the one that was disturbed least."""
-    turns = REDUCED_TURNS if reduced else TURNS
-    often = {}
-    for name, run in runs.items():
-        run()
-        start = CLOCK()
-        run()
-        often[name] = max(1, int(LEAST / max(CLOCK() - start, 1e-9)))
-    best = dict.fromkeys(runs, np.inf)
-    for _ in range(turns):
-        for name, run in runs.items():
-            start = CLOCK()
-            for _ in range(often[name]):
-                run()
-            best[name] = min(best[name], (CLOCK() - start) / often[name])
-    return {name: float(seconds) for name, seconds in best.items()}
+    found = times(runs, REDUCED_TURNS if reduced else TURNS, LEAST)
+    return {name: float(min(seconds)) for name, seconds in found.items()}
 
 
 def growth(what: str, reduced: bool) -> Growth:
@@ -177,7 +163,7 @@ def growth(what: str, reduced: bool) -> Growth:
     Of the balancing moment, for which all groups are walked forward and backward; what is large is the work, not the
     results, which would soon measure the memory.
     """
-    numbers = GROWING[what][:-1] if reduced else GROWING[what]
+    numbers = GROWING[what][1][:-1] if reduced else GROWING[what][1]
     six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
     runs: dict[str, Callable[[], Any]] = {}
     for number in numbers:
@@ -192,7 +178,7 @@ def growth(what: str, reduced: bool) -> Growth:
     return Growth(what, tuple(size), seconds, exponent(size, seconds))
 
 
-def _balancing(_: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+def _balancing(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     assert reactions is not None
     return {"T": reactions.balance.generalized}
 
@@ -229,12 +215,12 @@ def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tupl
             progress(f"{method.name}, {mechanism.name}")
             case = reference(mechanism.name).case
             try:
-                solver = method.prepare(case)
+                solver = (method.alone or method.prepare)(case)
             except Unable as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
             q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360
-            batch = prepare(case.linkage, everything, forces=method.name != "pylinkage", strokes=case.strokes)
-            times = by_turns({"theirs": lambda: solver(q), "ours": lambda: batch(q)}, reduced)  # noqa: B023
-            found.append(Rival(method.name, mechanism.name, times["theirs"] * 1e9 / 360, times["ours"] * 1e9 / 360))
+            ours = taped.batch(case, forces=method.solve(case, q).reactions is not None)
+            least = by_turns({"theirs": lambda: solver(q), "ours": lambda: ours(q)}, reduced)  # noqa: B023
+            found.append(Rival(method.name, mechanism.name, least["theirs"] * 1e9 / 360, least["ours"] * 1e9 / 360))
     return tuple(found), tuple(absent)

@@ -7,8 +7,6 @@ method says so by raising, by nan, or by not converging; ours by a bound that is
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -16,13 +14,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_cli.accuracy import textbook
-from tmm_cli.accuracy.case import QUANTITIES, Answers, Case, Method, Quantity, Unable
 from tmm_cli.accuracy.digits import bare, bounds
-from tmm_cli.accuracy.methods import METHODS
 from tmm_cli.bench.families import BY_NAME
+from tmm_cli.bench.measured import Measured
+from tmm_cli.bench.methods import textbook
+from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
+from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.truths import Known, known
-from tmm_cli.refused import Refused
+from tmm_cli.errors import LinkageError
 from tmm_cli.vectors import Real
 
 OURS = "tmm"
@@ -52,7 +51,7 @@ class Shot:
 
     method: str
     verdict: Verdict
-    errors: dict[Quantity, float]
+    errors: dict[Compared, float]
     why: str = ""
     bound: float = float("nan")
     widths: tuple[float, ...] = ()
@@ -74,7 +73,7 @@ class Row:
     said: int
     wrong: int
     astray: int
-    errors: dict[Quantity, float]
+    errors: dict[Compared, float]
     bound: float = float("nan")
     why: tuple[str, ...] = ()
 
@@ -86,13 +85,11 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Stability:
+class Stability(Measured):
     """The whole measurement. widths: of all bounds of ours, over the true errors."""
 
     rows: tuple[Row, ...]
     widths: tuple[float, ...]
-    reduced: bool
-    absent: tuple[str, ...] = ()
 
     @property
     def families(self) -> tuple[str, ...]:
@@ -138,18 +135,16 @@ class Stability:
             "reduced": self.reduced, "absent": list(self.absent), "failures": list(self.failures),
         }  # fmt: skip
 
-    def to_csv(self) -> str:
+    def lines(self) -> list[Sequence[object]]:
         """A line a family, method and distance."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(
+        lines: list[Sequence[object]] = [
             ["family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound"]
-        )
+        ]
         for row in self.rows:
             found = ["" if np.isnan(e) else f"{e:.3g}" for e in (*(row.errors[q] for q in QUANTITIES), row.bound)]
             counts = [row.scenes, row.right, row.said, row.wrong, row.astray]
-            writer.writerow([row.family, row.method, f"{row.distance:g}", *counts, *found])
-        return stream.getvalue()
+            lines.append([row.family, row.method, f"{row.distance:g}", *counts, *found])
+        return lines
 
 
 def _plain(value: float) -> float | None:
@@ -162,7 +157,7 @@ def measure(
     reduced: bool = False,
     methods: Iterable[Method] | None = None,
     own: bool = True,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda __: None,
 ) -> Stability:
     """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
     fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in NAIVE]
@@ -176,18 +171,18 @@ def measure(
         shots: dict[tuple[str, float], list[Shot]] = {}
         for at, case, solvers in _prepared(known(family, *some), chosen, absent):
             mine = (ours(case, at),) if own else ()
-            for shot in (*mine, *(_shoot(method, solver, at) for method, solver in solvers.items())):
+            for shot in (*mine, *(judged(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
                 widths += shot.widths
         rows += [_row(family, *key, found) for key, found in shots.items()]
-    return Stability(tuple(rows), tuple(widths), reduced, tuple(absent))
+    return Stability(tuple(rows), tuple(widths), reduced=reduced, absent=tuple(absent))
 
 
 def _prepared(
     scenes: Iterable[Known], methods: tuple[Method, ...], absent: dict[str, None]
 ) -> Iterator[tuple[Known, Case, dict[Method, Solver | Exception]]]:
     """Scenes with what is made ready of their linkage, once where it is the same at all distances."""
-    for _, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
+    for __, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
         of_one = list(group)
         case = Case.of(of_one[0].scene.linkage)
         solvers: dict[Method, Solver | Exception] = {}
@@ -197,7 +192,7 @@ def _prepared(
                     solvers[method] = method.prepare(case)
             except Unable as error:
                 absent[f"{method.name}: {of_one[0].family.name}: {error}"] = None
-            except (ArithmeticError, ValueError, Refused, np.linalg.LinAlgError) as error:
+            except (ArithmeticError, ValueError, LinkageError, np.linalg.LinAlgError) as error:
                 solvers[method] = error
         for at in of_one:
             yield at, case, solvers
@@ -209,14 +204,15 @@ def limit(method: Method) -> float:
     return max(WRONG, stated)
 
 
-def _shoot(method: Method, solver: Solver | Exception, at: Known) -> Shot:
-    nothing: dict[Quantity, float] = dict.fromkeys(QUANTITIES, float("nan"))
+def judged(method: Method, solver: Solver | Exception, at: Known) -> Shot:
+    """What a method answers in a scene, or why it does not: its errors and what to think of them."""
+    nothing: dict[Compared, float] = dict.fromkeys(QUANTITIES, float("nan"))
     try:
         if isinstance(solver, Exception):
             raise solver
         with np.errstate(all="ignore"):
             found = solver(np.array([at.scene.q]))
-    except (ArithmeticError, ValueError, IndexError, AssertionError, Refused, np.linalg.LinAlgError) as error:
+    except (ArithmeticError, ValueError, IndexError, AssertionError, LinkageError, np.linalg.LinAlgError) as error:
         return Shot(method.name, "said", nothing, type(error).__name__)
     values = {quantity: _watched(found, quantity, at) for quantity in QUANTITIES}
     if not all(np.isfinite(value) for value in values.values() if value is not None):
@@ -232,11 +228,11 @@ def _shoot(method: Method, solver: Solver | Exception, at: Known) -> Shot:
     return Shot(method.name, "astray" if astray else "wrong", errors)
 
 
-def _off(value: Any, quantity: Quantity, at: Known) -> float:
+def _off(value: Any, quantity: Compared, at: Known) -> float:
     return float(abs(value - at.exact[quantity]) / at.largest[quantity])
 
 
-def _watched(found: Answers, quantity: Quantity, at: Known) -> Any:
+def _watched(found: Answers, quantity: Compared, at: Known) -> Any:
     series = found.series(quantity)
     name = {"reactions": at.scene.pair, "balancing": "balancing"}.get(quantity, at.scene.point)
     return None if series is None else series[name][0]
@@ -250,11 +246,11 @@ def ours(case: Case, at: Known) -> Shot:
     assert results.reactions is not None
     reaction = results.reactions.of(at.scene.pair)
     sense = 1 if reaction.on == reaction.pair.j else -1
-    keys: dict[Quantity, tuple[str, str]] = {
+    keys: dict[Compared, tuple[str, str]] = {
         "positions": ("x", at.scene.point), "velocities": ("v", at.scene.point), "accelerations": ("a", at.scene.point),
         "reactions": ("force", at.scene.pair), "balancing": ("balancing", case.linkage.driver.link),
     }  # fmt: skip
-    errors: dict[Quantity, float] = {}
+    errors: dict[Compared, float] = {}
     widths: list[float] = []
     within, given, widest = True, True, 0.0
     for quantity, key in keys.items():
@@ -282,7 +278,7 @@ def ours(case: Case, at: Known) -> Shot:
 
 
 def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
-    errors: dict[Quantity, float] = {}
+    errors: dict[Compared, float] = {}
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
         errors[quantity] = max(given, default=float("nan"))

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import QUANTITIES, Quantity
 from tmm_cli.bench.families import BY_NAME, Family, Numbers, Scene
+from tmm_cli.bench.methods.case import QUANTITIES, Compared
 
-KEYS: dict[Quantity, str] = {
+KEYS: dict[Compared, str] = {
     "positions": "position", "velocities": "velocity", "accelerations": "acceleration", "reactions": "reaction",
     "balancing": "balancing",
 }  # fmt: skip
@@ -32,8 +32,8 @@ class Known:
     seed: int
     distance: Decimal
     scene: Scene
-    exact: Mapping[Quantity, Any]
-    largest: Mapping[Quantity, float]
+    exact: Mapping[Compared, Any]
+    largest: Mapping[Compared, float]
     other: Any
 
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.errors import _
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from tmm_cli.bench.measured import Measured
     from tmm_cli.results.table import Table
 
 Reduced = Annotated[bool, typer.Option("--reduced", help="A shorter measurement; its targets are twice as wide.")]
@@ -22,79 +26,69 @@ Out = Annotated[
 ]
 
 
-class Measured(Protocol):
-    """What a measurement tells: its content as JSON, the targets it misses, what could not be measured."""
-
-    @property
-    def failures(self) -> Sequence[str]: ...
-
-    @property
-    def absent(self) -> Sequence[str]: ...
-
-    def to_dict(self) -> dict[str, Any]: ...
-
-
-def chosen(asked: Sequence[str] | None, names: Iterable[str], key: str) -> list[str]:
-    """Those asked for, or all; an unknown one ends the command. key: of the words for that."""
-    from tmm_cli.words import say as word
-
+def chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
+    """Those asked for, or all; an unknown one ends the command with the words for that (of {name} and {names})."""
     known = list(names)
     found = list(dict.fromkeys(asked or known))
     for name in found:
         if name not in known:
-            say("error: " + word(key, name=name, names=", ".join(known)))
+            say("error: " + unknown.format(name=name, names=", ".join(known)))
             raise typer.Exit(BAD_INPUT)
     return found
 
 
-def show(tables: Iterable[Table]) -> None:
-    """Tables on the terminal."""
-    from tmm_cli.problem.units import UnitSystem
-    from tmm_cli.results.terminal import show as print_table
+def table(name: str, title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """A table of words."""
+    from tmm_cli.results.table import Column, Table
 
-    for table in tables:
-        print_table(table, UnitSystem(), console())
+    return Table(name, title, tuple(Column(header, [row[k] for row in rows]) for k, header in enumerate(headers)))
 
 
 def finish(
-    name: str, measured: Measured, tables: Callable[[], Iterable[Table]], charts: Callable[[], Mapping[str, Figure]],
-    out: Path | None, *, as_json: bool, more: Iterable[str] = (),
+    name: str, measured: Measured, tables: Sequence[Table], charts: Callable[[], Mapping[str, Figure]],
+    out: Path | None, *, as_json: bool, more: Iterable[str] = (), met: str = _("all targets met"),
 ) -> NoReturn:  # fmt: skip
-    """Show tables or JSON, write name.json, name.csv where there is one and the charts; then the verdict.
+    """Show tables or JSON, write name.json, charts, name.csv of the lines or of the one table; then the verdict.
 
-    more: lines said before the verdict.
+    charts: by the names of their files; more: lines said before the verdict; met: the verdict when nothing is missed.
     """
-    from tmm_cli.words import say as word
-
     if as_json:
         emit_json(measured.to_dict())
     else:
-        show(tables())
+        from tmm_cli.problem.units import UnitSystem
+        from tmm_cli.results.terminal import show
+
+        for each in tables:
+            show(each, UnitSystem(), console())
     if out is not None:
         try:
-            say(word(f"{name}.written", files=_write(name, measured, charts(), out)))
+            say(_("written: {files}").format(files=_write(name, measured, tables, charts(), out)))
         except OSError as error:
             say(f"error: {error.filename or out}: {error.strerror}")
             raise typer.Exit(BAD_INPUT) from None
     for line in (*measured.absent, *more):
         say(line)
     for failure in measured.failures:
-        say(word(f"{name}.missed", what=failure))
+        say(_("target missed: {what}").format(what=failure))
     if not measured.failures:
-        say(word(f"{name}.met"))
+        say(met)
     raise typer.Exit(CHECK_FAILED if measured.failures else OK)
 
 
-def _write(name: str, measured: Measured, charts: Mapping[str, Figure], folder: Path) -> str:
-    from tmm_cli.draw.sheet import picture
+def _write(name: str, measured: Measured, tables: Sequence[Table], charts: Mapping[str, Figure], folder: Path) -> str:
+    from tmm_cli.draw.formats import FORMATS
+    from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.files import write_whole
-    from tmm_cli.results.text import json_bytes
+    from tmm_cli.results.text import csv_text, json_bytes
 
     contents = {f"{name}.json": json_bytes(measured.to_dict())}
-    to_csv = getattr(measured, "to_csv", None)
-    if to_csv is not None:
-        contents[f"{name}.csv"] = to_csv().encode()
-    contents |= {f"{chart}.png": picture(figure, "png") for chart, figure in charts.items()}
+    lines = io.StringIO()
+    csv.writer(lines, lineterminator="\n").writerows(measured.lines())
+    if lines.getvalue():
+        contents[f"{name}.csv"] = lines.getvalue().encode()
+    elif len(tables) == 1:
+        contents[f"{name}.csv"] = "".join(csv_text(tables[0], UnitSystem())).encode()
+    contents |= {file: FORMATS[file.rpartition(".")[2]](figure) for file, figure in charts.items()}
     for file, content in contents.items():
         write_whole(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
+from tmm_cli import __version__
 from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, _progress, console, say
+from tmm_cli.errors import _
 
 if TYPE_CHECKING:
     from tmm_cli.results.compare import Difference
 
 TOLERANCE = 1e-9
-Outcome = tuple[str, str, "list[Difference]"]  # problem, what is wrong as a whole, what differs
+
+
+class Outcome(NamedTuple):
+    """A problem, what is wrong with it as a whole, what differs, and the exit code of that."""
+
+    name: str
+    wrong: str = ""
+    different: Sequence[Difference] = ()
+    code: int = OK
 
 
 def check(
@@ -26,52 +37,54 @@ def check(
 ) -> None:
     """Compute every problem again and compare it with expected/<problem>.json beside it.
 
-    Every quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the
-    expected file. Exit code 1 when something differs.
+    What is expected is a golden run: what an earlier version computed. Every quantity of result.json is compared,
+    relative to its largest value in the cycle; the tolerance is in the expected file. Exit code 1 when something
+    differs.
     """
     files = [f for path in paths for f in (sorted(path.glob("*.yaml")) if path.is_dir() else [path])]
     if not files:
-        say(f"error: no problems (*.yaml) in {', '.join(map(str, paths))}")
+        folders = ", ".join(map(str, paths))
+        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
         raise typer.Exit(BAD_INPUT)
-    outcomes, worst = [], OK
-    for name in _progress([str(f) for f in files]):
-        code, outcome = _one(Path(name), update)
-        outcomes.append(outcome)
-        worst = max(worst, code)
+    outcomes = [_one(Path(name), update) for name in _progress([str(f) for f in files])]
     _show(outcomes)
     if junit is not None:
         from tmm_cli.results.files import write_whole
 
         write_whole(junit, _junit(outcomes))
-    say(f"{len(outcomes)} problems, {sum(bool(o[1] or o[2]) for o in outcomes)} differ")
-    raise typer.Exit(worst)
+    differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
+    say(_("{count} problems, {differing} differ").format(count=len(outcomes), differing=differing))
+    raise typer.Exit(max(outcome.code for outcome in outcomes))
 
 
-def _one(file: Path, update: bool) -> tuple[int, Outcome]:
+def _one(file: Path, update: bool) -> Outcome:
     from tmm_cli.cli.chains import solved_any
     from tmm_cli.problem.errors import ProblemError
     from tmm_cli.results.as_json import to_json
-    from tmm_cli.results.compare import IGNORED, differences
+    from tmm_cli.results.compare import differences, recorded
     from tmm_cli.results.files import write_whole
     from tmm_cli.results.text import json_bytes
 
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     try:
-        computed = to_json(solved_any(str(file), "forces", None))
-        found = {key: part for key, part in computed.items() if key not in IGNORED}
+        found = to_json(solved_any(str(file), "forces", None))
     except ProblemError as error:
-        return BAD_INPUT, (file.stem, str(error), [])
+        return Outcome(file.stem, wrong=str(error), code=BAD_INPUT)
     expected = _read(expected_file)
+    known = isinstance(expected, dict)
     if update:
-        tolerance = expected.get("tolerance", TOLERANCE) if isinstance(expected, dict) else TOLERANCE
-        if not isinstance(expected, dict) or differences(expected["result"], found, 0.0):
-            write_whole(expected_file, json_bytes({"tolerance": tolerance, "result": found}))
-        return OK, (file.stem, "", [])
-    if not isinstance(expected, dict):
-        return CHECK_FAILED, (file.stem, f"{expected_file}: {expected}", [])
-    found = json.loads(json.dumps(found))
+        if not known or expected["result"] != recorded(found):
+            golden = {
+                "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
+                "tolerance": expected["tolerance"] if known else TOLERANCE,
+                "result": recorded(found),
+            }
+            write_whole(expected_file, json_bytes(golden))
+        return Outcome(file.stem)
+    if not known:
+        return Outcome(file.stem, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
     different = differences(expected["result"], found, float(expected["tolerance"]))
-    return (CHECK_FAILED if different else OK), (file.stem, "", different)
+    return Outcome(file.stem, different=different, code=CHECK_FAILED if different else OK)
 
 
 def _read(file: Path) -> Any:
@@ -81,52 +94,43 @@ def _read(file: Path) -> Any:
         float(content["tolerance"])
         content["result"].items()
     except FileNotFoundError:
-        return "there are no expected values; tmm check --update writes them"
+        return _("there are no expected values; tmm check --update writes them")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        return f"this is not a file of expected values ({error})"
+        return _("this is not a file of expected values ({error})").format(error=error)
     return content
 
 
-def _show(outcomes: list[Outcome]) -> None:
+def _show(outcomes: Sequence[Outcome]) -> None:
     from tmm_cli.problem.units import UnitSystem
-    from tmm_cli.results.table import Column, Table
+    from tmm_cli.results.compare import difference_table
     from tmm_cli.results.terminal import show
-    from tmm_cli.words import say as word
 
-    rows = [
-        (name, d.quantity, "" if d.position is None else str(d.position), _brief(d.expected), _brief(d.found),
-         "" if d.size is None else f"{d.size:.2g}")
-        for name, _, different in outcomes for d in different
-    ]  # fmt: skip
-    if rows:
-        keys = ("check.problem", "check.quantity", "word.position", "check.expected", "check.found", "check.relative")
-        columns = tuple(Column(word(key), [row[k] for row in rows]) for k, key in enumerate(keys))
-        show(Table("check", word("check.title"), columns), UnitSystem(), console(), more="table.more_only")
-    for name, wrong, _ in outcomes:
-        if wrong:
-            say(f"error: {name}: {wrong}")
+    table = difference_table({outcome.name: outcome.different for outcome in outcomes})
+    if table.rows:
+        show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
+    for outcome in outcomes:
+        if outcome.wrong:
+            say(_("error: {name}: {wrong}").format(name=outcome.name, wrong=outcome.wrong))
 
 
-def _brief(value: Any) -> str:
-    return f"{value:.15g}" if isinstance(value, float) else str(value)[:60]
-
-
-def _junit(outcomes: list[Outcome]) -> bytes:
+def _junit(outcomes: Sequence[Outcome]) -> bytes:
     from xml.etree import ElementTree
 
-    failures = sum(bool(different) for _, _, different in outcomes)
-    errors = sum(bool(wrong) for _, wrong, _ in outcomes)
+    from tmm_cli.results.compare import brief
+
+    failures = sum(bool(outcome.different) for outcome in outcomes)
+    errors = sum(bool(outcome.wrong) for outcome in outcomes)
     suite = ElementTree.Element(
         "testsuite", name="tmm check", tests=str(len(outcomes)), failures=str(failures), errors=str(errors)
     )
-    for name, wrong, different in outcomes:
+    for name, wrong, different, __ in outcomes:
         case = ElementTree.SubElement(suite, "testcase", classname="problems", name=name)
         if wrong:
             ElementTree.SubElement(case, "error", message=wrong)
         elif different:
             failure = ElementTree.SubElement(case, "failure", message=f"{len(different)} quantities differ")
             failure.text = "\n".join(
-                f"{d.quantity}: expected {_brief(d.expected)}, found {_brief(d.found)}" for d in different[:50]
+                f"{d.quantity}: expected {brief(d.expected)}, found {brief(d.found)}" for d in different[:50]
             )
     xml: bytes = ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True)
     return xml

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from tmm_cli.errors import _
+
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from tmm_cli.chain import ChainResults
-    from tmm_cli.pipeline import Results, Stage
-    from tmm_cli.results.digits import Trusted
+    from tmm_cli.analysis.pipeline import Results, Stage
+    from tmm_cli.analysis.spatial_chain import ChainResults
+    from tmm_cli.results.digits import AccuracyReport
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 
@@ -55,8 +58,6 @@ def each(
     out: where each of them has a folder of its name, so that no two may have the same. headed: the tables of each of
     several files come under its name. Bad input is one message and does not keep the other files from being worked on.
     """
-    from tmm_cli.problem.errors import ProblemError
-
     worst = OK
     if out is not None:
         _refuse_one_name(files)
@@ -64,29 +65,48 @@ def each(
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")
         try:
-            code = work(file)
-        except ProblemError as error:
-            if as_json:
-                emit_json({"error": error.to_dict()})
-            say(f"error: {error}")
-            code = BAD_INPUT
-        except OSError as error:
-            say(f"error: {error.filename or file}: {error.strerror}")
-            code = BAD_INPUT
+            with refusing(as_json, file):
+                code = work(file)
+        except typer.Exit as refused:
+            code = refused.exit_code
         worst = max(worst, code)
     raise typer.Exit(worst)
+
+
+@contextmanager
+def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
+    """Bad input inside is one message, with --json as JSON too. Raises typer.Exit.
+
+    name: of what is read or written, where the system does not say it.
+    """
+    from tmm_cli.problem.errors import ProblemError
+
+    try:
+        yield
+    except ProblemError as error:
+        if as_json:
+            emit_json({"error": error.to_dict()})
+        say(_("error: {error}").format(error=error))
+        raise typer.Exit(BAD_INPUT) from None
+    except OSError as error:
+        say(_("error: {error}").format(error=f"{error.filename or name}: {error.strerror}"))
+        raise typer.Exit(BAD_INPUT) from None
 
 
 def _refuse_one_name(files: Sequence[str]) -> None:
     """Files whose results would take the place of one another's end the command before its work."""
     from tmm_cli.results.files import folder_name
-    from tmm_cli.words import say as word
 
     first: dict[str, str] = {}
     for file in files:
         folder = folder_name(Path(file).stem)
         if folder in first and Path(first[folder]).resolve() != Path(file).resolve():
-            say("error: " + word("command.one_name", first=first[folder], second=file, folder=folder))
+            say(
+                _(
+                    "error: {first} and {second} have one name, so that the results of both would go to the folder "
+                    "{folder}: name them differently, or compute them one by one"
+                ).format(first=first[folder], second=file, folder=folder)
+            )
             raise typer.Exit(BAD_INPUT)
         first[folder] = file
 
@@ -112,7 +132,7 @@ def emit_json(content: dict[str, Any]) -> None:
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
 
 
-def emit_results(results: Results | ChainResults, digits: Trusted | None = None) -> None:
+def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
     """The content of result.json on standard output, as it comes."""
     from tmm_cli.results.as_json import sections
     from tmm_cli.results.text import json_text
@@ -120,13 +140,13 @@ def emit_results(results: Results | ChainResults, digits: Trusted | None = None)
     sys.stdout.writelines(json_text(sections(results, digits)))
 
 
-def judged(results: Results) -> Trusted | None:
-    """How far each number is to be trusted; None where nothing moves."""
+def bounds_of(results: Results, digits: bool) -> AccuracyReport | None:
+    """How far each number is to be trusted, with `digits` in full; None where nothing moves."""
     if results.motion is None:
         return None
-    from tmm_cli.results.digits import trusted
+    from tmm_cli.results.digits import accuracy
 
-    return trusted(results)
+    return accuracy(results, digits)
 
 
 def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False) -> int:
@@ -134,24 +154,47 @@ def report(results: Results, names: Iterable[str], as_json: bool, out: Path | No
 
     digits: show bounds and sensitivities beside the values.
     """
-    found = judged(results)
+    found = bounds_of(results, digits)
     if as_json:
         emit_results(results, found)
     else:
-        show(results, names, found, digits)
+        show(results, names, found)
     if out is not None:
         from tmm_cli.results.output import write_results
 
-        say(f"written: {write_results(results, out, digits=found)}")
+        say(_("written: {folder}").format(folder=write_results(results, out, digits=found)))
     if results.motion is not None:
         from tmm_cli.results.warnings import warnings
 
         for warning in warnings(results):
-            say(f"warning: {warning}")
-    return OK if results.sound else CHECK_FAILED
+            say(_("warning: {warning}").format(warning=warning))
+    return checked(results)
 
 
-def show(results: Results, names: Iterable[str], found: Trusted | None = None, digits: bool = False) -> None:
+def checked(results: Results) -> int:
+    """The exit code: whether the lever holds, and what a synthesis asked."""
+    if results.motion is None:
+        return OK  # of the structure alone there is nothing to check
+    from tmm_cli.synthesis.check import measured_on
+
+    return OK if results.lever_holds and all(m.met for m in measured_on(results)) else CHECK_FAILED
+
+
+def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:
+    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
+    from tmm_cli.results.files import folder_name, write_whole
+    from tmm_cli.results.output import write_results
+
+    if out is not None:
+        say(_("written: {folder}").format(folder=write_results(results, out, pictures.items())))
+    elif pictures:
+        folder = Path("outputs") / folder_name(results.problem.name)
+        for name, content in pictures.items():
+            write_whole(folder / name, content)
+        say(_("written: {folder}").format(folder=folder))
+
+
+def show(results: Results, names: Iterable[str], found: AccuracyReport | None = None) -> None:
     """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
     from tmm_cli.results.reports import walk
     from tmm_cli.results.terminal import show as print_table
@@ -159,10 +202,10 @@ def show(results: Results, names: Iterable[str], found: Trusted | None = None, d
     screen = console()
     shown = walk(results, set(names))
     if found is not None:
-        from tmm_cli.results.digits import beside, judged_tables
+        from tmm_cli.results.digits import beside, with_bounds
 
-        shown = judged_tables(shown, found)
-        shown = map(beside, shown) if digits else (table for table in shown if table.name in names)
+        shown = with_bounds(shown, found)
+        shown = map(beside, shown) if found.full else shown
     for table in shown:
         print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
 

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import BAD_INPUT, say
+from tmm_cli.cli.common import refusing, say
+from tmm_cli.errors import _
 
 
 def new(
@@ -17,7 +18,7 @@ def new(
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
-    from tmm_cli.problem.errors import nearest
+    from tmm_cli.problem.errors import ProblemError, nearest
     from tmm_cli.problem.templates import template_text, templates
 
     known = templates()
@@ -25,23 +26,19 @@ def new(
         for name, title in known.items():
             typer.echo(f"{name:15} {title}")
         return
-    if template not in known:
-        near = nearest(template, known)
-        say(f"error: there is no template '{template}'\n  allowed: {', '.join(known)}"
-            + (f"\n  did you mean '{near}'?" if near else ""))  # fmt: skip
-        raise typer.Exit(BAD_INPUT)
-    text = template_text(template)
-    if out is not None and str(out) == "-":
-        typer.echo(text, nl=False)
-        return
-    file = out or Path(f"{template}.yaml")
-    try:
+    with refusing():
+        if template not in known:
+            raise ProblemError(
+                _("there is no template '{template}'").format(template=template), allowed=", ".join(known),
+                near=nearest(template, known),
+            )  # fmt: skip
+        text = template_text(template)
+        if str(out) == "-":
+            typer.echo(text, nl=False)
+            return
+        file = out or Path(f"{template}.yaml")
+        if file.exists():
+            raise ProblemError(_("{file} is there already").format(file=file), allowed=_("another file, with -o"))
         with file.open("x", encoding="utf-8") as stream:
             stream.write(text)
-    except FileExistsError:
-        say(f"error: {file} is there already; name another file with -o")
-        raise typer.Exit(BAD_INPUT) from None
-    except OSError as error:
-        say(f"error: {file}: {error.strerror}")
-        raise typer.Exit(BAD_INPUT) from None
-    say(f"written: {file}; next: tmm run {file}")
+    say(_("written: {file}; next: tmm run {file}").format(file=file))

@@ -14,10 +14,11 @@ def schema(
     from tmm_cli.cli.common import emit_json
 
     if result:
-        from tmm_cli.results.json_schema import result_schema
+        from tmm_cli.results.as_json import schema as result_schema
 
         emit_json(result_schema())
     else:
         from tmm_cli.problem.json_schema import file_schema
+        from tmm_cli.synthesis import TASKS, block
 
-        emit_json(file_schema())
+        emit_json(file_schema(block(task).Shape for task in TASKS))

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tmm_cli.cli.chains import report_chain, solved_any
-from tmm_cli.cli.common import Files, Json, Out, each, report, say
+from tmm_cli.cli.common import Files, Json, Out, each, report, say, write_pictures
+from tmm_cli.errors import _
 
 if TYPE_CHECKING:
-    from tmm_cli.pipeline import Results
+    from tmm_cli.analysis.pipeline import Results
 
 Drawings = Annotated[
     bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")
@@ -31,9 +32,9 @@ def structure(
     names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
-        from tmm_cli.chain import ChainResults
+        from tmm_cli.analysis.spatial_chain import ChainResults
 
-        results = solved_any(file, "structure", None, driver)
+        results = solved_any(file, "structure", None, driver, drafted=not drawings)
         if isinstance(results, ChainResults):
             return report_chain(results, as_json, out)
         code = report(results, names, as_json, None if drawings else out)
@@ -45,19 +46,13 @@ def structure(
 
 
 def _draw(results: Results, out: Path | None) -> None:
-    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
     from tmm_cli.draw import files as drawn
-    from tmm_cli.results.files import folder_name, write_whole
-    from tmm_cli.results.output import write_results
-    from tmm_cli.words import say as words
 
     pictures = dict(drawn(results))
     if not pictures:
-        say(words("groups.not_drawn", problem=results.problem.name))
-    if out is not None:
-        say(f"written: {write_results(results, out, pictures.items())}")
-    elif pictures:
-        folder = Path("outputs") / folder_name(results.problem.name)
-        for name, content in pictures.items():
-            write_whole(folder / name, content)
-        say(f"written: {folder}")
+        say(
+            _("not drawn: the groups of {problem} cannot be assembled at the sketch").format(
+                problem=results.problem.name
+            )
+        )
+    write_pictures(results, out, pictures)

@@ -1,13 +1,11 @@
-"""Cylinders, springs and the arrows of drivers, at a pose of the mechanism."""
+"""Cylinders and springs, at a pose of the mechanism."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-
 import numpy as np
 
-from tmm_cli.draw.sheet import DARK, THIN, Sheet
-from tmm_cli.draw.wheels import Place
+from tmm_cli.draw.sheet import DARK, Sheet, hatch
+from tmm_cli.draw.wheels import Place, direction
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide, Spring
 from tmm_cli.vectors import cross, dot, unit
 
@@ -23,15 +21,15 @@ def cylinders(linkage: Linkage) -> dict[str, Driver]:
 
 
 def cylinder(
-    sheet: Sheet, linkage: Linkage, slide: Slide, place: Place, ways: tuple[float, float], colour: str = DARK
+    sheet: Sheet, linkage: Linkage, slide: Slide, place: Place, way: tuple[float, float], colour: str = DARK
 ) -> tuple[complex, complex]:
-    """A cylinder with its piston and rod; ways: least and largest run of the rod's end (m).
+    """A cylinder with its piston and rod; way: least and largest run of the rod's end (m).
 
     Gives the middle of the barrel (mm) and the direction in which the rod goes out. The barrel begins at the last point
     that the cylinder has behind the rod's end, else a stroke before it; where it cannot hold the stroke (no real one
     could) the piston goes slower than the rod.
     """
-    low, high = (way / sheet.mu for way in ways)
+    low, high = (run / sheet.mu for run in way)
     foot, end = sheet.on(place(slide.carrier, slide.through)), sheet.on(place(slide.runner, slide.at))
     along = direction(slide, place)
     run = float(dot(along, end - foot))
@@ -55,12 +53,6 @@ def cylinder(
     return (back + front) / 2, along
 
 
-def direction(slide: Slide, place: Place) -> complex:
-    """Of a guide, in the drawing: the way in which its run grows."""
-    along = place(slide.carrier, complex(unit(slide.direction))) - place(slide.carrier, 0j)
-    return along / abs(along)
-
-
 def driver_name(driver: Driver, symbol: str) -> str:
     """ω1, or ω21 where the base moves: of link 2 against link 1."""
     return symbol + driver.link + ("" if driver.base == FRAME else driver.base)
@@ -79,7 +71,10 @@ def springs(sheet: Sheet, linkage: Linkage, place: Place) -> None:
         for link, at in ((spring.i, start), (spring.j, end)):
             sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
             if link == FRAME:
-                _wall(sheet, at, (at - start - end + at) / abs(end - start))
+                out = (at - start - end + at) / abs(end - start)
+                low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
+                sheet.line([low, high], DARK, 1.1, z=2.7)
+                hatch(sheet, low, high, out)
         middle = (start + end) / 2
         sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * AMPLITUDE, 9, SPRING)
 
@@ -106,15 +101,6 @@ def _gas(sheet: Sheet, start: complex, end: complex) -> None:
     sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING, 1.1, 3.8)
 
 
-def _wall(sheet: Sheet, at: complex, out: complex) -> None:
-    """A short piece of the frame behind the end of a spring."""
-    side = 1j * out
-    foot = at + 1.0 * out
-    sheet.line([foot - 2.6 * side, foot + 2.6 * side], DARK, 1.1, z=2.7)
-    for k in (-2, -0.7, 0.6, 1.9):
-        sheet.line([foot + k * side, foot + (k - 0.9) * side + 1.5 * out], THIN, 0.6, z=2.4, blocks=False)
-
-
 def _torsion(sheet: Sheet, linkage: Linkage, spring: Spring, place: Place) -> None:
     """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
     point = linkage.shared(spring.i, spring.j)
@@ -129,29 +115,3 @@ def _torsion(sheet: Sheet, linkage: Linkage, spring: Spring, place: Place) -> No
     last = complex(arc[-1])
     sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING, 1.1, z=5.5)
     sheet.label(spring.name, last, 9, SPRING)
-
-
-def driver_arrows(
-    sheet: Sheet, linkage: Linkage, place: Place, drawn: Mapping[str, tuple[complex, complex]], colour: str = DARK
-) -> Iterable[tuple[Driver, complex]]:
-    """An arrow along every driven slider and cylinder; drivers that turn are given back with their pivot (mm).
-
-    drawn: the cylinders that are drawn, by their sliding pair: middle and direction.
-    """
-    turning = []
-    for driver in linkage.drivers:
-        if driver.kind == "turn":
-            turning.append((driver, sheet.on(place(driver.base, linkage.local(driver.base, driver.joint)))))
-            continue
-        slide = linkage.slide(driver.joint)
-        if driver.joint in drawn:
-            middle, along = drawn[driver.joint]
-            along = along * driver.sense
-            foot = middle + 1j * along * (BARREL + 3.2)
-        else:
-            # the run is that of the runner; where the frame is the runner, the driven link goes the other way
-            along = direction(slide, place) * driver.sense * (1 if slide.runner == driver.link else -1)
-            foot = sheet.on(place(slide.runner, slide.at)) + 1j * along * 7.5
-        sheet.arrow(foot - 5 * along, foot + 6 * along, colour, 1.2)
-        sheet.label(driver_name(driver, "v"), foot + 6 * along, 10, colour)
-    return turning

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, aside, extent
+from tmm_cli.draw.labels import Label, aside, extent, row
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
-from tmm_cli.vectors import Vector
+from tmm_cli.vectors import Vector, cross, dot
 
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
 OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
@@ -22,16 +22,13 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
 
     The text of a short one goes on along it, at whichever end is free, or stands beside an upright one.
     """
-    way = end - start
-    way = way if along == 0 else along * float((way * np.conj(along)).real) / abs(along) ** 2
-    length = abs(way)
+    span = end - start if along == 0 else along * float(dot(end - start, along)) / abs(along) ** 2
+    length = abs(span)
     if length < SHORTEST:
         return
-    u = way / length
-    crowd = np.concatenate(sheet.ground.points) if sheet.ground.points else np.zeros(0, complex)
-    label = Label(text, 0j, TEXT, DARK)
-    width, height = extent(label)
-
+    u = span / length
+    crowd = sheet.ground.crowd
+    width, height = extent(Label(text, 0j, TEXT, DARK))
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
@@ -39,8 +36,8 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
-        foot = max((z * np.conj(side)).real for z in (start, end)) + offset
-        first, last = (z + (foot - (z * np.conj(side)).real) * side for z in (start, end))
+        foot = max(dot(z, side) for z in (start, end)) + offset
+        first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
         middle = (first + last) / 2
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
@@ -53,22 +50,12 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
         first, last, middle, v = lines(side, offset, stand)
         outer = 0.0 if inner else 2 * HEAD
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
-        run = ((crowd - first) * np.conj(u)).real
-        off = np.abs(((crowd - first) * np.conj(u)).imag)
-        found = float(np.count_nonzero((run > -low_run - 1) & (run < length + high_run + 1) & (off < 1.5)))
-        found += 2.0 * float(np.count_nonzero(_in_text(crowd, middle, v, width, height)))
-        for z, end_ in ((start, first), (end, last)):
-            deep = ((crowd - z) * np.conj(side)).real
-            beside = np.abs(((crowd - z) * np.conj(side)).imag)
-            found += 0.5 * float(np.count_nonzero((deep > 4) & (deep < abs(end_ - z)) & (beside < 0.8)))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
-        found += 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
-        for a, b, c, d in sheet.ground.boxes:
-            for z in (first, last, middle, middle + v * width / 2, middle - v * width / 2):
-                found += 40.0 * (a - 1 < z.real < b + 1 and c - 1 < z.imag < d + 1)
-        low, high = sheet.ground.low, sheet.ground.high
-        for z in (first, last, middle + v * width / 2, middle - v * width / 2):
-            found += 100.0 * (not (low.real < z.real < high.real and low.imag < z.imag < high.imag))
+        found = 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
+        found += beside(crowd, *stretch, 1.5)
+        found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
+        squares = (first, last, *row(middle, v, width, height))
+        found += sum(sheet.ground.covered(z, height, height, crowd) for z in squares)
         return found + 0.25 * offset + 2.0 * (stand == "before") + 1.0 * (stand == "after")
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
@@ -95,10 +82,11 @@ def up_of(u: complex) -> complex:
     return turned if turned.imag > 1e-6 or (abs(turned.imag) <= 1e-6 and turned.real < 0) else -turned
 
 
-def _in_text(crowd: Vector, middle: complex, u: complex, width: float, height: float) -> Vector:
-    local = (crowd - middle) * np.conj(u)
-    found: Vector = (np.abs(local.real) < width / 2 + 0.6) & (np.abs(local.imag) < height / 2 + 0.4)
-    return found
+def beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
+    """How many points are nearer to a stretch of a line than this, on both sides of it."""
+    along = (end - start) / abs(end - start)
+    run, off = dot(crowd - start, along), np.abs(cross(along, crowd - start))
+    return int(np.count_nonzero((run > 0) & (run < abs(end - start)) & (off < width)))
 
 
 def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:

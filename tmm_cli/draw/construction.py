@@ -9,14 +9,14 @@ import numpy as np
 from tmm_cli.draw.annotations import angle_mark, dimension
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.scheme import BOX, HINGE, STONE, hatch, support
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, THIN, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, THIN, Sheet, border, hatch, scale_text
+from tmm_cli.draw.symbols import MEASURED, box, support
+from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale
-from tmm_cli.problem.dimensions import KINDS
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import KINDS
 from tmm_cli.synthesis.construction import Arc, Centre, Construction, Spot
-from tmm_cli.words import say
 
 STYLES = {  # colour, width, line
     "link": (DARK, 2.2, "-"), "link2": (INERTIA, 2.2, "-"), "thin": (THIN, 0.8, "-"), "dashed": (THIN, 0.7, "--"),
@@ -28,7 +28,6 @@ FINE = 1.0  # mm between places along an arc
 QUIET = 12.0  # mm about a place on a curve that should be free for its name
 ON_EDGE = 1e-6  # mm from the edge of the field: a line is cut there
 ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
-EDGE = 4.0  # mm inside the field where curves are cut
 NAMES = "#7a3d99"
 
 
@@ -38,7 +37,7 @@ def construction(
 ) -> Sheet:  # fmt: skip
     """One sheet; joints are called as in the linkage, parameters by their names in the file."""
     drawn, letters = rename(drawn, linkage, names or {})
-    sheet = Sheet(title, say(drawn.title, **letters), granted(drawn), pad=PAD)
+    sheet = Sheet(title, drawn.title.format(**letters), granted(drawn), pad=PAD)
     sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
     for spot in drawn.spots:
         _spot(sheet, spot)
@@ -68,7 +67,9 @@ def construction(
     _notes(sheet, drawn, letters, units)
     sheet.corner()
     for size in drawn.sizes:
-        text = _value(size.name, *_length(size.start, size.end, size.along), units, symbol=False)
+        way = size.end - size.start
+        length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
+        text = _value(size.name, length, "length", units, symbol=False)
         dimension(sheet, sheet.on(size.start), sheet.on(size.end), text, size.along)
     for spot in drawn.spots:
         if spot.name:
@@ -109,28 +110,12 @@ def inside(places: Sequence[complex], low: complex, high: complex) -> list[list[
     return found
 
 
-def border(inner: complex, outer: complex, low: complex, high: complex) -> complex:
-    """Where the way from a place in a field to another one leaves it."""
-    way, share = outer - inner, 1.0
-    for at, step, least, most in (
-        (inner.real, way.real, low.real, high.real), (inner.imag, way.imag, low.imag, high.imag),
-    ):  # fmt: skip
-        if abs(step) > 1e-12:
-            share = min(share, ((most if step > 0 else least) - at) / step)
-    return inner + max(share, 0.0) * way
-
-
-def field(sheet: Sheet) -> tuple[complex, complex]:
-    """Corners of the field in which curves are drawn, mm."""
-    return sheet.ground.low + EDGE * (1 + 1j), sheet.ground.high - EDGE * (1 + 1j)
-
-
 def _curve(
     sheet: Sheet, whole: Sequence[Sequence[complex]], style: str, name: str = "", *, named: bool = False
 ) -> None:
     """Pieces of one curve, cut at the edge; its name stands where it is alone."""
     colour, width, line = STYLES[style]
-    pieces = [piece for places in whole for piece in inside(places, *field(sheet))]
+    pieces = [piece for places in whole for piece in inside(places, *sheet.field)]
     pieces = [piece for piece in pieces if len(piece) > 1]
     for piece in pieces if not named else ():
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
@@ -139,14 +124,14 @@ def _curve(
             _goes_on(sheet, tip, before, colour)
     if name and named and pieces:
         places = [place for piece in pieces for place in _evenly(piece)]
-        crowd = np.concatenate(sheet.ground.points)
+        crowd = sheet.ground.crowd
         free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < QUIET)), -abs(z)))
         sheet.labels.append(Label(name, free, 10, NAMES, "italic", far=True))
 
 
 def _goes_on(sheet: Sheet, tip: complex, before: Sequence[complex], colour: str) -> None:
     """A small arrow at the end of a line, places before it given, if the edge of the field cuts it there."""
-    low, high = field(sheet)
+    low, high = sheet.field
     if min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag) > ON_EDGE:
         return
     tail = next((z for z in before if abs(z - tip) > ARROW), None)
@@ -157,8 +142,8 @@ def _goes_on(sheet: Sheet, tip: complex, before: Sequence[complex], colour: str)
 def _evenly(piece: Sequence[complex]) -> list[complex]:
     """Places along a line at even ways from each other."""
     z = np.array(piece)
-    way = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
-    return [complex(np.interp(share * way[-1], way, z)) for share in np.linspace(0.1, 0.9, 17)]
+    run = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
+    return [complex(np.interp(share * run[-1], run, z)) for share in np.linspace(0.1, 0.9, 17)]
 
 
 def _along(sheet: Sheet, arc: Arc) -> list[complex]:
@@ -181,7 +166,7 @@ def _along(sheet: Sheet, arc: Arc) -> list[complex]:
 
 def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
     """The centre with lines to it; where it is off the sheet, arrows towards it with its distance."""
-    at, (low, high) = sheet.on(centre.at), field(sheet)
+    at, (low, high) = sheet.on(centre.at), sheet.field
     legs = [sheet.on(leg) for leg in centre.legs]
     if inside([at], low, high):
         for leg in legs:
@@ -191,29 +176,27 @@ def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
         sheet.labels.append(Label(centre.name, at, 11, DARK, far=True))
         sheet.labels.append(Label("R", (legs[0] + at) / 2, 10, NAMES, "italic", (legs[0], at)))
         return
-    text = say("synthesis.to_centre", centre=centre.name, radius=_value("R", centre.radius, "length", units))
+    text = _("to {centre}, {radius}").format(centre=centre.name, radius=_value("R", centre.radius, "length", units))
     inner = low + 3 * (1 + 1j), high - 3 * (1 + 1j)
     tips = [border(leg, at, *inner) for leg in legs]
     for leg, tip in zip(legs, tips, strict=True):
         sheet.line([leg, tip], THIN, 0.7, "--", 1.5)
         if abs(tip - leg) > 6:
             sheet.arrow(tip - 5 * (tip - leg) / abs(tip - leg), tip, DARK, 0.8)
-    way = max(zip(legs, tips, strict=True), key=lambda pair: abs(pair[1] - pair[0]))
-    ahead = way[0] + 0.55 * (way[1] - way[0]), way[1]
+    longest = max(zip(legs, tips, strict=True), key=lambda pair: abs(pair[1] - pair[0]))
+    ahead = longest[0] + 0.55 * (longest[1] - longest[0]), longest[1]
     sheet.labels.append(Label(text, (ahead[0] + ahead[1]) / 2, 9, DARK, line=ahead))
 
 
 def _spot(sheet: Sheet, spot: Spot) -> None:
     at = sheet.on(spot.at)
     if spot.mark in ("slider", "stone"):
-        length, width = BOX if spot.mark == "slider" else STONE
-        along = spot.along / abs(spot.along)
-        half = [complex(x * length / 2, y * width / 2) * along for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-        sheet.area([at + corner for corner in half], "white", DARK, 1.2, 4)
+        size = MEASURED.box if spot.mark == "slider" else MEASURED.stone
+        box(sheet, at, spot.along / abs(spot.along), DARK, size, MEASURED)
     if spot.mark == "support":
         support(sheet, at, -1j)
     if spot.mark in ("hinge", "support", "slider", "stone"):
-        sheet.circle(at, HINGE)
+        sheet.circle(at, MEASURED.hinge)
     elif spot.mark == "dot":
         sheet.circle(at, 0.6, face=DARK)
 
@@ -223,14 +206,9 @@ def _guide(sheet: Sheet, start: complex, end: complex) -> None:
     along = (end - start) / abs(end - start)
     sheet.line([start, end], *STYLES["axis"], z=1.5)
     down = -1j * along if (1j * along).imag >= 0 else 1j * along
-    shift = (BOX[1] / 2 + 0.5) * down
+    shift = (MEASURED.box[1] / 2 + 0.5) * down
     sheet.line([start + shift, end + shift], DARK, 1.0, z=2.5)
     hatch(sheet, start + shift, end + shift, down)
-
-
-def _length(start: complex, end: complex, along: complex) -> tuple[float, str]:
-    way = end - start
-    return (abs(way) if along == 0 else abs((way * np.conj(along / abs(along))).real)), "length"
 
 
 def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
@@ -244,15 +222,10 @@ def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: boo
 
 def _notes(sheet: Sheet, drawn: Construction, letters: Mapping[str, str], units: UnitSystem) -> None:
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    row: list[str] = []
-    for name, value, kind in drawn.values:
-        row.append(_value(name, value, kind, units))
-        if len(row) == 3:
-            sheet.note(", ".join(row))
-            row = []
-    if row:
-        sheet.note(", ".join(row))
+    values = [_value(*row, units) for row in drawn.values]
+    for k in range(0, len(values), 3):
+        sheet.note(", ".join(values[k : k + 3]))
     if drawn.sizes:
-        sheet.note(say("synthesis.sizes", unit=units.symbol(KINDS["length"].dimension)))
+        sheet.note(_("sizes in {unit}").format(unit=units.symbol(KINDS["length"].dimension)))
     for key in drawn.notes:
-        sheet.note(say(key, **letters))
+        sheet.note(key.format(**letters))

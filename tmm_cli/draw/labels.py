@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)  # where a text st
 NARROW, WIDE = frozenset("ᵗⁿ₀₁₂₃₄₅₆₇₈₉.,'′il1|() :"), frozenset("MWmw=−+<>%")  # letters of DejaVu Sans
 
 Box = tuple[float, float, float, float]  # left, right, low, high
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,11 @@ class Ground:
     rivals: list[complex] = field(default_factory=list)
     lines: list[tuple[complex, complex]] = field(default_factory=list)
 
+    @property
+    def crowd(self) -> NDArray[Any]:
+        """All points of what is drawn."""
+        return np.concatenate([np.zeros(0, complex), *self.points])
+
     def line(self, start: complex, end: complex) -> None:
         """A line is in the way."""
         number = max(2, int(abs(end - start) / STEP))
@@ -64,14 +70,14 @@ class Ground:
         """The middle of the label where it covers the least; the label is then in the way of others."""
         width, height = extent(label)
         reach = abs(label.line[1] - label.line[0]) / 2 if label.line else (FARTHER if label.far else RINGS)[-1]
-        crowd = np.concatenate(self.points) if self.points else np.zeros(0, dtype=complex)
+        crowd = self.crowd
         near = crowd[np.abs(crowd - label.anchor) < reach + 2 * width + 5]
         best, best_cost, last = label.anchor, math.inf, 0.0
         for middle, price in candidates(label, width, height):
             if price > last + 1e-9 and best_cost < last + 0.2:
                 break
             last = max(last, price)
-            cost = self._cost(middle, width, height, near) + price + self._mistaken(label, middle, width, height)
+            cost = self.covered(middle, width, height, near) + price + self._mistaken(label, middle, width, height)
             if cost < best_cost:
                 best, best_cost = middle, cost
         self.boxes.append(about(best, width, height))
@@ -89,7 +95,8 @@ class Ground:
         others = [away(box, r) for r in self.rivals if abs(r - label.anchor) > 0.5]
         return 6.0 if others and min(others) < away(box, label.anchor) + 0.8 else 0.0
 
-    def _cost(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
+    def covered(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
+        """The price of what a text there covers: of these points, of other labels, of the edge."""
         left, right = middle.real - width / 2 - 0.4, middle.real + width / 2 + 0.4
         low, high = middle.imag - height / 2 - 0.3, middle.imag + height / 2 + 0.3
         inside = (near.real > left) & (near.real < right) & (near.imag > low) & (near.imag < high)
@@ -107,11 +114,11 @@ def candidates(label: Label, width: float, height: float) -> Iterator[tuple[comp
     """Middles of a label's box and what each costs, cheapest first."""
     if label.line is not None:
         start, end = label.line
-        way = (end - start) / (abs(end - start) or 1.0)
+        span = (end - start) / (abs(end - start) or 1.0)
         for gap in (1.0, 2.2, 4.0, 7.0, 11.0, 16.0):
             for share in ALONG:
                 for side in (1j, -1j):
-                    out = side * way if (1j * way).imag >= 0 else -side * way  # above first
+                    out = side * span if (1j * span).imag >= 0 else -side * span  # above first
                     off = gap + abs(out.real) * width / 2 + abs(out.imag) * height / 2
                     yield start + share * (end - start) + off * out, 1.5 * gap + 3 * abs(share - 0.5)
         return
@@ -123,16 +130,34 @@ def candidates(label: Label, width: float, height: float) -> Iterator[tuple[comp
             yield label.anchor + reach * along + complex(along.real * width / 2, along.imag * height / 2), 0.35 * reach
 
 
+def gathered(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
+    """Items by their place (mm): those that coincide on paper stand together."""
+    found: list[tuple[complex, list[Item]]] = []
+    for at, item in placed:
+        same = next((items for place, items in found if abs(place - at) < 0.5), None)
+        if same is None:
+            found.append((at, [item]))
+        else:
+            same.append(item)
+    return found
+
+
 def aside(place: complex, start: complex, end: complex) -> float:
     """How far a place is from a stretch of a line."""
-    way = end - start
-    share = ((place - start) * way.conjugate()).real / (abs(way) ** 2 or 1.0)
-    return abs(place - start - min(max(share, 0.0), 1.0) * way)
+    span = end - start
+    share = ((place - start) * span.conjugate()).real / (abs(span) ** 2 or 1.0)
+    return abs(place - start - min(max(share, 0.0), 1.0) * span)
 
 
 def about(middle: complex, width: float, height: float) -> Box:
     """The box about its middle."""
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
+
+
+def row(middle: complex, along: complex, width: float, height: float) -> list[complex]:
+    """Middles of squares that hold a text along a unit vector, side by side, as large as it is high."""
+    reach = max(width - height, 0.0) / 2
+    return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
 
 
 def nearest(box: Box, place: complex) -> complex:

@@ -3,34 +3,85 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.cycle import DENSE
-from tmm_cli.draw.actuators import driver_arrows, driver_name
-from tmm_cli.draw.scheme import beyond, mechanism, moving_points, placer, reach, skeleton, trajectory
-from tmm_cli.draw.sheet import COLOURS, DARK, LOAD, REACTION, Sheet, scale_text
-from tmm_cli.draw.symbols import turning_arrow
+from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.forms import by_points
+from tmm_cli.draw.labels import gathered
+from tmm_cli.draw.render import Rendered, arrows, render
+from tmm_cli.draw.scene import Scene, fixed_pivots, moving_points, to_scale
+from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, REACTION, THIN, Sheet, scale_text
+from tmm_cli.draw.symbols import MEASURED, NAMES
+from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
-from tmm_cli.pipeline import Results, at_positions
 from tmm_cli.plans.record import balance_name
-from tmm_cli.problem.dimensions import ANGLE, LENGTH
-from tmm_cli.words import say
+from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.structure.cycle import DENSE
+from tmm_cli.vectors import Vector
 
-LOAD_MM = 18.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
+LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 SHOWN = 48  # positions drawn thin, at most
 
 
 def caption(results: Results, k: int) -> str:
     """Which position it is and where the driver stands."""
-    motion, units = results.motion, results.problem.units
-    assert motion is not None
-    crank = results.linkage.driver.kind == "turn"
-    q = float(np.mod(motion.q[k], 2 * np.pi) if crank else motion.q[k])
+    assert results.motion is not None
+    place = place_of_driver(results, float(results.motion.q[k]))
+    return _("Position {number}, {place}").format(number=results.numbers[k], place=place)
+
+
+def place_of_driver(results: Results, q: float) -> str:
+    """In words."""
+    crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
-    key = "draw.at_crank" if crank else "draw.at_slider"
-    return say(key, number=results.numbers[k], place=f"{units.from_si(q, measure):.6g} {units.symbol(measure)}")
+    place = f"{units.from_si(q % (2 * np.pi) if crank else q, measure):.6g} {units.symbol(measure)}"
+    return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
+
+
+def measured(sheet: Sheet, scene: Scene) -> Rendered:
+    """One position to scale with all its symbols, names of points and centres of mass, numbers of links."""
+    linkage = scene.linkage
+    drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
+    for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
+        at = sheet.on(scene.point(name))
+        if sum(name in link.points for link in linkage.links.values()) == 1:
+            sheet.circle(at, 0.6, face=DARK)
+        sheet.label(name, at, 10)
+    for link in linkage.moving:
+        own = linkage.links[link]
+        if np.any(own.mass != 0):
+            at = sheet.on(scene.place(link, complex(own.centre)))
+            if all(abs(at - sheet.on(scene.point(p))) > MEASURED.hinge for p in own.points):
+                sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
+                sheet.circle(at, 0.25, face=DARK, z=6.3)
+                belongs(sheet, scene, link, at)
+            sheet.label(f"S{link}", at, 8, "#6b5310")
+    for link, form in drawn.forms.items():
+        sheet.label(link, form.middle, 10, NAMES, "italic")
+    return drawn
+
+
+def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
+    """A thin line from a link of one point to a place (mm) that belongs to it too."""
+    if len(scene.linkage.links[link].points) == 1:
+        (point,) = scene.linkage.links[link].points
+        sheet.line([sheet.on(scene.point(point)), at], THIN, 0.9, z=2.1)
+
+
+def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
+    """One position as thin lines."""
+    for link in scene.linkage.moving:
+        hull = by_points(sheet, scene, link).hull
+        if hull:
+            sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
+
+
+def trajectory(sheet: Sheet, places: Vector) -> None:
+    """The path of a point, m."""
+    sheet.line([sheet.on(complex(p)) for p in places], THIN, 0.7, "--", 1.5, blocks=False)
 
 
 def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
@@ -39,36 +90,26 @@ def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     assert motion is not None
     whole = at_positions(results, results.closely(DENSE), 0)
     points = moving_points(linkage)
-    used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
     chosen = detailed(results)
     k = chosen[0] if chosen else int(np.argmax(motion.placed))
-    used += [p for name in points for p in whole.spot(name)]
+    scene = Scene(linkage, results.structure, motion.poses, k)
+    used = [*fixed_pivots(linkage), *(p for name in points for p in whole.spot(name))]
     sheet = Sheet(
-        results.problem.title, say("draw.mechanism", count=len(results.numbers)), [*used, *beyond(motion, k, used)]
+        results.problem.title,
+        _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers)),
+        to_scale(scene, used),
     )
     for name in points:
         trajectory(sheet, whole.spot(name))
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
-            skeleton(sheet, motion, other)
+            skeleton(sheet, replace(scene, k=other))
     if motion.placed[k]:
-        _arrows(sheet, results, k, mechanism(sheet, motion, k))
+        arrows(sheet, scene, measured(sheet, scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
     _numbers(sheet, results)
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    sheet.note(say("draw.bold", number=results.numbers[k]))
+    sheet.note(_("in full: position {number}").format(number=results.numbers[k]))
     yield "mechanism", sheet.finish()
-
-
-def _arrows(sheet: Sheet, results: Results, k: int, drawn: dict[str, tuple[complex, complex]]) -> None:
-    """How each driver goes."""
-    motion, linkage = results.motion, results.linkage
-    assert motion is not None
-    place = placer(motion, k)
-    for driver, pivot in driver_arrows(sheet, linkage, place, drawn, LOAD):
-        own = linkage.links[driver.link].points
-        ends = [sheet.on(place(driver.link, local)) - pivot for local in own.values()]
-        arm = max(ends, key=abs, default=1 + 0j)
-        turning_arrow(sheet, pivot, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), LOAD)
 
 
 def _numbers(sheet: Sheet, results: Results) -> None:
@@ -82,14 +123,9 @@ def _numbers(sheet: Sheet, results: Results) -> None:
     ends = [p for p in linkage.links[driver.link].points if p != driver.joint]
     if not ends:
         return
-    found: list[tuple[complex, list[str]]] = []
-    for at, number in zip((sheet.on(complex(x)) for x in motion.named(ends[0]).x), results.numbers, strict=True):
-        same = next((numbers for place, numbers in found if abs(place - at) < 0.5), None)
-        if same is None:  # in a cycle of several turns the crank comes back to its places
-            found.append((at, [str(number)]))
-        else:
-            same.append(str(number))
-    for at, numbers in found:
+    places = [sheet.on(complex(x)) for x in motion.named(ends[0]).x]
+    # in a cycle of several turns the crank comes back to its places
+    for at, numbers in gathered(zip(places, map(str, results.numbers), strict=True)):
         out = (at - pivot) / abs(at - pivot)
         sheet.circle(at, 0.5, DARK, DARK, 0.3, 5)
         sheet.label(", ".join(numbers), at + 1.5 * out, 8, "#404040")
@@ -112,13 +148,13 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    places = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
-    places += [complex(motion.named(p).x[k]) for p in moving_points(linkage)]
-    places += [complex(motion.centre(n).x[k]) for n in linkage.moving]
+    scene = Scene(linkage, results.structure, motion.poses, k)
     loads = results.reactions.applied if results.reactions is not None else ()
+    places = [*fixed_pivots(linkage), *(scene.point(p) for p in moving_points(linkage))]
+    places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     places += [complex(motion.point(load.link, load.at).x[k]) for load in loads]
-    sheet = Sheet(results.problem.title, caption(results, k), [*places, *beyond(motion, k, places)], pad=30)
-    mechanism(sheet, motion, k)
+    sheet = Sheet(results.problem.title, caption(results, k), to_scale(scene, places), pad=30)
+    measured(sheet, scene)
     if results.reactions is not None:
         taken: list[tuple[complex, complex]] = []
         coupled: list[complex] = []
@@ -127,17 +163,15 @@ def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
             force, moment = complex(load.force[k]), float(load.moment[k])
             colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
             if abs(force) > 0:
-                end = at + (LOAD_MM + stacked(taken, at, force)) * force / abs(force)
-                if load.kind == "load" and len(linkage.links[load.link].points) == 1:
-                    reach(sheet, motion, load.link, at, k)
-                sheet.arrow(at, end, colour, 1.3)
-                sheet.label(load.name, end, 9, colour)
+                if load.kind == "load":
+                    belongs(sheet, scene, load.link, at)
+                unscaled(sheet, taken, at, force, load.name, colour)
             if moment != 0:
                 radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
                 coupled.append(at)
                 couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
         _balance(sheet, results, k)
-        sheet.note(say("draw.loads"))
+        sheet.note(_("loads without scale"))
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
     yield stem("position", results, k), sheet.finish()
 
@@ -152,18 +186,19 @@ def _balance(sheet: Sheet, results: Results, k: int) -> None:
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
             couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, name.replace("F", "M", 1), 7.5)
         elif abs(balance.vector[k]) > 0:
-            at = sheet.on(complex(balance.at[k]))
-            end = at + LOAD_MM * complex(balance.vector[k] / abs(balance.vector[k]))
-            sheet.arrow(at, end, REACTION, 1.5)
-            sheet.label(name, end, 9, REACTION)
+            unscaled(sheet, [], sheet.on(complex(balance.at[k])), complex(balance.vector[k]), name, REACTION)
 
 
-def stacked(taken: list[tuple[complex, complex]], at: complex, force: complex) -> float:
-    """How much longer (mm) an arrow is drawn so that it shows beside others from the same place and direction."""
+def unscaled(
+    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: str, colour: str
+) -> None:
+    """A force without scale; longer where it would hide others, taken, from the same place and in its direction."""
     along = force / abs(force)
     alike = sum(abs(at - place) < 1 and abs(along - other) < 0.05 for place, other in taken)
     taken.append((at, along))
-    return 9.0 * alike
+    end = at + (LOAD_MM + 9.0 * alike) * along
+    sheet.arrow(at, end, colour, 1.3)
+    sheet.label(name, end, 9, colour)
 
 
 def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:

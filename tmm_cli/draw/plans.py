@@ -8,38 +8,38 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.draw.mechanism import caption, stacked, stem
-from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, scale_text
-from tmm_cli.pipeline import Results
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.labels import gathered
+from tmm_cli.draw.mechanism import caption, stem, unscaled
+from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
+from tmm_cli.errors import _
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
 from tmm_cli.plans.record import NamedVector, Plan, balance_name
 from tmm_cli.plans.velocity import velocity_plan
-from tmm_cli.words import say
-
-FORCE_MM = 22.0
 
 
 def velocity(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     """Velocity plan of a position."""
     assert results.motion is not None
     plan = velocity_plan(results.motion, k)
-    title = say("draw.velocity", caption=caption(results, k))
-    yield stem("velocity", results, k), _plan(results, plan, title, "p", scale_text("v", 1, "m/s/mm"))
+    sheet = _plan(results, plan, _("Velocity plan. {caption}").format(caption=caption(results, k)), "p")
+    sheet.note(scale_text("v", sheet.mu, "m/s/mm"))
+    yield stem("velocity", results, k), sheet.finish()
 
 
 def acceleration(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     """Acceleration plan of a position, with the parts of each link."""
     assert results.motion is not None
     plan = acceleration_plan(results.motion, k)
-    title = say("draw.acceleration", caption=caption(results, k))
-    yield stem("acceleration", results, k), _plan(results, plan, title, POLE, scale_text("a", 1, "m/s²/mm"))
+    sheet = _plan(results, plan, _("Acceleration plan. {caption}").format(caption=caption(results, k)), POLE)
+    sheet.note(scale_text("a", sheet.mu, "m/s²/mm"))
+    yield stem("acceleration", results, k), sheet.finish()
 
 
-def _plan(results: Results, plan: Plan, title: str, pole: str, scale: str) -> Figure:
+def _plan(results: Results, plan: Plan, title: str, pole: str) -> Sheet:
     sheet = Sheet(results.problem.title, title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
-    sheet.note(scale.replace("= 1 ", f"= {sheet.mu:.10g} "))
     drawn = plan.drawn()
     for vector in drawn:
         start, end = sheet.on(vector.start), sheet.on(vector.end)
@@ -52,18 +52,13 @@ def _plan(results: Results, plan: Plan, title: str, pole: str, scale: str) -> Fi
             sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
     _letters(sheet, plan.ends, pole)
     if plan.size == 0:
-        sheet.note(say("draw.zero"))
-    return sheet.finish()
+        sheet.note(_("everything is at rest"))
+    return sheet
 
 
 def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
-    named: dict[tuple[float, float], list[str]] = {}
-    for name, end in ends.items():
-        at = sheet.on(end)
-        named.setdefault((round(at.real, 1), round(at.imag, 1)), []).append(name)
-    for (x, y), names in named.items():
-        at = complex(x, y)
+    for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
 
@@ -74,9 +69,13 @@ def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
         return
     for plan in force_plans(results.reactions, k):
         links = ", ".join(plan.links)
-        key = "draw.forces_driver" if plan.driving else "draw.forces" if len(plan.links) > 1 else "draw.forces_link"
+        title = _("Force plan of link {links}. {caption}")
+        if plan.driving:
+            title = _("Force plan of the driving link {links}. {caption}")
+        elif len(plan.links) > 1:
+            title = _("Force plan of links {links}. {caption}")
         sheet = Sheet(
-            results.problem.title, say(key, links=links, caption=caption(results, k)),
+            results.problem.title, title.format(links=links, caption=caption(results, k)),
             [p for v in plan.plan.vectors for p in (v.start, v.end)],
         )  # fmt: skip
         sheet.note(scale_text("F", sheet.mu, "N/mm"))
@@ -84,13 +83,11 @@ def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
             _force(sheet, vector)
         small = [v.name for v in plan.plan.vectors if v not in plan.plan.drawn()]
         if small:
-            sheet.note(say("draw.vanish", names=", ".join(small)))
+            sheet.note(_("zero: {names}").format(names=", ".join(small)))
         for line, text in enumerate(textwrap.wrap(plan.equation, 105 if sheet.paper[0] < 250 else 150, max_lines=2)):
             sheet.text(complex(12, 8 - 4.5 * line), text, 9, colour="#404040")
-        name = "-".join(
-            ["forces", f"{results.numbers[k]:02d}", "links" if len(plan.links) > 1 else "link", *plan.links]
-        )
-        yield _safe(name), sheet.finish()
+        kind = "links" if len(plan.links) > 1 else "link"
+        yield safe("-".join(["forces", f"{results.numbers[k]:02d}", kind, *plan.links])), sheet.finish()
 
 
 def _force(sheet: Sheet, vector: NamedVector) -> None:
@@ -112,12 +109,12 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     crank = results.linkage.driver.kind == "turn"
     plan = lever_plan(results.motion, results.lever, k)
     places = [*plan.ends.values(), *(f.at for f in plan.forces), *(f.foot for f in plan.forces)]
-    sheet = Sheet(
-        results.problem.title,
-        say("draw.lever" if crank else "draw.lever_slider", caption=caption(results, k)),
-        places,
-        pad=36,
+    title = (
+        _("Zhukovsky lever: velocity plan for 1 rad/s, turned by 90°. {caption}")
+        if crank
+        else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90°. {caption}")
     )
+    sheet = Sheet(results.problem.title, title.format(caption=caption(results, k)), places, pad=36)
     for bar in plan.bars:
         sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
     size = max((abs(e) for e in plan.ends.values()), default=0.0)
@@ -126,13 +123,11 @@ def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
     inertial = {n for load in results.loads if load.kind == "inertia" for n in (load.name, load.couple_name)}
     for force in plan.forces:
         at, foot = sheet.on(force.at), sheet.on(force.foot)
-        end = at + (FORCE_MM + stacked(taken, at, force.force)) * force.force / abs(force.force)
         colour = COLOURS["inertia" if force.name in inertial else "load"]
         if abs(force.foot) > 1e-9 * size:
             sheet.line([pole, foot], THIN, 0.6, ":", 2)
             sheet.line([foot, at], THIN, 0.5, "--", 2)
-        sheet.arrow(at, end, colour, 1.3)
-        sheet.label(force.name, end, 9, colour)
+        unscaled(sheet, taken, at, force.force, force.name, colour)
     _letters(sheet, plan.ends, "p")
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
@@ -149,7 +144,7 @@ def _balancing(results: Results, value: float, k: int) -> Iterable[str]:
     assert motion is not None and reactions is not None
     crank = results.linkage.driver.kind == "turn"
     if len(reactions.balances) == 1:
-        yield say("draw.balance" if crank else "draw.balance_force", value=f"{value:.6g}")
+        yield (_("Mb = {value} N·m") if crank else _("Fb = {value} N")).format(value=f"{value:.6g}")
         return
     names = []
     for balance in reactions.balances:
@@ -158,9 +153,9 @@ def _balancing(results: Results, value: float, k: int) -> Iterable[str]:
         name = name if balance.moment is None else name.replace("F", "M", 1)
         unit = "N" if balance.moment is None else "N·m"
         names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
-        yield say("draw.of_plan", name=name, value=f"{float(balance.generalized[k]):.6g}", unit=unit)
-    yield say("draw.balance_sum", names=" ".join(names), value=f"{value:.6g}", unit="N·m" if crank else "N")
-
-
-def _safe(name: str) -> str:
-    return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)
+        yield _("{name} = {value} {unit} (force plan)").format(
+            name=name, value=f"{float(balance.generalized[k]):.6g}", unit=unit
+        )
+    yield _("lever: {names} = {value} {unit}").format(
+        names=" ".join(names), value=f"{value:.6g}", unit="N·m" if crank else "N"
+    )

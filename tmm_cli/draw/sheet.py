@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
@@ -13,10 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.textpath import TextPath
 
-from tmm_cli.draw.labels import Ground, Label, about, nearest
+from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
+from tmm_cli.errors import _
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
-from tmm_cli.words import say
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import Dimension
 
 MM = 1 / 25.4  # inches
 POINTS = 72 * MM  # in a millimetre
@@ -28,6 +29,8 @@ COLOURS = {
     "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
 }  # fmt: skip
 BETWEEN = 12  # places along an edge that are tried for the notes
+HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
+EDGE = 4.0  # mm inside the field where curves are cut
 LEADER = 4.0  # mm from which a line leads from a place to its label
 
 # Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
@@ -43,54 +46,39 @@ class Sheet:
         found = [p for p in points if np.isfinite(p)] or [0j]
         middle = extent(found)[3]
         self.paper, self.mu = sheet_scale(found, pad)
-        across, up = self.paper[0] - 2 * MARGIN, self.paper[1] - 2 * MARGIN - STRIP
-        self.origin = complex(MARGIN + across / 2, MARGIN + up / 2) - middle / self.mu
+        self.ground = Ground(*ground_of(self.paper))
+        self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
         FigureCanvasAgg(self.figure)
         self.axes = self.figure.add_axes((0, 0, 1, 1))
         self.axes.set_xlim(0, self.paper[0])
         self.axes.set_ylim(0, self.paper[1])
         self.axes.axis("off")
-        self.ground = Ground(complex(MARGIN, MARGIN), complex(self.paper[0] - MARGIN, self.paper[1] - MARGIN - STRIP))
         self.labels: list[Label] = []
         self.notes: list[str] = []
-        self._strip(title, caption)
-
-    def on(self, value: complex) -> complex:
-        """A value (SI) as a place on paper (mm)."""
-        return self.origin + value / self.mu
-
-    def _strip(self, title: str, caption: str) -> None:
         width, height = self.paper
         self.axes.plot([MARGIN, width - MARGIN], [height - MARGIN - STRIP + 5] * 2, color=DARK, lw=0.6)
         self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
         self.text(complex(MARGIN, height - MARGIN - 8), caption[:120], 9, colour="#404040")
 
+    def on(self, value: complex) -> complex:
+        """A value (SI) as a place on paper (mm)."""
+        return self.origin + value / self.mu
+
+    @property
+    def field(self) -> tuple[complex, complex]:
+        """Corners of the field in which curves and guides are drawn, mm."""
+        return self.ground.low + EDGE * (1 + 1j), self.ground.high - EDGE * (1 + 1j)
+
     def text(
-        self,
-        at: complex,
-        text: str,
-        size: float,
-        *,
-        colour: str = DARK,
-        weight: str = "normal",
-        ha: str = "left",
+        self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: str = "left",
         style: str = "normal",
-    ) -> None:
+    ) -> None:  # fmt: skip
         """A text at a place (mm); never read as mathematics."""
         self.axes.text(
-            at.real,
-            at.imag,
-            text,
-            fontsize=size,
-            color=colour,
-            weight=weight,
-            ha=ha,
-            va="center",
-            style=style,
-            parse_math=False,
-            zorder=9,
-        )
+            at.real, at.imag, text, fontsize=size, color=colour, weight=weight, ha=ha, va="center", style=style,
+            parse_math=False, zorder=9,
+        )  # fmt: skip
 
     def label(self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal") -> None:
         """A text beside a place (mm); where exactly is decided when all is drawn."""
@@ -98,15 +86,9 @@ class Sheet:
             self.labels.append(Label(text, anchor, size, colour, style))
 
     def line(
-        self,
-        places: Sequence[complex],
-        colour: str = DARK,
-        width: float = 1.0,
-        style: str = "-",
-        z: float = 3,
-        *,
+        self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: str = "-", z: float = 3, *,
         blocks: bool = True,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """A polyline through places (mm)."""
         array = np.array(places)
         self.axes.plot(array.real, array.imag, color=colour, lw=width, ls=style, zorder=z, solid_capstyle="round")
@@ -115,21 +97,10 @@ class Sheet:
                 if np.isfinite(start) and np.isfinite(end):
                     self.ground.line(complex(start), complex(end))
 
-    def area(
-        self,
-        corners: Sequence[complex],
-        face: str,
-        edge: str = DARK,
-        width: float = 1.0,
-        z: float = 2.0,
-        alpha: float = 1.0,
-    ) -> None:
+    def area(self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0) -> None:
         """A filled polygon."""
-        self.axes.add_patch(
-            Polygon(
-                [(c.real, c.imag) for c in corners], facecolor=face, edgecolor=edge, lw=width, zorder=z, alpha=alpha
-            )
-        )
+        shape = [(c.real, c.imag) for c in corners]
+        self.axes.add_patch(Polygon(shape, facecolor=face, edgecolor=edge, lw=width, zorder=z))
         for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
             self.ground.line(start, end)
 
@@ -152,14 +123,8 @@ class Sheet:
         neck = end - head * along
         side = 1j * along * head * 0.27
         self.line([start, neck + 0.3 * head * along], colour, width, z=z)
-        self.axes.add_patch(
-            Polygon(
-                [(c.real, c.imag) for c in (end, neck + side, neck - side)],
-                facecolor=colour,
-                edgecolor="none",
-                zorder=z,
-            )
-        )
+        shape = [(c.real, c.imag) for c in (end, neck + side, neck - side)]
+        self.axes.add_patch(Polygon(shape, facecolor=colour, edgecolor="none", zorder=z))
         self.ground.line(neck, end)
 
     def note(self, text: str) -> None:
@@ -169,29 +134,29 @@ class Sheet:
     def finish(self) -> Figure:
         """Put the notes into the emptiest corner, place the labels."""
         self.corner()
+        self.settle()
+        return self.figure
+
+    def settle(self) -> None:
+        """Place the labels that are waiting, in the field that the ground has now."""
         for label in self.labels:
             at = self.ground.place(label)
             self.text(at, label.text, label.size, colour=label.colour, ha="center", style=label.style)
             edge = nearest(self.ground.boxes[-1], label.anchor)
             if label.far and abs(edge - label.anchor) > LEADER:
                 self.line([label.anchor, edge], THIN, 0.5, z=1.1)
-        return self.figure
+        self.labels.clear()
 
-    def along(self, at: complex, text: str, size: float, way: complex) -> None:
-        """A text along a direction, its middle at a place (mm); it is in the way of labels."""
-        turn = float(np.degrees(np.angle(way)))
+    def along(self, at: complex, text: str, size: float, along: complex) -> None:
+        """A text along a unit vector, its middle at a place (mm); it is in the way of labels."""
+        turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.axes.text(
             at.real, at.imag, text, fontsize=size, color=DARK, rotation=turn, rotation_mode="anchor", ha="center",
             va="center", parse_math=False, zorder=9,
         )  # fmt: skip
         width, height = label_extent(Label(text, at, size, DARK))
-        c, s = abs(np.cos(np.radians(turn))), abs(np.sin(np.radians(turn)))
-        if min(c, s) < 0.1:
-            self.ground.boxes.append(about(at, width * c + height * s, width * s + height * c))
-            return
-        for share in np.linspace(-0.5, 0.5, max(2, int(width / 2))):  # a slanting text: a row of small boxes
-            self.ground.boxes.append(about(at + share * width * complex(way) / abs(way), height, height))
+        self.ground.boxes += [about(place, height, height) for place in row(at, along, width, height)]
 
     def corner(self) -> None:
         """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
@@ -204,7 +169,7 @@ class Sheet:
         fields = [complex(x, y) for y in (low.imag, top) for x in (right, low.real)]
         fields += [complex(x, y) for y in (low.imag, top) for x in np.linspace(right, low.real, BETWEEN)]
         fields += [complex(x, y) for x in (right, low.real) for y in np.linspace(low.imag, top, BETWEEN)]
-        crowd = np.concatenate(self.ground.points) if self.ground.points else np.zeros(0, complex)
+        crowd = self.ground.crowd
 
         def covered(c: complex) -> int:
             off = crowd - c - complex(width, height) / 2
@@ -212,36 +177,75 @@ class Sheet:
             return int(np.count_nonzero((np.abs(off.real) < across) & (np.abs(off.imag) < up)))
 
         at = min(fields, key=covered)
-        self.axes.add_patch(
-            Polygon(
-                [
-                    (at.real, at.imag),
-                    (at.real + width, at.imag),
-                    (at.real + width, at.imag + height),
-                    (at.real, at.imag + height),
-                ],
-                facecolor="white",
-                edgecolor=THIN,
-                lw=0.6,
-                zorder=8,
-            )
-        )
+        corners = [at, at + width, at + complex(width, height), at + 1j * height]
+        shape = [(c.real, c.imag) for c in corners]
+        self.axes.add_patch(Polygon(shape, facecolor="white", edgecolor=THIN, lw=0.6, zorder=8))
         for k, text in enumerate(self.notes):
             self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
         self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))
         self.notes = []
 
 
+def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
+    """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
+    along = (end - start) / abs(end - start)
+    number = int(abs(end - start) / 2.0)
+    for k in range(number):
+        foot = start + along * (k + 0.5) * abs(end - start) / number
+        sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
+    for depth in HATCH:
+        sheet.ground.line(start + depth * outward, end + depth * outward)
+
+
+def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of what may be drawn on below the title strip, mm."""
+    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
+
+
+def cells(
+    low: complex, high: complex, columns: int, rows: int, gap: float
+) -> tuple[complex, list[tuple[complex, complex]]]:
+    """Width and height of equal cells in a field, and two corners of each, row by row from above, mm."""
+    size = complex(((high - low).real + gap) / columns - gap, ((high - low).imag + gap) / rows - gap)
+    step = size + gap * (1 + 1j)
+    starts = [
+        complex(low.real + column * step.real, high.imag + gap - (row + 1) * step.imag)
+        for row in range(rows)
+        for column in range(columns)
+    ]
+    return size, [(start, start + size) for start in starts]
+
+
+def border(inner: complex, outer: complex, low: complex, high: complex) -> complex:
+    """Where the way from a place in a field to another one leaves it."""
+    way, share = outer - inner, 1.0
+    for at, step, least, most in (
+        (inner.real, way.real, low.real, high.real), (inner.imag, way.imag, low.imag, high.imag),
+    ):  # fmt: skip
+        if abs(step) > 1e-12:
+            share = min(share, ((most if step > 0 else least) - at) / step)
+    return inner + max(share, 0.0) * way
+
+
+def chart(size: tuple[float, float], title: str, caption: str) -> Figure:
+    """A figure of a size (mm) for curves, with its title."""
+    figure = Figure(figsize=(size[0] * MM, size[1] * MM))
+    FigureCanvasAgg(figure)
+    figure.text(0.06, 0.965, title[:90], fontsize=12, weight="bold", parse_math=False)
+    figure.text(0.06, 0.945, caption, fontsize=9, color="#404040", parse_math=False)
+    return figure
+
+
 def scale_text(symbol: str, mu: float, unit: str) -> str:
     """μ_l = 0.005 m/mm."""
-    return say("draw.scale", symbol=symbol, mu=f"{mu:.10g}", unit=unit)
+    return _("μ_{symbol} = {mu} {unit}").format(symbol=symbol, mu=f"{mu:.10g}", unit=unit)
 
 
-def picture(figure: Figure, kind: str) -> bytes:
-    """The figure as PNG or SVG; the same figure gives the same bytes."""
-    stream = io.BytesIO()
-    if kind == "png":  # packed less: a seventh longer, a third quicker
-        figure.savefig(stream, format=kind, dpi=110, metadata={"Software": None}, pil_kwargs={"compress_level": 3})
-    else:
-        figure.savefig(stream, format=kind, dpi=110, metadata={"Date": None, "Creator": None})
-    return stream.getvalue()
+def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
+    """A title of an axis."""
+    return ", ".join(part for part in (words, units.symbol(dimension)) if part)
+
+
+def safe(name: str) -> str:
+    """A name that a file may have."""
+    return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

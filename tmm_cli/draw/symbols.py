@@ -1,20 +1,57 @@
-"""Symbols of structural schemes: links by their pairs alone, hinges, stones, guides, supports, free leads."""
+"""Symbols of a mechanism, each in one place: links, hinges, stones, guides, supports, centres of mass, arrows.
+
+A look says how large and how bold they are: as measured drawings have them, or as structural schemes do.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, extent
-from tmm_cli.draw.scene import BEYOND, BOX, HINGE, ON_LINE, Form, Scene, apart
-from tmm_cli.draw.scheme import hatch
-from tmm_cli.draw.sheet import DARK, Sheet
-from tmm_cli.vectors import Vector, cross, dot, unit
+from tmm_cli.draw.forms import Form
+from tmm_cli.draw.labels import Label, about, extent
+from tmm_cli.draw.scene import ON_LINE, Scene, apart
+from tmm_cli.draw.sheet import DARK, Sheet, hatch
+from tmm_cli.vectors import cross, dot, unit
 
-BAR, WELD = 2.7, 3.2  # width of a bar (points); leg of a rigid corner's mark
+WELD = 3.2  # mm: leg of a rigid corner's mark
+CLEAR = 3.2  # mm about the number on a plate
+GAP = 0.5  # mm between a box and its rails
 FREE = "#6a6a6a"  # what a lead would be joined to
+NAMES = "#7a3d99"  # numbers of links
 PALETTE = ("#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#b86a00", "#00757d", "#8a3b5c", "#5f6b00", "#3d4a5c")
+CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+
+
+@dataclass(frozen=True)
+class Look:
+    """Sizes of symbols, mm; widths of lines, points.
+
+    measured: to scale, links by their points, guides as long as the way on them. stone: a slider on a moving link;
+    sides: where labels keep off a bar, mm from its middle line.
+    """
+
+    measured: bool
+    hinge: float
+    box: tuple[float, float]
+    stone: tuple[float, float]
+    support: tuple[float, float]  # height of the triangle, half its base
+    bar: float
+    sides: tuple[complex, ...]
+
+    def sized(self, size: float) -> Look:
+        """Smaller symbols, where pairs are near to one another."""
+        length, width = self.box
+        height, half = self.support
+        box = (size * length, size * width)
+        return replace(self, hinge=size * self.hinge, box=box, stone=box, support=(size * height, size * half))
+
+
+MEASURED = Look(True, 1.3, (9.0, 5.0), (7.5, 4.2), (5.6, 3.4), 2.4, (0j,))
+STRUCTURAL = Look(False, 1.7, (10.0, 6.0), (10.0, 6.0), (6.0, 3.4), 2.7, (0.8j, -0.8j))
+PLATE = "#eceff3"  # of measured drawings
 
 
 def tint(colour: str, share: float = 0.16) -> str:
@@ -23,61 +60,49 @@ def tint(colour: str, share: float = 0.16) -> str:
     return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in parts)
 
 
-def body(sheet: Sheet, shape: Form, colour: str) -> None:
+def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
     """A link as bars and plates."""
-    if len(shape.hull) > 2:
-        sheet.area(shape.hull, tint(colour), colour, 1.6, 2.2)
-    guides = [bar.tips for bar in shape.bars]
-    for start, end in shape.lines:
+    if len(form.hull) > 2:
+        sheet.area(form.hull, PLATE if look.measured else tint(colour), colour, 1.5, 2.2)
+    guides = [bar.tips for bar in form.bars]
+    for start, end in form.lines:
         # a guide goes behind its stone, a link that is only hinged to a stone comes in front of it
-        behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in shape.boxes)
-        sheet.line([start, end], colour, BAR, z=3 if behind else 4.5, blocks=False)
+        behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in form.boxes)
+        sheet.line([start, end], colour, look.bar, z=3 if behind or look.measured else 4.5, blocks=False)
         if abs(end - start) > ON_LINE:
-            for side in (0.8j, -0.8j):  # a bar is wider than a line
+            for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
                 sheet.ground.line(start + shift, end + shift)
-    for at, one, other in shape.welds:
+    for at, one, other in form.welds:
         if min(abs(one), abs(other)) > 0.5:
-            reach = WELD + (HINGE if any(abs(at - joint) < ON_LINE for joint in shape.joints) else 0.0)
+            reach = WELD + (look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0)
             legs = [min(reach, abs(leg)) * leg / abs(leg) for leg in (one, other)]
             sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
 
 
-def box(sheet: Sheet, at: complex, along: complex, colour: str, size: float, *, style: str = "-") -> None:
-    """A stone or slider; dashed where it is only what a lead is joined to, hatched when it is the frame."""
-    length, width = BOX[0] * size, BOX[1] * size
-    signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
-    corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in signs]
+def box(
+    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: str = "-"
+) -> None:
+    """A slider or stone; dashed where it is only what a lead is joined to."""
+    length, width = size
+    corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in CORNERS]
     for share in (0.25, -0.25):  # nothing is written into a box
         shift = 1j * along * share * width
         sheet.ground.line(at + shift - along * length / 2, at + shift + along * length / 2)
     if style == "-":
-        sheet.area(corners, "white" if colour == DARK else tint(colour, 0.07), colour, 1.4, 4)
+        face = "white" if colour == DARK or look.measured else tint(colour, 0.07)
+        sheet.area(corners, face, colour, 1.3, 4)
     else:
         sheet.area(corners, "white", "none", 0.0, 4)
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
-    if colour == DARK:
-        hatch(sheet, corners[1], corners[0], 1j * along)
-        hatch(sheet, corners[2], corners[3], -1j * along)
 
 
-def hinge(
-    sheet: Sheet, at: complex, colours: Sequence[str], size: float, threads: Sequence[tuple[complex, str]]
-) -> None:
-    """A turning pair as a circle, a compound hinge as one circle a pair; bars that go on beyond it cross it."""
-    radius = HINGE * size
-    for number, colour in reversed(list(enumerate(colours))):
-        sheet.circle(at, radius + 0.95 * size * number, "white", colour, 1.3, 6 - 0.01 * number)
-    for along, colour in threads:
-        sheet.line([at - radius * along, at + radius * along], colour, 0.8 * BAR, z=6.2)
-
-
-def support(sheet: Sheet, at: complex, size: float) -> complex:
-    """The frame at a hinge, on the emptiest side: a triangle on hatched ground. Where its number goes."""
-    out = quiet(sheet, at, -1j, 9.0, (-1j, 1j, -1, 1), from_=2.2)
+def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> complex:
+    """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
     side = 1j * out
-    foot = at + 6.0 * size * out
-    low, high = foot - 3.4 * size * side, foot + 3.4 * size * side
+    height, half = look.support
+    foot = at + height * out
+    low, high = foot - half * side, foot + half * side
     sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
     low, high = low - 1.6 * side, high + 1.6 * side
     sheet.line([low, high], DARK, 1.2, z=2.7)
@@ -85,22 +110,23 @@ def support(sheet: Sheet, at: complex, size: float) -> complex:
     return high
 
 
-def rails(sheet: Sheet, at: complex, along: complex, size: float) -> complex:
-    """A guide on the frame: two hatched rails about the box. Where its number goes."""
-    reach = BOX[0] * size / 2 + BEYOND
+def rails(
+    sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: str = "-", *, fixed: bool
+) -> None:
+    """Two lines along the way of a box of this width; hatched where they are the frame's."""
+    along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
-        shift = side * (BOX[1] * size / 2 + 0.6)
-        sheet.line([at + shift - reach * along, at + shift + reach * along], DARK, 1.1, z=2.5)
-        hatch(sheet, at + shift - reach * along, at + shift + reach * along, side)
-    low = -1j * along if (1j * along).imag > 0 else 1j * along
-    return at + low * (BOX[1] * size / 2 + 2) + reach * along
+        shift = side * (width / 2 + GAP)
+        sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
+        if fixed:
+            hatch(sheet, start + shift, end + shift, side)
 
 
 def quiet(
-    sheet: Sheet, at: complex, wish: complex, reach: float, ways: Iterable[complex] = (), from_: float = 1.8
+    sheet: Sheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
     """The direction from a place in which the least is drawn; near `wish` when there is a choice."""
-    crowd = _crowd(sheet)
+    crowd = sheet.ground.crowd
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
     def cost(way: complex) -> float:
@@ -109,17 +135,12 @@ def quiet(
         return float(np.count_nonzero((run > from_) & (run < reach) & (off < 0.45 * reach))) + 2.0 * turned
 
     turns = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8)
-    return min(ways or [wish * complex(unit(np.pi / 8 * n)) for n in turns], key=cost)
-
-
-def _crowd(sheet: Sheet) -> Vector:
-    """Points of what is drawn so far, mm."""
-    return np.concatenate(sheet.ground.points) if sheet.ground.points else np.zeros(0, complex)
+    return min(choices or [wish * complex(unit(np.pi / 8 * n)) for n in turns], key=cost)
 
 
 def turning_arrow(sheet: Sheet, pivot: complex, start: float, sense: int, name: str, colour: str) -> None:
     """An arrow of rotation about a pivot; it begins beside the link, or where there is more room."""
-    radius, crowd = 8.5, _crowd(sheet)
+    radius, crowd = 8.5, sheet.ground.crowd
 
     def arc(first: float) -> list[complex]:
         return [pivot + radius * complex(unit(first + sense * a)) for a in np.linspace(0, 1.5, 24)]
@@ -133,10 +154,10 @@ def turning_arrow(sheet: Sheet, pivot: complex, start: float, sense: int, name: 
     sheet.label(name, places[11], 10, colour)
 
 
-def sliding_arrow(sheet: Sheet, at: complex, along: complex, size: float, name: str, colour: str) -> None:
-    """The way of a driven slider, beside it."""
+def sliding_arrow(sheet: Sheet, at: complex, along: complex, width: float, name: str, colour: str) -> None:
+    """The way of a driven slider, beside its box of this width."""
     side = quiet(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
-    foot = at + side * (BOX[1] * size / 2 + 8)
+    foot = at + side * (width / 2 + 8)
     sheet.arrow(foot - 6 * along, foot + 8 * along, colour, 1.3)
     sheet.label(name, foot + 8 * along, 10, colour)
 
@@ -148,21 +169,10 @@ def symbol_size(sheet: Sheet, scene: Scene, links: Iterable[str]) -> float:
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 
 
-def number(sheet: Sheet, link: str, shape: Form, colour: str) -> None:
-    """The number of a link: on its plate, or beside its bar."""
-    label = Label(link, shape.middle, 11, colour, "italic")
-    if len(shape.hull) < 3 or shape.room < 3.2 or not np.isfinite(label.anchor):
-        sheet.labels.append(label)
-        return
-    width, height = extent(label)
-    x, y = label.anchor.real, label.anchor.imag
-    sheet.ground.boxes.append((x - width / 2, x + width / 2, y - height / 2, y + height / 2))
-    sheet.text(label.anchor, link, label.size, colour=colour, ha="center", style=label.style)
-
-
-def settle(sheet: Sheet) -> None:
-    """Place the labels that are waiting, in the field that the ground has now."""
-    for label in sheet.labels:
-        at = sheet.ground.place(label)
-        sheet.text(at, label.text, label.size, colour=label.colour, ha="center", style=label.style)
-    sheet.labels.clear()
+def number(sheet: Sheet, link: str, form: Form, colour: str) -> None:
+    """The number of a link: in the middle of its plate where nothing is drawn there, or beside it."""
+    if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > CLEAR):
+        sheet.ground.boxes.append(about(form.middle, *extent(Label(link, form.middle, 11, colour))))
+        sheet.text(form.middle, link, 11, colour=colour, ha="center", style="italic")
+    else:
+        sheet.label(link, form.middle, 11, colour, "italic")

@@ -8,34 +8,27 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from tmm_cli.cycle import DENSE
+from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.actuators import cylinders
 from tmm_cli.draw.construction import construction
+from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import Label
-from tmm_cli.draw.scheme import HINGE, beyond, box, link_places, mechanism, moving_points, skeleton, trajectory
-from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, MM, REACTION, THIN, Sheet, picture, scale_text
-from tmm_cli.linkage import FRAME
-from tmm_cli.pipeline import Results, at_positions
+from tmm_cli.draw.mechanism import measured, skeleton, trajectory
+from tmm_cli.draw.render import slider
+from tmm_cli.draw.scene import Scene, fixed_pivots, moving_points, to_scale
+from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, chart, scale_text, with_unit
+from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
-from tmm_cli.problem.dimensions import KINDS, Dimension
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import KINDS, Dimension
+from tmm_cli.structure.cycle import DENSE
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.record import Outcome
-from tmm_cli.words import say
 
 ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
-
-
-def files(
-    title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
-) -> Iterable[tuple[str, bytes]]:
-    """Every sheet as PNG and SVG."""
-    for stem, figure in sheets(title, outcome, results, units, names):
-        for kind in ("png", "svg"):
-            yield f"{stem}.{kind}", picture(figure, kind)
 
 
 def sheets(
@@ -58,18 +51,15 @@ def sheets(
 
 def synthesised(results: Results) -> Iterable[tuple[str, Figure]]:
     """The sheets of a problem whose file has a synthesis."""
-    found = results.synthesis
+    found = results.problem.synthesis
     if found is not None:
         yield from sheets(results.problem.title, found.outcome, results, results.problem.units, found.names)
 
 
 def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
     """Curves over one quantity, in the units of the file."""
-    figure = Figure(figsize=(LANDSCAPE[0] * MM, LANDSCAPE[1] * MM))
-    FigureCanvasAgg(figure)
+    figure = chart(LANDSCAPE, title, drawn.title)
     axes = figure.add_axes((0.1, 0.11, 0.85, 0.74))
-    figure.text(0.04, 0.95, title[:90], fontsize=12, weight="bold", va="top", parse_math=False)
-    figure.text(0.04, 0.91, say(drawn.title), fontsize=9, color="#404040", va="top", parse_math=False)
     x_words, x_kind = drawn.x
     across = KINDS[x_kind].dimension
     if drawn.lower:
@@ -81,7 +71,7 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
     _panel(axes, drawn.lines, drawn.y, across, units)
     if drawn.equal:
         axes.set_aspect("equal", adjustable="datalim")
-    (below if drawn.lower else axes).set_xlabel(_axis(x_words, across, units), parse_math=False)
+    (below if drawn.lower else axes).set_xlabel(with_unit(x_words, across, units), parse_math=False)
     return figure
 
 
@@ -95,16 +85,12 @@ def _panel(axes: Axes, lines: Iterable[Line], y: tuple[str, str], across: Dimens
         )
         style = {"ls": "none", "marker": "o", "ms": 4} if line.dots else {"lw": 1.0 if line.faint else 1.4}
         colour = THIN if line.faint else (DARK, LOAD, INERTIA, REACTION)[number % 4]
-        axes.plot(xs, ys, color=colour, label=say(line.words), zorder=2 if line.faint else 3, **style)
+        axes.plot(xs, ys, color=colour, label=line.text, zorder=2 if line.faint else 3, **style)
         number += not line.faint
-    axes.set_ylabel(_axis(y_words, up, units), parse_math=False)
+    axes.set_ylabel(with_unit(y_words, up, units), parse_math=False)
     axes.grid(color=GREY, lw=0.4)
     if len(axes.lines) > 1:
         axes.legend(fontsize=9)
-
-
-def _axis(words: str, dimension: Dimension, units: UnitSystem) -> str:
-    return ", ".join(part for part in (say(words), units.symbol(dimension)) if part)
 
 
 def extremes(results: Results) -> Sheet:
@@ -112,40 +98,44 @@ def extremes(results: Results) -> Sheet:
     strokes, linkage = results.strokes, results.linkage
     assert strokes is not None
     sense = linkage.driver.sense
-    ends = [s.start for s in strokes.strokes] + [s.start + sense * s.length for s in strokes.strokes[:1]]
+    ends = [stroke.start for stroke in strokes.strokes]
+    if len(ends) == 1:
+        ends.append(ends[0] + sense * strokes.strokes[0].length)
     motion = at_positions(results, np.array(ends), 2)
     whole = at_positions(results, results.closely(DENSE), 0)
     points = moving_points(linkage)
-    used = [linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links]
-    used += [complex(p) for name in points for p in whole.spot(name)]
-    sheet = Sheet(results.problem.title, say("synthesis.extremes"), [*used, *beyond(motion, 0, used)])
+    scene = Scene(linkage, results.structure, motion.poses)
+    used = [*fixed_pivots(linkage), *(complex(p) for name in points for p in whole.spot(name))]
+    sheet = Sheet(results.problem.title, _("Extreme positions of the output"), to_scale(scene, used))
     for name in points:
         trajectory(sheet, whole.spot(name))
-    count = len(ends) - 1 if len(strokes.strokes) > 1 else 2
-    for k in range(1, count):
-        skeleton(sheet, motion, k, INERTIA, 1.6, 2.9)
+    for k in range(1, len(ends)):
+        other = replace(scene, k=k)
+        skeleton(sheet, other, INERTIA, 1.6, 2.9)
         for link in linkage.moving:
-            for start, end in pairwise(link_places(sheet, motion, link, k)):
+            for start, end in pairwise(by_points(sheet, other, link).hull):
                 sheet.ground.line(start, end)
-        for slide in linkage.slides:
-            if slide.name not in cylinders(linkage):
-                box(sheet, motion, slide, k, INERTIA)
-    mechanism(sheet, motion, 0)
-    named = {sheet.on(complex(motion.named(name).x[0])): name for name in points}
+        for pair in results.structure.pairs:
+            if pair.slide is not None and pair.name not in cylinders(linkage):
+                slider(sheet, other, pair, MEASURED, INERTIA)
+    measured(sheet, scene)
+    named = {name: sheet.on(complex(motion.named(name).x[0])) for name in points}
     sheet.labels = [
-        replace(label, text=label.text + ENDS[0], far=True) if named.get(label.anchor) == label.text else label
+        replace(label, text=label.text + ENDS[0], far=True)
+        if label.text in named and abs(label.anchor - named[label.text]) < MEASURED.hinge
+        else label
         for label in sheet.labels
     ]
-    sheet.ground.rivals += list(named)
-    for k in range(1, count):
+    sheet.ground.rivals += list(named.values())
+    for k in range(1, len(ends)):
         for name in points:
             at = sheet.on(complex(motion.named(name).x[k]))
             sheet.ground.rivals.append(at)
             if any(name in h.point for h in linkage.hinges):
-                sheet.circle(at, HINGE * 0.8, edge=INERTIA)
+                sheet.circle(at, 0.8 * MEASURED.hinge, edge=INERTIA)
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
             sheet.labels.append(Label(name + ENDS[min(k, 3)], at, 10, INERTIA, far=True))
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    sheet.note(say("synthesis.ends"))
+    sheet.note(_("I: start of the working stroke, II: its end"))
     return sheet

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
 from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
+from tmm_cli.pairs.base import axis
 from tmm_cli.vectors import Vector, dot, unit
 
 Place = Callable[[str, complex], complex]  # a point of a link (its axes, m) in the drawing's axes, m
@@ -75,17 +76,9 @@ Shape = Teeth | CamShape
 
 def shape(mesh: Mesh, linkage: Linkage, place: Place) -> Shape:
     """A higher pair at a pose."""
-    if mesh.kind == "gear":
-        return _gear(mesh, linkage, place)
-    if mesh.kind == "rack":
-        return _rack(mesh, linkage, place)
-    return _flat_faced(mesh, linkage, place) if mesh.slide else _with_roller(mesh, linkage, place)
-
-
-def shapes(linkage: Linkage, place: Place, names: Iterable[str] | None = None) -> list[Shape]:
-    """All higher pairs, or those named."""
-    wanted = None if names is None else set(names)
-    return [shape(m, linkage, place) for m in linkage.meshes if wanted is None or m.name in wanted]
+    kinds: dict[str, Callable[[Mesh, Linkage, Place], Shape]]
+    kinds = {"gear": _gear, "rack": _rack, "cam": _flat_faced if mesh.slide else _with_roller}
+    return kinds[mesh.kind](mesh, linkage, place)
 
 
 def contact(found: Shape) -> complex:
@@ -105,19 +98,12 @@ def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = 
         apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
         for disc in one.discs:
             if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
-                places += [disc.centre + disc.radius * way for way in (1, 1j, -1, -1j)]
+                places += [disc.centre + disc.radius * direction for direction in (1, 1j, -1, -1j)]
     return [p for p in places if np.isfinite(p)]
 
 
-def _axis(linkage: Linkage, mesh: Mesh, link: str) -> complex:
-    point = linkage.shared(mesh.carrier, link)
-    assert point is not None
-    return complex(np.ravel(linkage.local(mesh.carrier, point))[0])
-
-
 def _gear(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
-    a, b = (_axis(linkage, mesh, link) for link in (mesh.i, mesh.j))
-    one, other = place(mesh.carrier, a), place(mesh.carrier, b)
+    one, other = (place(mesh.carrier, axis(linkage, link, mesh.carrier)) for link in (mesh.i, mesh.j))
     pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
     radii = abs(pitch - one), abs(pitch - other)
     inner = mesh.ratio > 0
@@ -128,21 +114,26 @@ def _gear(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
     return Teeth(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
 
 
-def _guide(slide: Slide, place: Place) -> complex:
-    """Direction of a guide in the drawing."""
+def direction(slide: Slide, place: Place) -> complex:
+    """Of a guide, in the drawing: the way in which its run grows."""
     along = place(slide.carrier, complex(unit(slide.direction))) - place(slide.carrier, 0j)
     return along / abs(along)
 
 
-def _rack(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
+def _guided(mesh: Mesh, linkage: Linkage, place: Place) -> tuple[complex, complex]:
+    """Of a rack or a sliding follower: the way in which it goes, and its running point."""
     slide = linkage.slide(mesh.slide)
-    along = _guide(slide, place)
-    forward = along if slide.runner == mesh.j else -along
-    axis = place(mesh.carrier, _axis(linkage, mesh, mesh.i))
+    if slide.runner == mesh.j:
+        return direction(slide, place), place(slide.runner, slide.at)
+    return -direction(slide, place), place(slide.carrier, slide.through)
+
+
+def _rack(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
+    forward, start = _guided(mesh, linkage, place)
+    centre = place(mesh.carrier, axis(linkage, mesh.i, mesh.carrier))
     side = -1j * forward * math.copysign(1.0, mesh.ratio)
-    pitch = axis + side * abs(mesh.ratio)
-    start = place(slide.runner, slide.at) if slide.runner == mesh.j else place(slide.carrier, slide.through)
-    return Teeth(mesh, pitch, forward, (Disc(mesh.i, axis, abs(mesh.ratio)),), side, start)
+    pitch = centre + side * abs(mesh.ratio)
+    return Teeth(mesh, pitch, forward, (Disc(mesh.i, centre, abs(mesh.ratio)),), side, start)
 
 
 def _cam_angle(mesh: Mesh, place: Place) -> float:
@@ -152,67 +143,59 @@ def _cam_angle(mesh: Mesh, place: Place) -> float:
 def _flat_faced(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
     """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
     assert mesh.law is not None
-    slide = linkage.slide(mesh.slide)
-    along = _guide(slide, place)
-    forward = along if slide.runner == mesh.j else -along
-    axis = place(FRAME, _axis(linkage, mesh, mesh.i))
-    runs = place(slide.runner, slide.at) if slide.runner == mesh.j else place(slide.carrier, slide.through)
+    forward, runs = _guided(mesh, linkage, place)
+    centre = place(FRAME, axis(linkage, mesh.i, FRAME))
     angle = _cam_angle(mesh, place)
     turn = np.linspace(0, 2 * np.pi, STEPS)
     rise, slope, bend = mesh.law(turn)
     now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
-    height = float(dot(forward, runs - axis)) - now
+    height = float(dot(forward, runs - centre)) - now
     true = bool(np.min(height + rise + bend) > 0 and np.min(height + rise) > 0)
     if not true:  # no convex cam has its face there: the least that is convex, and not too slender
         height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
         height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
-    disk = axis + (height + rise - 1j * slope) * forward * unit(angle - turn)
-    foot = axis + (height + now) * forward
+    disk = centre + (height + rise - 1j * slope) * forward * unit(angle - turn)
+    foot = centre + (height + now) * forward
     reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
     touch = foot - 1j * slope_now * forward
-    return CamShape(mesh, axis, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
+    return CamShape(mesh, centre, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
 
 
 def _with_roller(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
     """The disk of a roller on a follower that swings."""
     assert mesh.law is not None
-    axis = place(FRAME, _axis(linkage, mesh, mesh.i))
-    pivot = place(FRAME, _axis(linkage, mesh, mesh.j))
+    centre, pivot = (place(FRAME, axis(linkage, link, FRAME)) for link in (mesh.i, mesh.j))
     turn = np.linspace(0, 2 * np.pi, STEPS)
     rise, angle = mesh.law(turn)[0], _cam_angle(mesh, place)
     middle = (float(np.max(rise)) + float(np.min(rise))) / 2
     outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
-    distance = abs(axis - pivot)
-    arm = ARM * (axis - pivot) * complex(unit(outward * math.acos(ARM)))
-    centre = pivot + arm * unit(rise - middle)
+    arm = ARM * (centre - pivot) * complex(unit(outward * math.acos(ARM)))
+    path = centre + (pivot + arm * unit(rise - middle) - centre) * unit(angle - turn)
     now = float(mesh.law(np.array(angle))[0])
     here = pivot + arm * complex(unit(now - middle))
-    path = axis + (centre - axis) * unit(angle - turn)
-    way = np.gradient(path)
-    normal = 1j * way / np.maximum(np.abs(way), 1e-300)
-    normal = normal * np.sign(dot(normal, axis - path))
-    roller = ROLLER * distance
+    tangent = np.gradient(path)
+    normal = 1j * tangent / np.maximum(np.abs(tangent), 1e-300)
+    normal = normal * np.sign(dot(normal, centre - path))
+    roller = ROLLER * abs(centre - pivot)
     disk = path + roller * normal
     touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
-    return CamShape(mesh, axis, disk, complex(touch), (here, here), (pivot, here), roller)
+    return CamShape(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
 
 
-def draw(
-    sheet: Sheet, found: Shape, hue: Mapping[str, str], span: tuple[float, float] | None = None, *, bare: bool = False
-) -> None:
-    """A higher pair. hue: colours of links. span: how far the rack goes on both sides of the pitch point (m).
+def draw(sheet: Sheet, found: Shape, hue: Mapping[str, str], span: tuple[float, float] | None = None) -> None:
+    """What belongs to links that have a colour (hue), and a cam of any.
 
-    bare: only what belongs to a link that has a colour.
+    span: how far the rack goes on both sides of the pitch point (m).
     """
     if isinstance(found, CamShape):
-        _draw_cam(sheet, found, hue, bare)
+        _draw_cam(sheet, found, hue)
         return
     pitch = sheet.on(found.pitch)
     for disc in found.discs:
-        if disc.link in hue or not bare:
-            _wheel(sheet, disc, hue.get(disc.link, THIN), pitch, found.along)
-    if found.side != 0 and (found.mesh.j in hue or not bare):
-        _rack_bar(sheet, found, hue.get(found.mesh.j, THIN), span)
+        if disc.link in hue:
+            _wheel(sheet, disc, hue[disc.link], pitch, found.along)
+    if found.side != 0 and found.mesh.j in hue:
+        _rack_bar(sheet, found, hue[found.mesh.j], span)
     sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
 
 
@@ -235,10 +218,10 @@ def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex
         _curve(sheet, centre + outside * ways, colour, 1.2, "-", 2.05)
     if disc.link == FRAME:
         out = 1.0 if disc.ring else -1.0
-        for way in unit(np.linspace(0, 2 * np.pi, int(np.clip(2 * np.pi * outside / 3.2, 12, 900)), endpoint=False)):
-            foot = centre + outside * complex(way)
-            stroke = [foot, foot + complex(way) * (1.7 * out + 1.2j)]
-            _curve(sheet, np.array(stroke), THIN, 0.6, "-", 2.0)
+        number = int(np.clip(2 * np.pi * outside / 3.2, 12, 900))
+        for way in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
+            stroke = centre + way * np.array([outside, outside + 1.7 * out + 1.2j])
+            _curve(sheet, stroke, THIN, 0.6, "-", 2.0)
     _tooth_hint(sheet, centre, radius, pitch, along, colour)
 
 
@@ -269,9 +252,7 @@ def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float]
     _curve(sheet, np.concatenate([teeth, back, teeth[:1]]), colour, 1.1, "-", 2.6)
     _curve(sheet, pitch + np.array([low - 3, high + 3]) * along, colour, 0.8, CHAIN, 2.05)
     if found.mesh.j == FRAME:
-        for foot in np.linspace(low, high, max(int((high - low) / 2.0), 2)):
-            stroke = np.array([0, -1.2 * along + 1.7 * side])
-            _curve(sheet, pitch + foot * along + RIM * side + stroke, THIN, 0.6, "-", 2.4)
+        hatch(sheet, back[1], back[0], side)
         return
     start = sheet.on(found.start)
     foot = float(np.clip(dot(along, start - pitch), low, high))
@@ -280,16 +261,16 @@ def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float]
         sheet.line([start, end], colour, 1.6, z=2.9)
 
 
-def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str], bare: bool) -> None:
+def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str]) -> None:
     """The disk, and the follower's face with its stem or its arm with the roller."""
     disk = [sheet.on(complex(p)) for p in found.disk]
-    colour, own = hue.get(found.mesh.i, THIN), hue.get(found.mesh.j, THIN)
     if found.mesh.i in hue:
-        sheet.area(disk[:-1], "#f1f3f6", colour, 1.2, 1.9)
+        sheet.area(disk[:-1], "#f1f3f6", hue[found.mesh.i], 1.2, 1.9)
     else:
-        sheet.line(disk, colour, 0.8, DASHED, 1.9)
-    if bare and found.mesh.j not in hue:
+        sheet.line(disk, THIN, 0.8, DASHED, 1.9)
+    if found.mesh.j not in hue:
         return
+    own = hue[found.mesh.j]
     stem = [sheet.on(p) for p in found.stem]
     if abs(stem[1] - stem[0]) > 1.0:
         sheet.line(stem, own, 1.8, z=2.9)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
-from tmm_cli.motion import Motion
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.vectors import Real, dot
 
 

@@ -15,19 +15,19 @@ import numpy as np
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Reaction, Reactions, power, react
 from tmm_cli.groups.linear import solve
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Friction
-from tmm_cli.motion import Motion
 from tmm_cli.structure.assur import Structure
+from tmm_cli.tolerances import FRICTION_AGREES, RESTS
 from tmm_cli.vectors import Real, Vector, unit
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
 ROUNDS = 40  # of Newton's method in each
-AGREE = 1e-13  # of the largest reaction
 OUTER = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
 
 
 @dataclass(frozen=True)
-class Rubbed:
+class FrictionSolution:
     """Reactions with friction. locked: positions where the mechanism locks itself; pair: the one that rubs most there.
 
     Where it locks there are no forces with which it would move: they are nan.
@@ -62,7 +62,7 @@ class Losses:
         return (self.drivers + sum(self.pairs.values())) / self.drivers
 
 
-def losses(rubbed: Rubbed, motion: Motion) -> Losses:
+def losses(rubbed: FrictionSolution, motion: Motion) -> Losses:
     """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
     pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
     return Losses(_over(rubbed.drivers, motion), pairs, bool(np.any(rubbed.locked)))
@@ -74,7 +74,9 @@ def _over(work: Real, motion: Motion) -> float:
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
 
 
-def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions) -> Rubbed:
+def solve_friction(
+    motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions
+) -> FrictionSolution:
     """The force plan whose friction is that of its own reactions.
 
     Reactions follow friction in proportion, so one plan for each pair's friction, of 1 N in its pair, tells all of it;
@@ -95,7 +97,7 @@ def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: 
         new = _forces(reactions, names)
         with np.errstate(invalid="ignore"):
             off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
-        if not bool(np.any(off[:, ~locked & motion.moving] > AGREE)):
+        if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
             break
         start = new - np.einsum("kjn,kn->jn", response, sizes)
     work = {f.pair: _work(f, motion, reactions) for f in given}
@@ -106,7 +108,7 @@ def rub(motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: 
         rubbed = tuple(_nowhere(load, locked) for load in rubbed)
         reactions = react(motion, structure, (*loads, *rubbed))
         work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
-    return Rubbed(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
+    return FrictionSolution(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
 
 
 def _forces(reactions: Reactions, names: list[str]) -> Vector:
@@ -154,7 +156,7 @@ def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     else:
         first = motion.first[pair.on].w - (motion.first[pair.by].w if pair.by != FRAME else 0.0)
     scale = float(np.nanmax(np.abs(first), initial=0.0))
-    moving = np.where(np.abs(first) > 1e-12 * scale, first, 0.0)
+    moving = np.where(np.abs(first) > RESTS * scale, first, 0.0)
     return np.sign(moving * motion.rate), np.abs(moving)
 
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
-from tmm_cli.motion import Motion
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.tolerances import NO_MOMENT
 from tmm_cli.vectors import Real, Vector, dot
-
-ROUNDING = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
 
 
 @dataclass(frozen=True)
@@ -68,6 +67,6 @@ def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
     acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
     known = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
     plan_size = np.where(known, np.abs(plan), 0.0)
-    largest = float(np.max(np.where(known, np.maximum(plan_size, ROUNDING * acting), 0.0), initial=0.0))
+    largest = float(np.max(np.where(known, np.maximum(plan_size, NO_MOMENT * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
     return Lever(tuple(items), balancing, difference)

@@ -2,43 +2,61 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.springs import spring_loads
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import Strokes, output_place
 from tmm_cli.linkage import Load
-from tmm_cli.motion import Motion
-from tmm_cli.strokes import Strokes, output_place
 from tmm_cli.vectors import Real, pi
 
 
 def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
-    """All that acts on each moving link but friction, in the order of the links. Massless links carry nothing."""
-    linkage = motion.linkage
-    still = np.zeros(np.shape(motion.q))
-    found = []
-    for name in linkage.moving:
-        link = linkage.links[name]
-        if np.any(link.mass != 0):
-            found.append(Applied(f"G{name}", "weight", name, link.centre, link.mass * linkage.gravity + still, still))
-        if np.any(link.mass != 0) or np.any(link.inertia != 0):
-            inertia = -link.mass * motion.centre(name).a
-            moment = -link.inertia * motion.link(name).epsilon
-            found.append(Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}"))
-    found += [_given(load, motion, strokes) for load in linkage.loads]
-    found += [load for spring in linkage.springs for load in spring_loads(spring, motion)]
-    order = {name: k for k, name in enumerate(linkage.links)}
+    """All that acts on each moving link but friction, in the order of the links."""
+    order = {name: k for k, name in enumerate(motion.linkage.links)}
+    found = [load for kind in KINDS for load in kind(motion, strokes)]
     return tuple(sorted(found, key=lambda a: order[a.link]))
 
 
-def _given(load: Load, motion: Motion, strokes: Strokes | None) -> Applied:
-    size = np.ones(np.shape(motion.q))
-    if load.table is not None:
-        size = load.table(table_argument(load.table.against, motion, strokes))
-    if load.working_stroke_only and strokes is not None and strokes.strokes:
-        size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
-    turn = motion.poses[load.link].z if load.follows else 1.0
-    return Applied(load.name, "load", load.link, load.at, load.force * size * turn, load.moment * size, load.name)
+def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """Weights in the centres of mass, and inertia about them. Massless links carry nothing."""
+    still = np.zeros(np.shape(motion.q))
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        if np.any(link.mass != 0):
+            weight = link.mass * motion.linkage.gravity + still
+            yield Applied(f"G{name}", "weight", name, link.centre, weight, still)
+        if np.any(link.mass != 0) or np.any(link.inertia != 0):
+            inertia = -link.mass * motion.centre(name).a
+            moment = -link.inertia * motion.link(name).epsilon
+            yield Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}")
+
+
+def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """The loads of the task."""
+    for load in motion.linkage.loads:
+        size = np.ones(np.shape(motion.q))
+        if load.table is not None:
+            size = load.table(table_argument(load.table.against, motion, strokes))
+        size = WHEN[load.when](load, size, motion, strokes)
+        turned = motion.poses[load.link].z if load.follows else 1.0
+        force, moment = load.force * size * turned, load.moment * size
+        yield Applied(load.name, "load", load.link, load.at, force, moment, load.name)
+
+
+def always(load: Load, size: Real, motion: Motion, strokes: Strokes | None) -> Real:
+    """A load that acts all the time."""
+    return size
+
+
+def in_working_stroke(load: Load, size: Real, motion: Motion, strokes: Strokes | None) -> Real:
+    """A load that acts in working strokes; always where there are none."""
+    if strokes is None or not strokes.strokes:
+        return size
+    return np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
 
 
 def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
@@ -56,5 +74,9 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
-    way: Real = run * np.sign(first.run)
-    return way
+    worked: Real = run * np.sign(first.run)
+    return worked
+
+
+KINDS = (weights_and_inertia, given_loads, spring_loads)  # what acts on links, each from a motion and its strokes
+WHEN = {"always": always, "working stroke": in_working_stroke}  # the size of a load, by the time at which it acts

@@ -13,9 +13,9 @@ from functools import reduce
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
-from tmm_cli.groups.base import Held, Wrench
+from tmm_cli.groups.state import PairReaction, Wrench
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Driver, Linkage
-from tmm_cli.motion import Motion
 from tmm_cli.structure.assur import Group, Pair, Structure
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
@@ -108,11 +108,13 @@ class Reactions:
 def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:
     """Reactions in all pairs and what balances the drivers, at every position of the motion."""
     linkage = motion.linkage
-    on = {name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links}
+    applied = {
+        name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links
+    }
     for acting in _by_place(loads):
         link, arm = acting[0].link, acting[0].at * motion.poses[acting[0].link].z
         force = reduce(np.add, [load.force for load in acting])
-        on[link] += Wrench(force, cross(arm, force) + reduce(np.add, [load.moment for load in acting]))
+        applied[link] += Wrench(force, cross(arm, force) + reduce(np.add, [load.moment for load in acting]))
     borne: dict[str, list[Reaction]] = {name: [] for name in linkage.links}
     groups: list[GroupForces] = []
     frames: list[Reaction] = []
@@ -120,25 +122,22 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
     with np.errstate(invalid="ignore", divide="ignore"):
         for kernel, at in zip(reversed(motion.kernels), reversed(motion.placements), strict=True):
             group = kernel.group
-            held = kernel.reactions(at, motion.poses, tuple(on[link] for link in group.links))
-            own = [pair.i if pair.i in group.links else pair.j for pair in group.outer]
-            parts = zip(group.outer, own, held.outer, strict=True)
-            outer = tuple(_reaction(motion, pair, link, part) for pair, link, part in parts)
-            inner = tuple(
-                _reaction(motion, pair, kernel.inner_on(pair), part)
-                for pair, part in zip(group.inner, held.inner, strict=True)
-            )
+            found = kernel.reactions(at, motion.poses, tuple(applied[link] for link in group.links))
+            parts = zip(group.outer, found.outer, strict=True)
+            outer = tuple(_reaction(motion, pair, group.own(pair), part) for pair, part in parts)
+            parts = zip(group.inner, found.inner, strict=True)
+            inner = tuple(_reaction(motion, pair, kernel.inner_on(pair), part) for pair, part in parts)
             groups.append(GroupForces(group, outer, inner, tuple(r for link in group.links for r in borne[link])))
             for reaction in outer:
-                on[reaction.by] += _opposite(reaction, motion)
+                applied[reaction.by] += _opposite(reaction, motion)
                 borne[reaction.by].append(reaction)
             for driver in group.drivers:
-                balance = balances[driver.link] = _driven(motion, driver, held.drives[driver.link])
+                balance = balances[driver.link] = _driven(motion, driver, found.drives[driver.link])
                 for link, sense in ((driver.base, -1), (driver.link, 1)):
                     if link not in group.links:
-                        on[link] += _driving(motion, balance, link, sense)
+                        applied[link] += _driving(motion, balance, link, sense)
         for driver in linkage.cranks:
-            frame, balances[driver.link] = _drive(motion, structure, driver, on[driver.link])
+            frame, balances[driver.link] = _drive(motion, structure, driver, applied[driver.link])
             frames.append(frame)
     return Reactions(
         loads, tuple(reversed(groups)), tuple(frames), tuple(balances[d.link] for d in linkage.drivers),
@@ -162,22 +161,22 @@ def power(motion: Motion, reactions: Reactions) -> Real:
     return total
 
 
-def _reaction(motion: Motion, pair: Pair, own: str, held: Held) -> Reaction:
+def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reaction:
     other = pair.other(own)
     if pair.mesh is not None:
-        assert held.at is not None
-        return Reaction(pair, own, other, held.at, held.force, held.couple, back=held.back)
+        assert found.at is not None
+        return Reaction(pair, own, other, found.at, found.force, found.couple, back=found.back)
     if pair.slide is None:
         at = motion.poses[own].at(motion.linkage.local(own, pair.point))
-        return Reaction(pair, own, other, at, held.force, None, held.tangential, held.normal)
-    assert held.couple is not None
+        return Reaction(pair, own, other, at, found.force, None, found.tangential, found.normal)
+    assert found.couple is not None
     slide = pair.slide
     at = motion.poses[slide.runner].at(slide.at)
     u = motion.poses[slide.carrier].z * unit(slide.direction)
-    signed = dot(1j * u, held.force)
+    signed = dot(1j * u, found.force)
     # on the carrier both force and couple change sign, and the arm stays
-    arm = _arm(motion, held.couple, signed)
-    return Reaction(pair, own, other, at, held.force, held.couple, signed=signed, arm=arm)
+    arm = _arm(motion, found.couple, signed)
+    return Reaction(pair, own, other, at, found.force, found.couple, signed=signed, arm=arm)
 
 
 def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
@@ -206,10 +205,15 @@ def _driven(motion: Motion, driver: Driver, size: Real) -> Balance:
     if driver.kind == "turn":
         at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
         return Balance(driver, "moment", size, size * np.nan, size * 0j, at, float("nan"))
-    slide = linkage.slide(driver.joint)
-    u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
-    at = motion.poses[slide.runner].at(slide.at)
+    u, at = _guide(motion, driver)
     return Balance(driver, "force", None, size, size * u, at, 1.0)
+
+
+def _guide(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
+    """Along which direction a cylinder drives its link, and at which point (m)."""
+    slide = motion.linkage.slide(driver.joint)
+    u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
+    return u, motion.poses[slide.runner].at(slide.at)
 
 
 def _driving(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
@@ -238,10 +242,7 @@ def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) 
             Reaction(pair, driver.link, FRAME, pivot, force),
             Balance(driver, driver.balance, moment, size, vector, pivot + radius, arm),
         )
-    slide = pair.slide
-    assert slide is not None
-    u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
-    at = motion.poses[slide.runner].at(slide.at)
+    u, at = _guide(motion, driver)
     size = -dot(total.force, u)
     guide = -1j * u * dot(total.force, 1j * u)
     # the balancing force acts in the line of the running point, so moments about it leave the guide's couple

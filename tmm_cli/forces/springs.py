@@ -7,30 +7,32 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Spring
-from tmm_cli.motion import Motion
 from tmm_cli.vectors import Real, dot
 
 
-def spring_loads(spring: Spring, motion: Motion) -> Iterable[Applied]:
-    """The equal and opposite loads of a spring; on the frame they are left out."""
+def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """The equal and opposite loads of each spring; on the frame they are left out."""
     still = np.zeros(np.shape(motion.q))
-    if spring.turns:
-        pull = _twist(spring, motion)
-        pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
-    else:
-        i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
-        way = j.x - i.x
-        length = np.abs(way)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            along = np.where(length > 0, way / length, 0.0)
-        longer = dot(along, j.v - i.v)
-        pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
-        pairs = ((spring.j, spring.at_j, -pull * along, still), (spring.i, spring.at_i, pull * along, still))
-    for link, at, force, moment in pairs:
-        if link in motion.linkage.moving:
-            name = spring.name if link == spring.j or spring.j not in motion.linkage.moving else f"{spring.name}'"
-            yield Applied(name, "load", link, at, force, moment, name)
+    moving = motion.linkage.moving
+    for spring in motion.linkage.springs:
+        if spring.turns:
+            pull = _twist(spring, motion)
+            pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
+        else:
+            i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
+            length = np.abs(j.x - i.x)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                along = np.where(length > 0, (j.x - i.x) / length, 0.0)
+            longer = dot(along, j.v - i.v)
+            pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
+            pairs = ((spring.j, spring.at_j, -pull * along, still), (spring.i, spring.at_i, pull * along, still))
+        for link, at, force, moment in pairs:
+            if link in moving:
+                name = spring.name if link == spring.j or spring.j not in moving else f"{spring.name}'"
+                yield Applied(name, "load", link, at, force, moment, name)
 
 
 def twisted(spring: Spring, motion: Motion) -> Real:

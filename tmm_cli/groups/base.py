@@ -9,50 +9,57 @@ taking dot and cross products until one unknown is left.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 
-from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
-from tmm_cli.groups.winding import Winds
+from tmm_cli.groups.branch_trace import BranchTrace
+from tmm_cli.groups.state import (
+    Accel,
+    Accels,
+    Drives,
+    GroupReactions,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+)
+from tmm_cli.groups.unwrapped_angles import Winding
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair
+from tmm_cli.tolerances import NEAR_DEAD
 from tmm_cli.vectors import Real, Vector, unit
 
-if TYPE_CHECKING:
-    from tmm_cli.groups.track import Track
-
-__all__ = ["Accel", "Closed", "Dyad", "Held", "Holding", "Kernel", "Placement", "Pose", "Rate", "Wrench"]
-
-ROUNDINGS = 8.0  # a distance below so many roundings of its data cannot be told from zero
+__all__ = ["Accels", "Closed", "Dyad", "Kernel", "Poses", "Rates"]
 
 
 @dataclass(frozen=True)
-class Turn:
+class HingeEnd:
     """An outer hinge: its place on the link that is known and on the group's own."""
 
     known: str
     there: complex
     here: complex
 
-    def place(self, poses: Mapping[str, Pose]) -> Vector:
+    def place(self, poses: Poses) -> Vector:
         """Where the hinge is, m."""
         return poses[self.known].at(self.there)
 
-    def velocity(self, poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> Vector:
+    def velocity(self, poses: Poses, rates: Rates) -> Vector:
         """Velocity of the hinge, m/s."""
         return rates[self.known].at(self.there * poses[self.known].z)
 
-    def acceleration(self, poses: Mapping[str, Pose], rates: Mapping[str, Rate], accels: Mapping[str, Accel]) -> Vector:
+    def acceleration(self, poses: Poses, rates: Rates, accels: Accels) -> Vector:
         """Acceleration of the hinge, m/s2."""
         return accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
 
 
 @dataclass(frozen=True)
-class Run:
+class SliderEnd:
     """A sliding pair seen from one side: `here` (own axes) stays on the line through `there` along e^(i direction).
 
     there and direction are in the axes of the other link, and own angle - other's angle = turned. It says the same
@@ -66,29 +73,29 @@ class Run:
     turned: float
     runs_here: bool
 
-    def runner_arm(self, own: Pose, poses: Mapping[str, Pose]) -> Vector:
+    def runner_arm(self, own: Pose, poses: Poses) -> Vector:
         """The running point, to which the couple is reduced, from the own link's origin (drawing's axes, m)."""
         return self.here * own.z if self.runs_here else poses[self.known].at(self.there) - own.x
 
 
-def turn_end(pair: Pair, own: str, linkage: Linkage) -> Turn:
+def hinge_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd:
     """An outer (or inner) hinge as its link `own` sees it."""
     known = pair.other(own)
-    return Turn(known, linkage.local(known, pair.point), linkage.local(own, pair.point))
+    return HingeEnd(known, linkage.local(known, pair.point), linkage.local(own, pair.point))
 
 
-def run_end(pair: Pair, own: str) -> Run:
+def slider_end(pair: Pair, own: str) -> SliderEnd:
     """A sliding pair as its link `own` sees it."""
     slide = pair.slide
     assert slide is not None
     if own == slide.runner:
-        return Run(slide.carrier, slide.through, slide.at, slide.direction, slide.turned, True)
-    return Run(slide.runner, slide.at, slide.through, slide.direction - slide.turned, -slide.turned, False)
+        return SliderEnd(slide.carrier, slide.through, slide.at, slide.direction, slide.turned, True)
+    return SliderEnd(slide.runner, slide.at, slide.through, slide.direction - slide.turned, -slide.turned, False)
 
 
-def seen(pair: Pair, own: str, linkage: Linkage) -> Turn | Run:
+def seen(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
     """A lower pair as its link `own` sees it."""
-    return turn_end(pair, own, linkage) if pair.kind == "R" else run_end(pair, own)
+    return hinge_end(pair, own, linkage) if pair.kind == "R" else slider_end(pair, own)
 
 
 @dataclass(frozen=True)
@@ -99,39 +106,32 @@ class Kernel(ABC):
     size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
 
     @property
-    def followed(self) -> Track | None:
-        """Where its links are along the driver's way, if it had to be followed there."""
+    def followed(self) -> BranchTrace | None:
+        """Where its links are along the driver's range, if it had to be followed there."""
         return None
 
     @abstractmethod
-    def again(self, linkage: Linkage) -> Kernel:
+    def rebind(self, linkage: Linkage) -> Kernel:
         """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
 
-    near: ClassVar[float] = 0.05  # a margin below this is said to be near a dead position
+    near: ClassVar[float] = NEAR_DEAD  # a margin below this is said to be near a dead position
 
     @abstractmethod
-    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
-        """Places of its links at the driver's places q; where it cannot be assembled the nearest it comes (see gap)."""
+    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+        """Places of its links at the driver's places q, or the nearest it comes to being assembled (see residual)."""
 
     @abstractmethod
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
         """Velocities of its links."""
 
     @abstractmethod
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
         """Accelerations of its links; rates holds those of its own links too."""
 
     @abstractmethod
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Reactions of its pairs that hold its links, in their order, under the given forces."""
 
     def inner_on(self, pair: Pair) -> str:
@@ -147,7 +147,20 @@ class Closed(Kernel):
     """
 
     sign: int = field(default=1, kw_only=True)
-    winding: Winds | None = field(default=None, kw_only=True)
+    winding: Winding | None = field(default=None, kw_only=True)
+
+    @classmethod
+    @abstractmethod
+    def fits(cls, group: Group) -> bool:
+        """Whether a group is of this type."""
+
+    @classmethod
+    @abstractmethod
+    def of(cls, group: Group, linkage: Linkage) -> Self:
+        """A group with its numbers, in its first assembly."""
+
+    def rebind(self, linkage: Linkage) -> Self:
+        return replace(type(self).of(self.group.rebind(linkage), linkage), sign=self.sign, winding=self.winding)
 
     @property
     @abstractmethod
@@ -156,45 +169,57 @@ class Closed(Kernel):
 
     @property
     @abstractmethod
-    def leads(self) -> tuple[tuple[Pair, Turn | Run], ...]:
+    def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
         """Its outer pairs, each as its own link sees it."""
 
-    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
         at = self.closed(poses, drives)
         return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
 
     @abstractmethod
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
         """Places of its links in the group's own assembly."""
 
     @abstractmethod
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
-        """The rate at which its gap grows, from the motion of the links it hangs on and of its drivers alone."""
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        """The rate at which its residual grows, from the motion of the links it hangs on and of its drivers alone."""
+
+
+EndA = TypeVar("EndA", bound=HingeEnd | SliderEnd)
+EndB = TypeVar("EndB", bound=HingeEnd | SliderEnd)
+Inner = TypeVar("Inner", bound=HingeEnd | SliderEnd)
 
 
 @dataclass(frozen=True)
-class Dyad(Closed):
+class Dyad(Closed, Generic[EndA, EndB, Inner]):
     """An Assur group of class II: two links, one inner pair, two outer pairs."""
 
-    ends: tuple[Turn | Run, Turn | Run]
-    inner: Turn | Run
+    ends: tuple[EndA, EndB]
+    inner: Inner
 
     type: ClassVar[str]
     assemblies = 2
 
     @classmethod
-    def of(cls, group: Group, linkage: Linkage, sign: int = 1) -> Dyad:
-        """The group with its numbers; the inner pair is seen from link b."""
-        a, b = group.links
-        ends = (seen(group.outer[0], a, linkage), seen(group.outer[1], b, linkage))
-        size = reduce(np.maximum, [spread(linkage, link) for link in (a, b, *(end.known for end in ends))])
-        return cls(group, size, ends, seen(group.inner[0], b, linkage), sign=sign)
+    def fits(cls, group: Group) -> bool:
+        return group.type == cls.type and not group.drivers
 
-    def again(self, linkage: Linkage) -> Kernel:
-        return replace(type(self).of(self.group.again(linkage), linkage, self.sign), winding=self.winding)
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage) -> Self:
+        """The inner pair is seen from link b."""
+        a, b = group.links
+        ends: Any = (seen(group.outer[0], a, linkage), seen(group.outer[1], b, linkage))
+        size = reduce(np.maximum, [spread(linkage, link) for link in (a, b, *(end.known for end in ends))])
+        inner: Any = seen(group.inner[0], b, linkage)
+        return cls(group, size, ends, inner)
 
     @property
-    def leads(self) -> tuple[tuple[Pair, Turn | Run], ...]:
+    def parts(self) -> tuple[EndA, EndB, Inner]:
+        """Outer pairs of a and of b, and the inner pair."""
+        return *self.ends, self.inner
+
+    @property
+    def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
         return tuple(zip(self.group.outer, self.ends, strict=True))
 
     def inner_on(self, pair: Pair) -> str:
@@ -217,7 +242,7 @@ def epsilon(values: Any) -> float:
     return float(np.finfo(values.real.dtype).eps) / 2
 
 
-def line(run: Run, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:
+def line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
     """A point of the guide and its direction, in the drawing's axes."""
     pose = poses[run.known]
     return pose.at(run.there), pose.z * unit(run.direction)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.groups.base import ROUNDINGS, Accel, Rate, epsilon
+from tmm_cli.groups.base import epsilon
+from tmm_cli.groups.state import Accel, Rate
+from tmm_cli.tolerances import ROUNDINGS
 from tmm_cli.vectors import Real, Vector, cross, dot
 
 
@@ -16,12 +18,12 @@ def meet(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
 
 
 def parallel(det: Real) -> tuple[Real, Real]:
-    """gap and slack of two guides: they are parallel within rounding, or not."""
+    """Residual and slack of two guides: they are parallel within rounding, or not."""
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * epsilon(det))
 
 
 def turned_apart(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
-    """Rate of the gap -|u x v| when the two guides turn."""
+    """Rate of the residual -|u x v| when the two guides turn."""
     rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
     return rate
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tmm_cli.tolerances import TRUNCATED
 from tmm_cli.vectors import Real
-
-TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for nothing
 
 
 def solve(matrix: Real, right: Real) -> Real:

@@ -8,29 +8,35 @@ squares, which is exact as long as they agree.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.groups.base import ROUNDINGS, Kernel, epsilon, reach, spread
-from tmm_cli.groups.linear import TRUNCATED, least_over_largest, signed_determinant, solve
-from tmm_cli.groups.state import Accel, Drives, Held, Holding, Placement, Pose, Rate, Wrench
-from tmm_cli.groups.track import Starts, State, Track
+from tmm_cli.groups.base import Accels, Kernel, Poses, Rates, epsilon, reach, spread
+from tmm_cli.groups.branch_trace import BranchTrace
+from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
+from tmm_cli.groups.state import (
+    Accel,
+    Drives,
+    GroupReactions,
+    Placement,
+    Pose,
+    Rate,
+    State,
+    Wrench,
+)
 from tmm_cli.linkage import Linkage
 from tmm_cli.pairs import PAIRS
-from tmm_cli.pairs.base import Constraint, Grip
+from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
-from tmm_cli.vectors import Real, cross, unit
+from tmm_cli.tolerances import CONVERGED, LAST_STEP, LAST_STEP_EXTENDED, NEAR_SINGULAR, ROUNDINGS, SINGULAR, TRUNCATED
+from tmm_cli.vectors import Real, Vector, cross, unit
 
 ROUNDS = 12  # of Newton's method at most
-NEAR = 1e-9  # a step below this squares to less than rounding
-FINER = 1e-11  # likewise in longdouble
-DEAD = 1e-16  # a margin below this is rounding
-CONVERGED = 1e-6  # a last step above this has not converged
 
 
 @dataclass(frozen=True)
@@ -39,30 +45,29 @@ class Newton(Kernel):
 
     constraints: tuple[Constraint, ...]
     start: State | None = None
-    track: Starts | None = None
+    trace: BranchTrace | None = None
     passive: bool = False
     order: Mapping[str, int] = field(default_factory=dict)
 
-    near = 0.005  # of singular values: a well-shaped triad has 0.1
+    near = NEAR_SINGULAR
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Newton:
         """The group with its numbers, which may be arrays, not yet assembled."""
         pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
-        known = {pair.other(link) for pair in group.outer for link in group.links if link in (pair.i, pair.j)}
-        size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *known})])
+        size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *group.known})])
         size = size if np.all(size > 0) else reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
 
-    def again(self, linkage: Linkage) -> Newton:
-        return replace(Newton.of(self.group.again(linkage), linkage), start=self.start, track=self.track)
+    def rebind(self, linkage: Linkage) -> Newton:
+        return replace(Newton.of(self.group.rebind(linkage), linkage), start=self.start, trace=self.trace)
 
     @property
-    def followed(self) -> Track | None:
-        return self.track if isinstance(self.track, Track) else None
+    def followed(self) -> BranchTrace | None:
+        return self.trace
 
     @cached_property
     def by_angle(self) -> bool:
@@ -70,10 +75,12 @@ class Newton(Kernel):
         still = {name: Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1)) for name in self._all}
         rows = []
         for constraint in self.constraints:
-            grips = constraint.grips(still) if constraint.kind in "GPD" else {}
+            of_links = constraint.jacobian_rows(still) if constraint.kind in "GPD" else {}
             for k, length in enumerate(constraint.lengths):
-                if not length and grips:
-                    rows.append([float(np.ravel(grips[n][k][1])[0]) if n in grips else 0.0 for n in self.group.links])
+                if not length and of_links:
+                    rows.append(
+                        [float(np.ravel(of_links[n][k][1])[0]) if n in of_links else 0.0 for n in self.group.links]
+                    )
         return bool(rows) and int(np.linalg.matrix_rank(np.array(rows))) == len(self.group.links)
 
     @property
@@ -93,12 +100,12 @@ class Newton(Kernel):
         """The size on an axis of its own."""
         return np.asarray(self.size)[..., None]
 
-    def _fill(self, gripped: Sequence[Mapping[str, Sequence[Grip]]], shape: tuple[int, ...], kind: type) -> Real:
-        """Rows of grips as a matrix (..., rows, unknowns), without dimension."""
+    def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], shape: tuple[int, ...], kind: type) -> Real:
+        """Rows of all pairs as a matrix (..., rows, unknowns), without dimension."""
         matrix: Real = np.zeros((*shape, self._scale.shape[-1], 3 * len(self.group.links)), dtype=kind)
         row = 0
-        for constraint, grips in zip(self.constraints, gripped, strict=True):
-            for link, lines in grips.items():
+        for constraint, of_links in zip(self.constraints, parts, strict=True):
+            for link, lines in of_links.items():
                 if link in self.order:
                     at = 3 * self.order[link]
                     for k, (c, m) in enumerate(lines):
@@ -112,19 +119,19 @@ class Newton(Kernel):
         matrix *= self._scale.astype(kind)[..., :, None] * self._columns[..., None, :]  # rounded as the matrix is
         return matrix
 
-    def matrix(self, poses: Mapping[str, Pose]) -> Real:
+    def matrix(self, poses: Poses) -> Real:
         """The Jacobian without dimension, (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
-        return self._fill(self._grips(poses), np.shape(x), x.real.dtype.type)
+        return self._fill(self._rows(poses), np.shape(x), x.real.dtype.type)
 
-    def _grips(self, poses: Mapping[str, Pose]) -> list[Mapping[str, Sequence[Grip]]]:
-        return [c.grips(poses) for c in self.constraints]
+    def _rows(self, poses: Poses) -> list[Mapping[str, Sequence[JacobianRow]]]:
+        return [c.jacobian_rows(poses) for c in self.constraints]
 
-    def gaps(self, poses: Mapping[str, Pose], drives: Drives) -> Real:
+    def residuals(self, poses: Poses, drives: Drives) -> Real:
         """What is short of closing, without dimension, (..., rows)."""
-        return _stacked([gap for c in self.constraints for gap in c.gaps(poses, drives)]) * self._scale
+        return _stacked([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
 
-    def known(self, poses: Mapping[str, Pose], motion: Mapping[str, tuple[object, Real]]) -> Real:
+    def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
         """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
         shape = np.shape(poses[self.group.links[0]].x)
         rows: list[Real] = []
@@ -132,8 +139,8 @@ class Newton(Kernel):
         for constraint in self.constraints:
             total: list[Real] = [nothing] * len(constraint.lengths)
             outer = [link for link in constraint.links if link not in self.order]
-            grips = constraint.grips(poses) if outer else {}
-            for link, lines in grips.items():
+            of_links = constraint.jacobian_rows(poses) if outer else {}
+            for link, lines in of_links.items():
                 if link not in self.order:
                     v, w = motion[link]
                     total = [t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
@@ -148,118 +155,107 @@ class Newton(Kernel):
 
     def poses_of(self, state: State) -> dict[str, Pose]:
         """A state as poses."""
-        x, z, turn = state.x, unit(state.turn), state.turn
-        return {link: Pose(x[..., k], z[..., k], turn[..., k]) for link, k in self.order.items()}
+        x, z, unwrapped = state.x, unit(state.unwrapped), state.unwrapped
+        return {link: Pose(x[..., k], z[..., k], unwrapped[..., k]) for link, k in self.order.items()}
 
-    def close(
-        self, start: State, poses: Mapping[str, Pose], drives: Drives, rounds: int = ROUNDS
-    ) -> tuple[State, Real]:
+    def close(self, start: State, poses: Poses, drives: Drives, rounds: int = ROUNDS) -> tuple[State, Real]:
         """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
         state = start
         size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
-            near = size < (NEAR if state.turn.dtype == np.float64 else FINER)
+            near = size < (LAST_STEP if state.unwrapped.dtype == np.float64 else LAST_STEP_EXTENDED)
             everything = {**poses, **self.poses_of(state)}
-            step = solve(self.matrix(everything), -self.gaps(everything, drives))
+            step = solve(self.matrix(everything), -self.residuals(everything, drives))
             size = np.max(np.abs(step), axis=-1)
-            moved = step.reshape(*np.shape(step)[:-1], -1, 3)
-            state = State(
-                state.x + self.unit * (moved[..., 0] + 1j * moved[..., 1]), state.turn + moved[..., 2],
-            )  # fmt: skip
+            state = state.moved(step, self.unit)
             if bool(np.all(near | ~np.isfinite(size))):
                 break
         return state, size
 
-    def place(self, poses: Mapping[str, Pose], q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
         q = np.asarray(q)
-        if self.track is not None:
-            start, gap = self.track.start(q)
-            start = State(start.x, np.where((gap > 0)[..., None], np.nan, start.turn))  # nothing is there to be found
+        if self.trace is not None:
+            start, residual = self.trace.start(q)
+            start = State(
+                start.x, np.where((residual > 0)[..., None], np.nan, start.unwrapped)
+            )  # nothing is there to be found
         else:
             assert self.start is not None
             shape = (*np.shape(q), len(self.group.links))
-            start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.turn, shape))
-            gap = np.full(np.shape(q), -1.0)
+            start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
+            residual = np.full(np.shape(q), -1.0)
         with np.errstate(all="ignore"):
             state, step = self.close(start, poses, drives)
         dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))
-        if self.track is not None:  # in a dead position that it passes the group is where its way leads through
-            dead, side = self.track.in_dead(q, ROUNDINGS**2 * epsilon(start.turn)), self.track.side(q)
+        if self.trace is not None:  # in a dead position that it passes the group is where its way leads through
+            dead, side = self.trace.in_dead(q, ROUNDINGS**2 * epsilon(start.unwrapped)), self.trace.side(q)
             through = dead[..., None]
-            state = State(np.where(through, start.x, state.x), np.where(through, start.turn, state.turn))
+            state = State(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
         own = self.poses_of(state)
         everything = {**poses, **own}
         matrix = self.matrix(everything)
         margin = least_over_largest(matrix)
-        missed = np.max(np.abs(self.gaps(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
+        missed = np.max(np.abs(self.residuals(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
-        slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.turn))
-        gap = np.where(lost & (gap < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), gap)
-        gap = np.where(dead, 0.0, gap)
-        gap = np.where(margin < (TRUNCATED if self.passive else DEAD), np.where(gap > slack, gap, 0.0), gap)
+        slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.unwrapped))
+        residual = np.where(
+            lost & (residual < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), residual
+        )
+        residual = np.where(dead, 0.0, residual)
+        residual = np.where(
+            margin < (TRUNCATED if self.passive else SINGULAR), np.where(residual > slack, residual, 0.0), residual
+        )
         det = signed_determinant(matrix) * margin * side
         return Placement(
-            tuple(own[link] for link in self.group.links), det, margin, gap * self.size, slack * self.size
+            tuple(own[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
         )  # fmt: skip
 
-    def _all_poses(self, at: Placement, poses: Mapping[str, Pose]) -> dict[str, Pose]:
+    def _all_poses(self, at: Placement, poses: Poses) -> dict[str, Pose]:
         return {**poses, **dict(zip(self.group.links, at.poses, strict=True))}
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
         everything = self._all_poses(at, poses)
         return self.rates_at(everything, self.matrix(everything), at.det, rates, drives)
 
-    def rates_at(
-        self, everything: Mapping[str, Pose], matrix: Real, det: Real, rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
+    def rates_at(self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
         """Velocities of its links from the poses of all links and the matrix there; nan where det is."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
-        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
-        return tuple(
-            Rate(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
-            for k in range(len(self.group.links))
-        )
+        return tuple(Rate(v, w) for v, w in self._by_link(found, det))
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
         everything = self._all_poses(at, poses)
         return self.accelerations_at(everything, self.matrix(everything), at.det, rates, accels, drives)
 
     def accelerations_at(
-        self,
-        everything: Mapping[str, Pose],
-        matrix: Real,
-        det: Real,
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
         """Accelerations of its links, likewise; rates holds those of its own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
-        bend = _stacked([bend for c in self.constraints for bend in c.bends(everything, rates)]) * self._scale
+        bend = _stacked([bend for c in self.constraints for bend in c.velocity_terms(everything, rates)]) * self._scale
         found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
-        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
-        return tuple(
-            Accel(found[..., 3 * k] + 1j * found[..., 3 * k + 1], found[..., 3 * k + 2])
-            for k in range(len(self.group.links))
-        )
+        return tuple(Accel(a, e) for a, e in self._by_link(found, det))
 
-    def _apart(self, everything: Mapping[str, Pose], found: Real) -> list[Wrench] | None:
+    def _by_link(self, found: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
+        """The unknowns with their dimensions, of each link; nan where det is."""
+        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
+        for k in range(0, found.shape[-1], 3):
+            yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
+
+    def _by_constraint(self, found: Real) -> Iterator[tuple[Constraint, list[Real]]]:
+        """The multipliers of each pair and driver."""
+        row = 0
+        for constraint in self.constraints:
+            yield constraint, [found[..., row + k] for k in range(len(constraint.lengths))]
+            row += len(constraint.lengths)
+
+    def _apart(self, everything: Poses, found: Real) -> list[Wrench] | None:
         """Forces on the group's links that follow from those of the teeth and do no work; None when there are none."""
         total = {link: _nothing(np.shape(found)[:-1]) for link in self.group.links}
-        row, any_at_all = 0, False
-        for constraint in self.constraints:
-            here = [found[..., row + k] for k in range(len(constraint.lengths))]
-            row += len(here)
+        any_at_all = False
+        for constraint, here in self._by_constraint(found):
             apart = constraint.apart(everything, here)
             if apart is None:
                 continue
@@ -271,7 +267,7 @@ class Newton(Kernel):
                     total[link] += Wrench(sense * force, sense * cross(arm, force))
         return list(total.values()) if any_at_all else None
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
         pushes = self._fill(
@@ -284,24 +280,18 @@ class Newton(Kernel):
             found = solve(turned, -_stacked(borne) * self._columns)
             return np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
 
-        found = under(on)
+        found = under(applied)
         more = self._apart(everything, found)
         if more is not None:
-            found = under([wrench + extra for wrench, extra in zip(on, more, strict=True)])
-        held: list[Held] = []
-        row = 0
-        for constraint in self.constraints:
-            here = [found[..., row + k] for k in range(len(constraint.lengths))]
-            held.append(constraint.held(everything, here))
-            row += len(here)
+            found = under([wrench + extra for wrench, extra in zip(applied, more, strict=True)])
+        reaction = [constraint.reaction(everything, here) for constraint, here in self._by_constraint(found)]
         outer, inner = len(self.group.outer), len(self.group.inner)
         for k, pair in enumerate(self.group.outer):
             if pair.i in self.order:
-                held[k] = held[k].opposite
-        drives = {
-            driver.link: found[..., row - len(self.group.drivers) + k] for k, driver in enumerate(self.group.drivers)
-        }
-        return Holding(tuple(held[:outer]), tuple(held[outer : outer + inner]), drives)
+                reaction[k] = reaction[k].opposite
+        rows = found.shape[-1] - len(self.group.drivers)
+        drives = {driver.link: found[..., rows + k] for k, driver in enumerate(self.group.drivers)}
+        return GroupReactions(tuple(reaction[:outer]), tuple(reaction[outer : outer + inner]), drives)
 
 
 def _stacked(values: Sequence[Any]) -> Real:

@@ -5,52 +5,43 @@ C lies where two lines meet: every result is divided by det = u1 x u2, the sine 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, line
 from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split, turned_apart
-from tmm_cli.groups.state import Drives
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.vectors import Real, Vector, cross, unit
 
 
 @dataclass(frozen=True)
-class PRP(Dyad):
+class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
     """Two lines: one assembly only."""
 
     type = "PRP"
     assemblies = 1
 
-    @property
-    def _ends(self) -> tuple[Run, Run, Turn]:
-        a, b = self.ends
-        assert isinstance(a, Run) and isinstance(b, Run) and isinstance(self.inner, Turn)
-        return a, b, self.inner
-
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
-        a, b, c = self._ends
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, c = self.parts
         (P, u), (Q, v) = line(a, poses), line(b, poses)
         za, zb = poses[a.known].z * unit(a.turned), poses[b.known].z * unit(b.turned)
         C, det = meet(P + (c.there - a.here) * za, u, Q + (c.here - b.here) * zb, v)
-        gap, slack = parallel(det)
-        return Placement((Pose(C - c.there * za, za), Pose(C - c.here * zb, zb)), det, np.abs(det), gap, slack)
+        residual, slack = parallel(det)
+        return Placement((Pose(C - c.there * za, za), Pose(C - c.here * zb, zb)), det, np.abs(det), residual, slack)
 
-    def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
+    def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
         """C and the directions of both guides."""
-        a, b, c = self._ends
+        a, b, c = self.parts
         return at.a.at(c.there), line(a, poses)[1], line(b, poses)[1]
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
-        a, b, _ = self._ends
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        a, b, _ = self.parts
         u, v = line(a, poses)[1], line(b, poses)[1]
         return turned_apart(u, v, rates[a.known].w, rates[b.known].w)
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
-        a, b, c = self._ends
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, c = self.parts
         C, u, v = self._frame(at, poses)
         ra, rb = rates[a.known], rates[b.known]
         vC = slide_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
@@ -60,14 +51,9 @@ class PRP(Dyad):
         )
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        a, b, c = self._ends
+        a, b, c = self.parts
         C, u, v = self._frame(at, poses)
         vC = rates[self.group.links[0]].at(c.there * at.a.z)
         by_a = slide_acceleration(C, vC, (poses[a.known].x, u, rates[a.known], accels[a.known]))
@@ -79,13 +65,15 @@ class PRP(Dyad):
             Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """The polygon gives both guides' forces, moments of each link about C their couples."""
-        on_a, on_b = on
-        a, b, c = self._ends
+        on_a, on_b = applied
+        a, b, c = self.parts
         _, u, v = self._frame(at, poses)
         by_a, by_b = split(on_a.force + on_b.force, u, v, at.det)
         arm_a, arm_b = c.there * at.a.z, c.here * at.b.z
         couple_a = -on_a.about(arm_a) - cross(a.runner_arm(at.a, poses) - arm_a, by_a)
         couple_b = -on_b.about(arm_b) - cross(b.runner_arm(at.b, poses) - arm_b, by_b)
-        return Holding((Held(by_a, couple_a), Held(by_b, couple_b)), (Held(-(by_b + on_b.force)),))
+        return GroupReactions(
+            (PairReaction(by_a, couple_a), PairReaction(by_b, couple_b)), (PairReaction(-(by_b + on_b.force)),)
+        )

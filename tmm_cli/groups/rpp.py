@@ -6,32 +6,25 @@ det, the sine of the angle between them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Accel, Dyad, Held, Holding, Placement, Pose, Rate, Run, Turn, Wrench, line
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, line
 from tmm_cli.groups.guides import meet, parallel, slide_acceleration, slide_rate, split
-from tmm_cli.groups.state import Drives
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.vectors import Real, Vector, cross, unit
 
 
 @dataclass(frozen=True)
-class RPP(Dyad):
+class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
     """Two lines: one assembly only."""
 
     type = "RPP"
     assemblies = 1
 
-    @property
-    def _ends(self) -> tuple[Turn, Run, Run]:
-        a, b = self.ends
-        assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Run)
-        return a, b, self.inner
-
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
-        a, b, run = self._ends
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, run = self.parts
         Q, v = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
         za = zb * unit(-run.turned)
@@ -40,21 +33,19 @@ class RPP(Dyad):
         u = za * unit(run.direction)
         # b's origin runs along both guides
         origin, det = meet(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
-        gap, slack = parallel(det)
-        return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), gap, slack)
+        residual, slack = parallel(det)
+        return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), residual, slack)
 
-    def _frame(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector]:
+    def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector]:
         """Directions of the guides on a and on the known link."""
-        _, b, run = self._ends
+        _, b, run = self.parts
         return at.a.z * unit(run.direction), line(b, poses)[1]
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
         return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
-        a, b, _ = self._ends
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, _ = self.parts
         u, v = self._frame(at, poses)
         w = rates[b.known].w
         vA = a.velocity(poses, rates)
@@ -64,14 +55,9 @@ class RPP(Dyad):
         return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        a, b, _ = self._ends
+        a, b, _ = self.parts
         u, v = self._frame(at, poses)
         w, e = rates[b.known].w, accels[b.known].e
         aA = a.acceleration(poses, rates, accels)
@@ -81,10 +67,10 @@ class RPP(Dyad):
         by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
         return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
-        on_a, on_b = on
-        a, b, run = self._ends
+        on_a, on_b = applied
+        a, b, run = self.parts
         u, v = self._frame(at, poses)
         inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link
         RA = inner - on_a.force
@@ -94,5 +80,7 @@ class RPP(Dyad):
         couple = on_a.about(arm_a) - cross(on_own - arm_a, inner)
         arm = run.runner_arm(at.b, {run.known: at.a})
         moment = on_b.about(arm) + couple
-        held = b.runner_arm(at.b, poses) - arm
-        return Holding((Held(RA), Held(guide, -moment - cross(held, guide))), (Held(inner, couple),))
+        reaction = b.runner_arm(at.b, poses) - arm
+        return GroupReactions(
+            (PairReaction(RA), PairReaction(guide, -moment - cross(reaction, guide))), (PairReaction(inner, couple),)
+        )

@@ -6,52 +6,33 @@ every result is divided by det = x. It is lost when the stone comes over the piv
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import (
-    ROUNDINGS,
-    Accel,
-    Dyad,
-    Held,
-    Holding,
-    Placement,
-    Pose,
-    Rate,
-    Run,
-    Turn,
-    Wrench,
-    epsilon,
-)
-from tmm_cli.groups.state import Drives
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, epsilon
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
+from tmm_cli.tolerances import ROUNDINGS
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 
 @dataclass(frozen=True)
-class RPR(Dyad):
+class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
     """A right triangle on AB: the sign tells which way along the guide b lies from a."""
 
     type = "RPR"
 
-    @property
-    def _ends(self) -> tuple[Turn, Turn, Run]:
-        a, b = self.ends
-        assert isinstance(a, Turn) and isinstance(b, Turn) and isinstance(self.inner, Run)
-        return a, b, self.inner
-
     def _offset(self) -> Real:
         """h: how far B lies to the left of the line through A along the guide, m."""
-        a, b, run = self._ends
+        a, b, run = self.parts
         turned = unit(run.turned)
         # In a's axes, B - A = (there - a.here) + s e^(i direction) - (run.here - b.here) e^(i turned).
         fixed = (run.there - a.here) - (run.here - b.here) * turned
         offset: Real = cross(unit(run.direction), fixed)
         return offset
 
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
-        a, b, run = self._ends
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, run = self.parts
         A, B = a.place(poses), b.place(poses)
         base = B - A
         d, h = np.abs(base), self._offset()
@@ -69,19 +50,17 @@ class RPR(Dyad):
         return Placement((Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), x, margin, np.abs(h) - d, slack)
 
     def _frame(self, at: Placement) -> tuple[Vector, Real]:
-        _, _, run = self._ends
+        _, _, run = self.parts
         return at.a.z * unit(run.direction), self._offset()
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
-        a, b, _ = self._ends
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        a, b, _ = self.parts
         base = b.place(poses) - a.place(poses)
         shorter: Real = -dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / np.abs(base)
         return shorter
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
-        a, b, _ = self._ends
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, _ = self.parts
         u, _ = self._frame(at)
         vA = a.velocity(poses, rates)
         vB = b.velocity(poses, rates)
@@ -89,14 +68,9 @@ class RPR(Dyad):
         return Rate.through(vA, w, a.here * at.a.z), Rate.through(vB, w, b.here * at.b.z)
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        a, b, _ = self._ends
+        a, b, _ = self.parts
         u, h = self._frame(at)
         w = rates[self.group.links[0]].w
         sliding = dot(u, b.velocity(poses, rates) - a.velocity(poses, rates)) + w * h
@@ -108,15 +82,15 @@ class RPR(Dyad):
             Accel.through(aB, e, w, b.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """b along the guide, moments of the whole group about A, then the polygons of each link."""
-        on_a, on_b = on
-        a, b, run = self._ends
+        on_a, on_b = applied
+        a, b, run = self.parts
         u, h = self._frame(at)
         A = at.a.at(a.here)
         push = -dot(on_b.force, u)
-        turn = (-(on_a.about(a.here * at.a.z) + on_b.about(A - at.b.x)) + h * push) / at.det
-        tau, normal = 1j * u * turn, u * push
+        across = (-(on_a.about(a.here * at.a.z) + on_b.about(A - at.b.x)) + h * push) / at.det
+        tau, normal = 1j * u * across, u * push
         RB = tau + normal
         guide = -1j * u * dot(RB + on_b.force, 1j * u)  # on b from a
         RA = guide - on_a.force
@@ -126,7 +100,7 @@ class RPR(Dyad):
         else:
             couple = on_a.about(a.here * at.a.z) - cross((run.there - a.here) * at.a.z, guide)
         push_a = u * dot(RA, u)
-        return Holding(
-            (Held(RA, tangential=RA - push_a, normal=push_a), Held(RB, tangential=tau, normal=normal)),
-            (Held(guide, couple),),
+        return GroupReactions(
+            (PairReaction(RA, tangential=RA - push_a, normal=push_a), PairReaction(RB, tangential=tau, normal=normal)),
+            (PairReaction(guide, couple),),
         )

@@ -5,44 +5,24 @@ With ra = C - A and u along the guide every result is divided by det = u . ra.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import (
-    ROUNDINGS,
-    Accel,
-    Dyad,
-    Held,
-    Holding,
-    Placement,
-    Pose,
-    Rate,
-    Run,
-    Turn,
-    Wrench,
-    epsilon,
-    line,
-)
-from tmm_cli.groups.state import Drives
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, epsilon, line
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
+from tmm_cli.tolerances import ROUNDINGS
 from tmm_cli.vectors import Real, Vector, cross, dot, square, unit
 
 
 @dataclass(frozen=True)
-class RRP(Dyad):
+class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
     """A circle and a line: the sign tells on which side of the foot of A on the guide the hinge C lies."""
 
     type = "RRP"
 
-    @property
-    def _ends(self) -> tuple[Turn, Run, Turn]:
-        a, b = self.ends
-        assert isinstance(a, Turn) and isinstance(b, Run) and isinstance(self.inner, Turn)
-        return a, b, self.inner
-
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
-        a, b, c = self._ends
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, c = self.parts
         A = a.place(poses)
         Q, u = line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
@@ -55,18 +35,20 @@ class RRP(Dyad):
         ra = u * (half - 1j * y)
         za = ra * (np.conj(arm) / (la * la))
         C = start + u * (run + half)
-        gap = np.abs(y) - la
+        residual = np.abs(y) - la
         slack = epsilon(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
-        return Placement((Pose(A - a.here * za, za), Pose(C - c.here * zb, zb)), half, np.abs(half) / la, gap, slack)
+        return Placement(
+            (Pose(A - a.here * za, za), Pose(C - c.here * zb, zb)), half, np.abs(half) / la, residual, slack
+        )
 
-    def _arms(self, at: Placement, poses: Mapping[str, Pose]) -> tuple[Vector, Vector, Vector]:
+    def _arms(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
         """ra, u, and C from the origin of the guide's link."""
-        a, b, c = self._ends
+        a, b, c = self.parts
         _, u = line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
-        a, b, c = self._ends
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        a, b, c = self.parts
         Q, u = line(b, poses)
         A = a.place(poses)
         start = Q + (c.here - b.here) * poses[b.known].z * unit(b.turned)
@@ -74,10 +56,8 @@ class RRP(Dyad):
         rate: Real = np.sign(cross(u, A - start)) * away
         return rate
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
-        a, b, c = self._ends
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, c = self.parts
         ra, u, onto = self._arms(at, poses)
         vA = a.velocity(poses, rates)
         carried = rates[b.known].at(onto)
@@ -88,14 +68,9 @@ class RRP(Dyad):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vC, wb, c.here * at.b.z)
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        a, b, c = self._ends
+        a, b, c = self.parts
         ra, u, onto = self._arms(at, poses)
         wa, wb = rates[self.group.links[0]].w, rates[b.known].w
         vC = rates[self.group.links[1]].at(c.here * at.b.z)
@@ -111,10 +86,10 @@ class RRP(Dyad):
             Accel.through(aC, eb, wb, c.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
-        on_a, on_b = on
-        a, b, c = self._ends
+        on_a, on_b = applied
+        a, b, c = self.parts
         ra, u, _ = self._arms(at, poses)
         tau = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
         rest = on_a.force + on_b.force + tau
@@ -123,4 +98,7 @@ class RRP(Dyad):
         inner = -(guide + on_b.force)
         arm_c = c.here * at.b.z
         couple = -on_b.about(arm_c) - cross(b.runner_arm(at.b, poses) - arm_c, guide)
-        return Holding((Held(tau + normal, tangential=tau, normal=normal), Held(guide, couple)), (Held(inner),))
+        return GroupReactions(
+            (PairReaction(tau + normal, tangential=tau, normal=normal), PairReaction(guide, couple)),
+            (PairReaction(inner),),
+        )

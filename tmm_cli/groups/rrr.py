@@ -5,47 +5,29 @@ With ra = C - A, rb = C - B every result is divided by det = ra x rb = (distance
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import (
-    ROUNDINGS,
-    Accel,
-    Dyad,
-    Held,
-    Holding,
-    Placement,
-    Pose,
-    Rate,
-    Turn,
-    Wrench,
-    epsilon,
-)
-from tmm_cli.groups.state import Drives
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, epsilon
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
+from tmm_cli.tolerances import ROUNDINGS
 from tmm_cli.vectors import Real, Vector, dot, square
 
 
 @dataclass(frozen=True)
-class RRR(Dyad):
+class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
     """Two circles: the half-chord from the factored (Heron) product, W. Kahan, Miscalculating area and angles of a
     needle-like triangle, 2014; the side of AB on which C lies is the sign of the group."""
 
     type = "RRR"
 
-    @property
-    def _ends(self) -> tuple[Turn, Turn, Turn]:
-        a, b = self.ends
-        assert isinstance(a, Turn) and isinstance(b, Turn) and isinstance(self.inner, Turn)
-        return a, b, self.inner
-
     def _arms(self, at: Placement) -> tuple[Vector, Vector]:
-        a, b, c = self._ends
+        a, b, c = self.parts
         return (c.there - a.here) * at.a.z, (c.here - b.here) * at.b.z
 
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
-        a, b, c = self._ends
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, c = self.parts
         A, B = a.place(poses), b.place(poses)
         arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
         la, lb = np.abs(arm_a), np.abs(arm_b)
@@ -64,14 +46,14 @@ class RRR(Dyad):
         ra = np.where(flip, small + base, small)
         rb = np.where(flip, small, small - base)
         za, zb = ra * (np.conj(arm_a) / (la * la)), rb * (np.conj(arm_b) / (lb * lb))
-        gap = -np.minimum(reach, spare)
+        residual = -np.minimum(reach, spare)
         slack = epsilon(d) * (ROUNDINGS * (la + lb) + 2 * (np.abs(A) + np.abs(B)))
         return Placement(
-            (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), gap, slack
+            (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), residual, slack
         )
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
-        a, b, c = self._ends
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        a, b, c = self.parts
         base = b.place(poses) - a.place(poses)
         d = np.abs(base)
         la, lb = np.abs(c.there - a.here), np.abs(c.here - b.here)
@@ -79,10 +61,8 @@ class RRR(Dyad):
         longer: Real = dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / d
         return np.where(reach < spare, longer, -longer)
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
-        a, b, _ = self._ends
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, _ = self.parts
         ra, rb = self._arms(at)
         vA = a.velocity(poses, rates)
         vB = b.velocity(poses, rates)
@@ -91,14 +71,9 @@ class RRR(Dyad):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vB, wb, b.here * at.b.z)
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        a, b, _ = self._ends
+        a, b, _ = self.parts
         la, lb = self.group.links
         ra, rb = self._arms(at)
         wa, wb = rates[la].w, rates[lb].w
@@ -111,22 +86,25 @@ class RRR(Dyad):
             Accel.through(aB, eb, wb, b.here * at.b.z),
         )
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Moments of each link about its outer hinge give the reaction in C, the polygon of each link the outer ones.
 
         Tangential components follow from the moments about C alone, normal ones are the rest.
         """
-        on_a, on_b = on
-        a, b, c = self._ends
+        on_a, on_b = applied
+        a, b, c = self.parts
         ra, rb = self._arms(at)
         t_a, t_b = on_a.about(a.here * at.a.z), -on_b.about(b.here * at.b.z)
         inner = (t_a * rb - t_b * ra) / at.det  # ra x inner = t_a, rb x inner = t_b
         RA, RB = inner - on_a.force, -(inner + on_b.force)
         tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
         tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / square(c.here - b.here))
-        return Holding(
-            (Held(RA, tangential=tau_a, normal=RA - tau_a), Held(RB, tangential=tau_b, normal=RB - tau_b)),
-            (Held(inner),),
+        return GroupReactions(
+            (
+                PairReaction(RA, tangential=tau_a, normal=RA - tau_a),
+                PairReaction(RB, tangential=tau_b, normal=RB - tau_b),
+            ),
+            (PairReaction(inner),),
         )
 
 

@@ -18,17 +18,22 @@ from tmm_cli.vectors import Real, Vector, cross
 class Pose:
     """Place of a link: its origin x (m) and e^(i angle) of its x axis, z.
 
-    turn: the angle itself (rad), followed through full turns, where something depends on it (toothed wheels).
+    unwrapped: the angle itself (rad), followed through full turns, where something depends on it (toothed wheels).
     """
 
     x: Vector
     z: Vector
-    turn: Real | None = None
+    unwrapped: Real | None = None
 
     @property
     def turned(self) -> Real:
         """The angle (rad): followed through where it was, else within -pi..pi."""
-        return np.arctan2(self.z.imag, self.z.real) if self.turn is None else self.turn
+        return np.arctan2(self.z.imag, self.z.real) if self.unwrapped is None else self.unwrapped
+
+    def spread(self, shape: tuple[int, ...]) -> Pose:
+        """The same pose at many positions."""
+        unwrapped = None if self.unwrapped is None else np.broadcast_to(self.unwrapped, shape)
+        return Pose(np.broadcast_to(self.x, shape), np.broadcast_to(self.z, shape), unwrapped)
 
     def at(self, local: Any) -> Vector:
         """A point of the link in the drawing's axes, m."""
@@ -72,6 +77,11 @@ class Accel:
         return acceleration
 
 
+Poses = Mapping[str, Pose]
+Rates = Mapping[str, Rate]
+Accels = Mapping[str, Accel]
+
+
 @dataclass(frozen=True)
 class Wrench:
     """Forces on a link reduced to its origin: force (N) and moment about the origin (N m)."""
@@ -94,14 +104,14 @@ class Placement:
 
     det is the determinant (or root) that velocities, accelerations and reactions are divided by; margin its size
     without dimension, 1 at best and 0 in a dead position (the sine of the transmission angle where there is one);
-    gap (m, or a pure number for two guides) is negative by as much as the group can still give way, positive by as
+    residual (m, or a pure number for two guides) is negative by as much as the group can still give way, positive by as
     much as it falls short of assembling, and cannot be told from zero within slack.
     """
 
     poses: tuple[Pose, ...]
     det: Real
     margin: Real
-    gap: Real
+    residual: Real
     slack: Real
 
     @property
@@ -116,15 +126,15 @@ class Placement:
 
     @property
     def assembled(self) -> Any:
-        return self.gap <= self.slack
+        return self.residual <= self.slack
 
     @property
     def dead(self) -> Any:
-        return np.abs(self.gap) <= self.slack
+        return np.abs(self.residual) <= self.slack
 
 
 @dataclass(frozen=True)
-class Held:
+class PairReaction:
     """A reaction on one link at one point: force (N), couple (N m, sliding pairs only).
 
     tangential and normal are the two components of an outer hinge's reaction, across its link and along it, that the
@@ -140,15 +150,15 @@ class Held:
     back: Real | None = None
 
     @property
-    def opposite(self) -> Held:
+    def opposite(self) -> PairReaction:
         """The reaction on the pair's other link."""
         if self.back is not None:
-            return Held(-self.force, self.back, at=self.at, back=self.couple)
-        return Held(-self.force, None if self.couple is None else -self.couple, at=self.at)
+            return PairReaction(-self.force, self.back, at=self.at, back=self.couple)
+        return PairReaction(-self.force, None if self.couple is None else -self.couple, at=self.at)
 
 
 @dataclass(frozen=True)
-class Holding:
+class GroupReactions:
     """Reactions of a group: of the outer pairs on its own links, of the inner pairs on their second links.
 
     Both in the order of the group's pairs; of a dyad the inner one acts on link b. A couple belongs to the running
@@ -156,8 +166,8 @@ class Holding:
     link.
     """
 
-    outer: tuple[Held, ...]
-    inner: tuple[Held, ...]
+    outer: tuple[PairReaction, ...]
+    inner: tuple[PairReaction, ...]
     drives: Mapping[str, Real] = field(default_factory=dict)
 
 
@@ -171,3 +181,20 @@ class Drive:
 
 
 Drives = Mapping[str, Drive]
+
+
+@dataclass(frozen=True)
+class State:
+    """Origins (m) and angles (rad, through full turns) of a group's links on the last axis."""
+
+    x: Vector
+    unwrapped: Real
+
+    def moved(self, step: Real, size: Real | float) -> State:
+        """The state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in sizes (m)."""
+        parts = step.reshape(*np.shape(step)[:-1], -1, 3)
+        return State(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
+
+    def part(self, chosen: slice) -> State:
+        """Some of many states."""
+        return State(self.x[chosen], self.unwrapped[chosen])

@@ -8,30 +8,15 @@ accelerations come from those of the two links too, and reactions as if both par
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from tmm_cli.groups import KERNELS
-from tmm_cli.groups.base import (
-    Accel,
-    Closed,
-    Dyad,
-    Held,
-    Holding,
-    Placement,
-    Pose,
-    Rate,
-    Run,
-    Turn,
-    Wrench,
-    seen,
-    spread,
-)
-from tmm_cli.groups.state import Drive, Drives
+from tmm_cli.groups.base import Accels, Closed, HingeEnd, Poses, Rates, SliderEnd, seen, spread
+from tmm_cli.groups.dyads import DYADS, AnyDyad
+from tmm_cli.groups.state import Accel, Drive, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.linkage import Driver, Linkage, Slide
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
@@ -40,7 +25,7 @@ UNDER = "\0under m"  # the link that m hangs on, as n sees it: no link of a file
 
 
 @dataclass(frozen=True)
-class Chain:
+class TelescopeParts:
     """The links of such a group: arm, n and m, and the dyad they are when n does not slide on m; its inner pair is n's.
 
     Links of the dyad are the arm and m in the order of their outer pairs, those that turn first.
@@ -53,7 +38,7 @@ class Chain:
     dyad: Group
 
     @classmethod
-    def of(cls, group: Group) -> Chain | None:
+    def of(cls, group: Group) -> TelescopeParts | None:
         """None where the group is no such chain."""
         if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
             return None
@@ -62,7 +47,7 @@ class Chain:
             return None
         (joint,) = (pair for pair in group.inner if pair is not driven[0])
         common = {joint.i, joint.j} & {driven[0].i, driven[0].j}
-        own = {pair.i if pair.i in group.links else pair.j: pair for pair in group.outer}
+        own = {group.own(pair): pair for pair in group.outer}
         n = common.pop()
         m, arm = driven[0].other(n), joint.other(n)
         if common or set(own) != {m, arm}:
@@ -85,36 +70,37 @@ class Chain:
 class Telescope(Closed):
     """Such a group. dyad: its two links with the joint of n where n itself has it; hung: what m hangs on."""
 
-    chain: Chain
-    dyad: Dyad
+    chain: TelescopeParts
+    dyad: AnyDyad
     hung: str
     pin: complex
 
     @classmethod
-    def of(cls, group: Group, linkage: Linkage, sign: int = 1) -> Telescope:
-        """A group that is such a chain, with its numbers."""
-        chain = Chain.of(group)
+    def fits(cls, group: Group) -> bool:
+        chain = TelescopeParts.of(group)
+        return chain is not None and chain.dyad.type in DYADS
+
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage) -> Self:
+        chain = TelescopeParts.of(group)
         assert chain is not None
-        kind, (a, b), outer = KERNELS[chain.dyad.type], chain.dyad.links, chain.dyad.outer
+        kind, (a, b), outer = DYADS[chain.dyad.type], chain.dyad.links, chain.dyad.outer
         first, last = seen(outer[0], a, linkage), seen(outer[1], b, linkage)
         size = reduce(np.maximum, [spread(linkage, link) for link in (*group.links, first.known, last.known)])
         inner = seen(chain.joint, b if b == chain.arm else chain.n, linkage)
         hung = (first if a == chain.m else last).known
         ends = (replace(first, known=UNDER), last) if a == chain.m else (first, replace(last, known=UNDER))
         pin = linkage.local(chain.n, chain.joint.point) if chain.joint.slide is None else 0j
-        return cls(group, size, chain, kind(chain.dyad, size, ends, inner), hung, pin, sign=sign)
-
-    def again(self, linkage: Linkage) -> Telescope:
-        return replace(Telescope.of(self.group.again(linkage), linkage, self.sign), winding=self.winding)
+        return cls(group, size, chain, kind(chain.dyad, size, ends, inner), hung, pin)
 
     @property
     def assemblies(self) -> int:
         return self.dyad.assemblies
 
     @property
-    def leads(self) -> tuple[tuple[Pair, Turn | Run], ...]:
+    def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
         return tuple(
-            (pair, replace(end, known=self.hung) if end.known == UNDER else end) for pair, end in self.dyad.leads
+            (pair, replace(end, known=self.hung) if end.known == UNDER else end) for pair, end in self.dyad.outer_pairs
         )
 
     @property
@@ -139,7 +125,7 @@ class Telescope(Closed):
         there = slide.through + run * unit(slide.direction)
         return slide.at - there * unit(-slide.turned), -slide.turned
 
-    def _locked(self, run: Real) -> Dyad:
+    def _locked(self, run: Real) -> AnyDyad:
         """The group of two links that it is at a run of the drive."""
         origin, angle = self._of_n(run)
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
@@ -148,7 +134,7 @@ class Telescope(Closed):
         there = origin + inner.there * turned if of_m else inner.there
         here = inner.here if of_m else origin + inner.here * turned
         moved = replace(inner, known=known, there=there, here=here)
-        if isinstance(moved, Run):  # angles of a guide are against m now
+        if isinstance(moved, SliderEnd):  # angles of a guide are against m now
             moved = replace(
                 moved, direction=moved.direction + angle * of_m, turned=moved.turned + (angle if of_m else -angle)
             )
@@ -159,7 +145,7 @@ class Telescope(Closed):
         own = dict(zip(self.group.links, at.poses, strict=True))
         return replace(at, poses=tuple(own[link] for link in self.chain.dyad.links))
 
-    def _poses(self, poses: Mapping[str, Pose]) -> dict[str, Pose]:
+    def _poses(self, poses: Poses) -> dict[str, Pose]:
         return {**poses, UNDER: poses[self.hung]}
 
     def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
@@ -170,7 +156,7 @@ class Telescope(Closed):
     def _drive(self, drives: Drives) -> Drive:
         return drives[self.driver.link]
 
-    def closed(self, poses: Mapping[str, Pose], drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
         run = self._drive(drives).value
         at = self._locked(run).closed(self._poses(poses), drives)
         own = dict(zip(self.chain.dyad.links, at.poses, strict=True))
@@ -178,23 +164,21 @@ class Telescope(Closed):
         m = own[self.chain.m]
         return replace(at, poses=self._ordered(own[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
 
-    def closing(self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
         drive, known = self._drive(drives), self._poses(poses)
         dyad = self._locked(drive.value)
         # what is short of closing is measured where the two links lie as in a dead position
         flat = replace(dyad, sign=0).closed(known, drives)
         z = flat.poses[self.chain.dyad.links.index(self.chain.m)].z
         slid = drive.first * self._along * z / np.abs(z)
-        return dyad.closing(flat, known, self._rates(rates, slid), drives)
+        return dyad.residual_rate(flat, known, self._rates(rates, slid), drives)
 
-    def _rates(self, rates: Mapping[str, Rate], slid: Vector) -> dict[str, Rate]:
+    def _rates(self, rates: Rates, slid: Vector) -> dict[str, Rate]:
         """Of the known links, with that on which n hangs as if m were a part of it."""
         hung = rates[self.hung]
         return {**rates, UNDER: Rate(hung.v + slid, hung.w)}
 
-    def rates(
-        self, at: Placement, poses: Mapping[str, Pose], rates: Mapping[str, Rate], drives: Drives
-    ) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
         drive = self._drive(drives)
         m, off = self._m(at)
         slid = drive.first * self._along * m.z
@@ -213,12 +197,7 @@ class Telescope(Closed):
         return m, own[self.chain.n].x - m.x
 
     def accelerations(
-        self,
-        at: Placement,
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        accels: Mapping[str, Accel],
-        drives: Drives,
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
         drive = self._drive(drives)
         m, off = self._m(at)
@@ -237,10 +216,11 @@ class Telescope(Closed):
         )
         return ordered
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> Holding:
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Those of the two links; then n alone gives what the guide and the driver do to it."""
         chain, slide = self.chain, self.chain.slide
-        pose, borne = dict(zip(self.group.links, at.poses, strict=True)), dict(zip(self.group.links, on, strict=True))
+        pose = dict(zip(self.group.links, at.poses, strict=True))
+        borne = dict(zip(self.group.links, applied, strict=True))
         m, n = pose[chain.m], pose[chain.n]
         on_n = borne[chain.n]
         whole = borne[chain.m] + Wrench(on_n.force, on_n.moment + cross(n.x - m.x, on_n.force))
@@ -248,30 +228,31 @@ class Telescope(Closed):
         u, point = carrier.z * unit(slide.direction), runner.at(slide.at)
         run = dot(u, point - carrier.at(slide.through))
         two = {chain.arm: borne[chain.arm], chain.m: whole}
-        held = self._locked(run).reactions(
+        reaction = self._locked(run).reactions(
             self._two(at), self._poses(poses), tuple(two[link] for link in chain.dyad.links)
         )
         outer = {
-            pair.name: Held(part.force, part.couple) for pair, part in zip(chain.dyad.outer, held.outer, strict=True)
+            pair.name: PairReaction(part.force, part.couple)
+            for pair, part in zip(chain.dyad.outer, reaction.outer, strict=True)
         }
-        joint = held.inner[0]  # on the dyad's second link
+        joint = reaction.inner[0]  # on the dyad's second link
         on_arm = joint if chain.dyad.links[1] == chain.arm else joint.opposite
         back = on_arm.opposite
         force = on_n.force + back.force
-        turn = on_n.about(point - n.x) + cross(self._joint_at(pose) - point, back.force)
-        turn = turn if back.couple is None else turn + back.couple
+        moment = on_n.about(point - n.x) + cross(self._joint_at(pose) - point, back.force)
+        moment = moment if back.couple is None else moment + back.couple
         sense = -1.0 if slide.runner == chain.n else 1.0  # what holds n, on the runner
         push, across = sense * dot(u, force), sense * dot(1j * u, force)
         inner = {
-            slide.name: Held(1j * u * across, sense * turn),
+            slide.name: PairReaction(1j * u * across, sense * moment),
             chain.joint.name: on_arm if chain.joint.j == chain.arm else back,
         }
-        return Holding(
+        return GroupReactions(
             tuple(outer[pair.name] for pair in self.group.outer), tuple(inner[pair.name] for pair in self.group.inner),
             {self.driver.link: push},
         )  # fmt: skip
 
-    def _joint_at(self, pose: Mapping[str, Pose]) -> Vector:
+    def _joint_at(self, pose: Poses) -> Vector:
         """Where the reaction of n's joint with the arm acts."""
         slide = self.chain.joint.slide
         return pose[self.chain.n].at(self.pin) if slide is None else pose[slide.runner].at(slide.at)

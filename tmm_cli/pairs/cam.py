@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.linkage import FRAME, Mesh, Slide
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
+from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
 from tmm_cli.pairs.sliding import Guided
-from tmm_cli.vectors import Real, Vector, cross, dot
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
+from tmm_cli.structure.assur import Pair
+from tmm_cli.vectors import Real, Vector, dot
 
 
 @dataclass(frozen=True)
@@ -38,9 +34,8 @@ class Cam(Constraint):
     def of(cls, pair: Pair, linkage: Linkage) -> Cam:
         mesh = pair.mesh
         assert mesh is not None
-        point = linkage.shared(mesh.carrier, mesh.i)
-        assert point is not None
-        return cls(pair.name, mesh, linkage.slide(mesh.slide) if mesh.slide else None, linkage.local(FRAME, point))
+        slide = linkage.slide(mesh.slide) if mesh.slide else None
+        return cls(pair.name, mesh, slide, axis(linkage, mesh.i, FRAME))
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -54,23 +49,23 @@ class Cam(Constraint):
         assert self.mesh.law is not None
         return self.mesh.law(poses[self.mesh.i].turned)
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         want = self._law(poses)[0] + self.mesh.offset
         if self.slide is None:
-            gap = poses[self.mesh.j].z * np.exp(-1j * want)
-            return (np.arctan2(gap.imag, gap.real),)
+            residual = poses[self.mesh.j].z * np.exp(-1j * want)
+            return (np.arctan2(residual.imag, residual.real),)
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         slope = self._law(poses)[1]
         cam = {self.mesh.i: ((0j, -slope),)}
         if self.slide is None:
             return {self.mesh.j: ((0j, 1.0),), **cam}
         here = Guided.at(self.slide, poses)
-        return {name: (grip,) for name, grip in here.grips(self.slide, here.u).items()} | cam
+        return {name: (row,) for name, row in here.jacobian_rows(self.slide, here.u).items()} | cam
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         bend = -self._law(poses)[2] * rates[self.mesh.i].w ** 2
         if self.slide is None:
             return (bend,)
@@ -84,18 +79,15 @@ class Cam(Constraint):
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return self.axis - 1j * self._law(poses)[1] * forward, forward
 
-    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         if self.slide is None:
-            return self.grips(poses)
+            return self.jacobian_rows(poses)
         point, along = self.touch(poses)
-        return {
-            self.mesh.i: ((-along, -cross(point - poses[self.mesh.i].x, along)),),
-            self.mesh.j: ((along, cross(point - poses[self.mesh.j].x, along)),),
-        }
+        return opposed(self.mesh, poses, point, along)
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
         n = multipliers[0]
         if self.slide is None:
-            return Held(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
+            return PairReaction(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
         point, along = self.touch(poses)
-        return Held(along * n, at=point)
+        return PairReaction(along * n, at=point)

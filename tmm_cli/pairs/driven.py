@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.linkage import Driver, Slide
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import Driver, Linkage, Slide
+from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.sliding import Guided
+from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, dot
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
 
 
 @dataclass(frozen=True)
@@ -46,22 +42,22 @@ class Driven(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return (self.slide is not None,)
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         want = drives[self.driver.link].value
         if self.slide is None:
             turned = poses[self.driver.link].z * np.conj(poses[self.driver.base].z)
-            gap = turned * np.exp(-1j * want)
-            return (np.arctan2(gap.imag, gap.real),)
+            residual = turned * np.exp(-1j * want)
+            return (np.arctan2(residual.imag, residual.real),)
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         if self.slide is None:
             return {self.driver.base: ((0j, -1.0),), self.driver.link: ((0j, 1.0),)}
         here = Guided.at(self.slide, poses)
-        return {name: (grip,) for name, grip in here.grips(self.slide, here.u).items()}
+        return {name: (row,) for name, row in here.jacobian_rows(self.slide, here.u).items()}
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         if self.slide is None:
             return (np.zeros(np.shape(rates[self.driver.link].w)),)
         here = Guided.at(self.slide, poses)
@@ -71,8 +67,8 @@ class Driven(Constraint):
         drive = drives[self.driver.link]
         return (drive.first if order == 1 else drive.second,)
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
         n = multipliers[0]
         if self.slide is None:
-            return Held(n * 0j, couple=n)
-        return Held(Guided.at(self.slide, poses).u * n, at=poses[self.slide.runner].at(self.slide.at))
+            return PairReaction(n * 0j, couple=n)
+        return PairReaction(Guided.at(self.slide, poses).u * n, at=poses[self.slide.runner].at(self.slide.at))

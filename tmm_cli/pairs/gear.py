@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.linkage import Mesh
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
-from tmm_cli.vectors import Real, Vector, cross
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import Linkage, Mesh
+from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
+from tmm_cli.structure.assur import Pair
+from tmm_cli.vectors import Real, Vector
 
 
 @dataclass(frozen=True)
@@ -36,9 +32,7 @@ class Gear(Constraint):
     def of(cls, pair: Pair, linkage: Linkage) -> Gear:
         mesh = pair.mesh
         assert mesh is not None
-        points = [linkage.shared(mesh.carrier, wheel) for wheel in (mesh.i, mesh.j)]
-        axis_i, axis_j = (linkage.local(mesh.carrier, point) for point in points if point is not None)
-        return cls(pair.name, mesh, axis_i, axis_j)
+        return cls(pair.name, mesh, axis(linkage, mesh.i, mesh.carrier), axis(linkage, mesh.j, mesh.carrier))
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -48,18 +42,18 @@ class Gear(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return (False,)
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         mesh = self.mesh
         i, j, c = (poses[name].turned for name in (mesh.i, mesh.j, mesh.carrier))
         return ((j - c) - mesh.ratio * (i - c) - mesh.offset,)
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         ratio = self.mesh.ratio
         return {
             self.mesh.i: ((0j, -ratio),), self.mesh.j: ((0j, 1.0),), self.mesh.carrier: ((0j, ratio - 1.0),),
         }  # fmt: skip
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         return (np.zeros(np.shape(rates[self.mesh.i].w)),)
 
     def pitch(self, poses: Poses) -> tuple[Vector, Vector]:
@@ -69,19 +63,15 @@ class Gear(Constraint):
         line = (self.axis_j - self.axis_i) / abs(self.axis_j - self.axis_i)
         return carrier.at(here), line * carrier.z
 
-    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         """Wheel on wheel at the pitch point; the carrier gets nothing but through its hinges."""
         point, line = self.pitch(poses)
-        across = 1j * line
-        return {
-            self.mesh.i: ((-across, -cross(point - poses[self.mesh.i].x, across)),),
-            self.mesh.j: ((across, cross(point - poses[self.mesh.j].x, across)),),
-        }
+        return opposed(self.mesh, poses, point, 1j * line)
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
         point, line = self.pitch(poses)
         _, radial = self.apart(poses, multipliers)
-        return Held(1j * line * multipliers[0] + radial, at=point)
+        return PairReaction(1j * line * multipliers[0] + radial, at=point)
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
         """Teeth push an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one.

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.linkage import Mesh, Slide
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import Linkage, Mesh, Slide
+from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
 from tmm_cli.pairs.sliding import Guided
-from tmm_cli.vectors import Real, Vector, cross, dot
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
+from tmm_cli.structure.assur import Pair
+from tmm_cli.vectors import Real, Vector, dot
 
 
 @dataclass(frozen=True)
@@ -37,9 +33,7 @@ class Rack(Constraint):
     def of(cls, pair: Pair, linkage: Linkage) -> Rack:
         mesh = pair.mesh
         assert mesh is not None
-        point = linkage.shared(mesh.carrier, mesh.i)
-        assert point is not None
-        return cls(pair.name, mesh, linkage.slide(mesh.slide), linkage.local(mesh.carrier, point))
+        return cls(pair.name, mesh, linkage.slide(mesh.slide), axis(linkage, mesh.i, mesh.carrier))
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -49,19 +43,19 @@ class Rack(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return (True,)
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         here = Guided.at(self.slide, poses)
         turned = poses[self.mesh.i].turned - poses[self.mesh.carrier].turned
         return (dot(here.u, here.off) - self.mesh.ratio * turned - self.mesh.offset,)
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         here = Guided.at(self.slide, poses)
-        grips = {name: [grip] for name, grip in here.grips(self.slide, here.u).items()}
-        c, m = grips[self.mesh.carrier][0]
-        grips[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
-        return grips | {self.mesh.i: [(0j, -self.mesh.ratio)]}
+        rows = {name: [row] for name, row in here.jacobian_rows(self.slide, here.u).items()}
+        c, m = rows[self.mesh.carrier][0]
+        rows[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
+        return rows | {self.mesh.i: [(0j, -self.mesh.ratio)]}
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)),)
 
@@ -71,17 +65,14 @@ class Rack(Constraint):
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
 
-    def pushes(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         point, along = self.pitch(poses)
-        return {
-            self.mesh.i: ((-along, -cross(point - poses[self.mesh.i].x, along)),),
-            self.mesh.j: ((along, cross(point - poses[self.mesh.j].x, along)),),
-        }
+        return opposed(self.mesh, poses, point, along)
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
         point, along = self.pitch(poses)
         _, radial = self.apart(poses, multipliers)
-        return Held(along * multipliers[0] + radial, at=point)
+        return PairReaction(along * multipliers[0] + radial, at=point)
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
         """Teeth push the rack away from the wheel's axis."""

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.linkage import Slide
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import Linkage, Slide
+from tmm_cli.pairs.base import Constraint, JacobianRow
+from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
 
 
 @dataclass(frozen=True)
@@ -34,7 +30,7 @@ class Guided:
         on_carrier = (runner.x - carrier.x) + on_runner
         return cls(carrier.z * unit(slide.direction), on_carrier - slide.through * carrier.z, on_carrier, on_runner)
 
-    def grips(self, slide: Slide, along: Vector) -> Mapping[str, Grip]:
+    def jacobian_rows(self, slide: Slide, along: Vector) -> Mapping[str, JacobianRow]:
         """Of the running point's motion against the carrier, counted along a direction that the carrier carries."""
         return {
             slide.carrier: (-along, -cross(self.on_carrier, along)),
@@ -73,24 +69,24 @@ class Sliding(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return False, True
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         here = Guided.at(self.slide, poses)
         turned = poses[self.slide.runner].z * np.conj(poses[self.slide.carrier].z * unit(self.slide.turned))
         return np.arctan2(turned.imag, turned.real), cross(here.u, here.off)
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         here = Guided.at(self.slide, poses)
-        across = here.grips(self.slide, 1j * here.u)
+        across = here.jacobian_rows(self.slide, 1j * here.u)
         return {
             self.slide.carrier: ((0j, -1.0), across[self.slide.carrier]),
             self.slide.runner: ((0j, 1.0), across[self.slide.runner]),
         }
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         here = Guided.at(self.slide, poses)
         coriolis = 2 * rates[self.slide.carrier].w * here.sliding(self.slide, rates)
         return np.zeros(np.shape(coriolis)), cross(here.u, here.bend(self.slide, rates)) - coriolis
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
         here = Guided.at(self.slide, poses)
-        return Held(1j * here.u * multipliers[1], multipliers[0])
+        return PairReaction(1j * here.u * multipliers[1], multipliers[0])

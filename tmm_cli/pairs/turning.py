@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from tmm_cli.groups.state import Drives, Held
-from tmm_cli.pairs.base import Constraint, Grip, Poses, Rates
+from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.linkage import Linkage
+from tmm_cli.pairs.base import Constraint, JacobianRow
+from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector
-
-if TYPE_CHECKING:
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Pair
 
 
 @dataclass(frozen=True)
@@ -41,22 +38,22 @@ class Turning(Constraint):
     def _arms(self, poses: Poses) -> tuple[Vector, Vector]:
         return self.at_i * poses[self.i].z, self.at_j * poses[self.j].z
 
-    def gaps(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         arm_i, arm_j = self._arms(poses)
-        gap = (poses[self.j].x - poses[self.i].x) + (arm_j - arm_i)
-        return gap.real, gap.imag
+        residual = (poses[self.j].x - poses[self.i].x) + (arm_j - arm_i)
+        return residual.real, residual.imag
 
-    def grips(self, poses: Poses) -> Mapping[str, Sequence[Grip]]:
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         arm_i, arm_j = self._arms(poses)
         return {
             self.i: ((-1.0 + 0j, arm_i.imag), (-1j, -arm_i.real)),
             self.j: ((1.0 + 0j, -arm_j.imag), (1j, arm_j.real)),
         }
 
-    def bends(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         arm_i, arm_j = self._arms(poses)
         bend = arm_i * rates[self.i].w ** 2 - arm_j * rates[self.j].w ** 2
         return bend.real, bend.imag
 
-    def held(self, poses: Poses, multipliers: Sequence[Real]) -> Held:
-        return Held(multipliers[0] + 1j * multipliers[1])
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
+        return PairReaction(multipliers[0] + 1j * multipliers[1])

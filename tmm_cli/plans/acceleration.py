@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.motion import Motion
 from tmm_cli.plans.record import NamedVector, Plan
-from tmm_cli.plans.velocity import guide_direction, hinge_points, letters, other_than
+from tmm_cli.plans.velocity import absolute, ends_of, hinge_points, letters, other_than, stones
 
 POLE = "π"
 
@@ -15,13 +15,9 @@ POLE = "π"
 def acceleration_plan(motion: Motion, k: int) -> Plan:
     """Vectors πa, n_ba, t_ba, k, r in m/s2 at position k. Each chain of parts leads from one end to the next."""
     linkage = motion.linkage
-    fixed, letter_of = set(linkage.links[FRAME].points), letters(linkage)
-    ends: dict[str, complex] = {POLE: 0j}
+    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
+    ends = ends_of(linkage, POLE, lambda point: motion.named(point).a[k])
     vectors: list[NamedVector] = []
-    for link in linkage.moving:
-        for point in linkage.links[link].points:
-            if point not in fixed:
-                ends.setdefault(letter_of[point], complex(motion.named(point).a[k]))
     for link in linkage.moving:
         told = sorted(hinge_points(linkage, link), key=lambda p: p not in fixed)  # from the pivot on
         for base, point in pairwise(told):
@@ -29,30 +25,23 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
                 start = 0j if base in fixed else ends[letter_of[base]]
                 arm = linkage.local(link, point) - linkage.local(link, base)
                 vectors += _parts(motion, link, arm, start, f"{letter_of[point]}{letter_of[base]}", k)
-    for slide in linkage.slides:
-        if FRAME not in (slide.carrier, slide.runner):
-            letter = letter_of.get(slide.point, slide.point.lower())
-            under = other_than(ends, f"{letter}{slide.carrier}")
-            runner, sliding = motion.point(slide.runner, slide.at), motion.slide(slide)
-            carrier = motion.poses[slide.carrier]
-            local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
-            ends[under] = complex(motion.point(slide.carrier, local).a[k])
-            # from the carrier's pivot on the frame, else from a point in which it is hinged to another moving link
-            told = sorted(hinge_points(linkage, slide.carrier), key=lambda p: p not in fixed)
-            if told:
-                base = told[0]
-                start = 0j if base in fixed else ends[letter_of[base]]
-                arm = local - linkage.local(slide.carrier, base)
-                vectors += _parts(motion, slide.carrier, arm, start, f"{under}{letter_of[base]}", k)
-            bend = ends[under] + complex(sliding.coriolis[k])
-            along = complex(sliding.a[k]) * guide_direction(motion, slide.carrier, slide.direction, k)
-            vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))
-            vectors.append(NamedVector(f"r({letter})", bend, bend + along, "sliding"))
+    for slide, letter, under, local in stones(motion, ends, k):
+        ends[under] = complex(motion.point(slide.carrier, local).a[k])
+        # from the carrier's pivot on the frame, else from a point in which it is hinged to another moving link
+        told = sorted(hinge_points(linkage, slide.carrier), key=lambda p: p not in fixed)
+        if told:
+            base = told[0]
+            start = 0j if base in fixed else ends[letter_of[base]]
+            arm = local - linkage.local(slide.carrier, base)
+            vectors += _parts(motion, slide.carrier, arm, start, f"{under}{letter_of[base]}", k)
+        sliding = motion.slide(slide)
+        bend = ends[under] + complex(sliding.coriolis[k])
+        vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))
+        vectors.append(NamedVector(f"r({letter})", bend, bend + complex(sliding.a[k] * sliding.u[k]), "sliding"))
     for link in linkage.moving:
         if linkage.links[link].mass:
             ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).a[k])
-    absolute = [NamedVector(POLE + name, 0j, end, "absolute") for name, end in ends.items() if name != POLE]
-    return Plan((*absolute, *vectors), ends)
+    return Plan((*absolute(ends, POLE), *vectors), ends)
 
 
 def _parts(motion: Motion, link: str, arm: complex, start: complex, name: str, k: int) -> list[NamedVector]:

@@ -13,15 +13,16 @@ Part = tuple[str, complex, Kind]
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. equation: its vectors in order, as the plan's vector equation.
-
-    driving: it is that of a link driven from the frame, not of a group.
-    """
+    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group."""
 
     links: tuple[str, ...]
     plan: Plan
-    equation: str
     driving: bool = False
+
+    @property
+    def equation(self) -> str:
+        """Its vectors in order, as the plan's vector equation."""
+        return " + ".join(v.name for v in self.plan.vectors if v.kind != "inner") + " = 0"
 
 
 def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
@@ -31,19 +32,14 @@ def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
 
 
 def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
-    if len(group.group.links) != 2 or len(group.outer) != 2 or len(group.inner) != 1 or group.group.drivers:
-        return _whole(group, reactions, k)
-    return _dyad(group, reactions, k)
-
-
-def _whole(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
+    if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
+        return _dyad(group, reactions, k)
     parts: list[Part] = []
     for link in group.group.links:
         parts += _borne(group.borne, reactions, group.group.links, link, k)
         parts += [(reaction_name(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
-    plan = _polygon(parts)
-    return ForcePlan(group.group.links, plan, " + ".join(v.name for v in plan.vectors) + " = 0")
+    return ForcePlan(group.group.links, _polygon(parts))
 
 
 def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
@@ -62,15 +58,13 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     force = complex(inner.onto(b)[k])
     # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
     joined = NamedVector(reaction_name(inner.pair.other(b), b), corner - force, corner, "inner")
-    order = " + ".join(v.name for v in plan.vectors)
-    return ForcePlan((a, b), Plan((*plan.vectors, joined)), f"{order} = 0")
+    return ForcePlan((a, b), Plan((*plan.vectors, joined)))
 
 
 def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
     link = frame.on
     parts = [*_borne(reactions.borne[link], reactions, (link,), link, k), *_rest(frame, k)]
-    plan = _polygon(parts)
-    return ForcePlan((link,), plan, " + ".join(v.name for v in plan.vectors) + " = 0", driving=True)
+    return ForcePlan((link,), _polygon(parts), driving=True)
 
 
 def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 from tmm_cli.forces.lever import Item, Lever
-from tmm_cli.motion import Motion
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.record import NamedVector
-from tmm_cli.plans.velocity import hinge_points, letters
+from tmm_cli.plans.velocity import absolute, ends_of, relative
 
 
 @dataclass(frozen=True)
@@ -39,16 +38,8 @@ class LeverPlan:
 def lever_plan(motion: Motion, lever: Lever, k: int) -> LeverPlan:
     """Velocities per unit of the driver's motion, turned by +90 degrees; forces keep their directions."""
     linkage = motion.linkage
-    ends: dict[str, complex] = {"p": 0j}
-    fixed, letter_of = set(linkage.links["0"].points), letters(linkage)
-    for link in linkage.moving:
-        for point in linkage.links[link].points:
-            if point not in fixed:
-                ends.setdefault(letter_of[point], 1j * complex(motion.named(point).first[k]))
-    bars = [NamedVector(f"p{name}", 0j, end, "absolute") for name, end in ends.items() if name != "p"]
-    for link in linkage.moving:
-        told = [letter_of[p] for p in hinge_points(linkage, link) if p not in fixed]
-        bars += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in pairwise(told)]
+    ends = ends_of(linkage, "p", lambda point: 1j * complex(motion.named(point).first[k]))
+    bars = (*absolute(ends, "p"), *relative(linkage, ends))
     forces, couples = [], []
     for item in lever.items:
         if item.end is None or item.force is None:
@@ -58,7 +49,7 @@ def lever_plan(motion: Motion, lever: Lever, k: int) -> LeverPlan:
                 couples.append((item.name, float(item.moment[k])))
         elif item.force[k] != 0:
             forces.append(_force(item.name, 1j * complex(item.end[k]), complex(item.force[k])))
-    return LeverPlan(ends, tuple(bars), tuple(forces), tuple(couples), float(lever.balancing[k]))
+    return LeverPlan(ends, bars, tuple(forces), tuple(couples), float(lever.balancing[k]))
 
 
 def _force(name: str, at: complex, force: complex) -> LeverForce:

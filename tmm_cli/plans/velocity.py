@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.motion import Motion
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import FRAME, Linkage, Slide
+from tmm_cli.pairs.base import axis
 from tmm_cli.pairs.gear import Gear
 from tmm_cli.pairs.rack import Rack
 from tmm_cli.plans.record import NamedVector, Plan
-from tmm_cli.vectors import unit
 
 
 def hinge_points(linkage: Linkage, link: str) -> list[str]:
@@ -44,45 +44,55 @@ def other_than(taken: Collection[str], letter: str) -> str:
     return letter
 
 
+def ends_of(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
+    """The pole, and the ends of the vectors of all moving points, by their letters; value: of a point by its name."""
+    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
+    moving = (p for link in linkage.moving for p in linkage.links[link].points if p not in fixed)
+    return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in moving}
+
+
+def relative(linkage: Linkage, ends: Mapping[str, complex]) -> list[NamedVector]:
+    """Vectors ab, bc, ... from end to end along each link."""
+    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
+    vectors = []
+    for link in linkage.moving:
+        told = [letter_of[p] for p in hinge_points(linkage, link) if p not in fixed]
+        vectors += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in pairwise(told)]
+    return vectors
+
+
+def absolute(ends: Mapping[str, complex], pole: str) -> list[NamedVector]:
+    """Vectors pa, pb, ... from the pole to every end."""
+    return [NamedVector(pole + name, 0j, end, "absolute") for name, end in ends.items() if name != pole]
+
+
+def stones(motion: Motion, ends: Collection[str], k: int) -> Iterable[tuple[Slide, str, str, complex]]:
+    """Stones on moving guides: slide, letter of the stone, of the point of the guide under it, where that is on it."""
+    letter_of = letters(motion.linkage)
+    for slide in motion.linkage.slides:
+        if FRAME not in (slide.carrier, slide.runner):
+            letter = letter_of.get(slide.point, slide.point.lower())
+            carrier, runner = motion.poses[slide.carrier], motion.point(slide.runner, slide.at)
+            local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
+            yield slide, letter, other_than(ends, f"{letter}{slide.carrier}"), local
+
+
 def velocity_plan(motion: Motion, k: int) -> Plan:
     """Vectors pa, ab, ... in m/s at position k."""
     linkage = motion.linkage
-    ends: dict[str, complex] = {"p": 0j}
-    vectors: list[NamedVector] = []
-    fixed, letter_of = set(linkage.links[FRAME].points), letters(linkage)
-    for link in linkage.moving:
-        for point in linkage.links[link].points:
-            letter = letter_of[point]
-            if point not in fixed and letter not in ends:
-                ends[letter] = complex(motion.named(point).v[k])
-                vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
-    for link in linkage.moving:
-        told = [p for p in hinge_points(linkage, link) if p not in fixed]
-        for one, other in pairwise(told):
-            a, b = letter_of[one], letter_of[other]
-            vectors.append(NamedVector(a + b, ends[a], ends[b], "relative"))
-    for slide in linkage.slides:
-        if FRAME in (slide.carrier, slide.runner):
-            continue
-        runner = motion.point(slide.runner, slide.at)
-        letter = letter_of.get(slide.point, slide.point.lower())
-        under = other_than(ends, f"{letter}{slide.carrier}")
-        carrier = motion.poses[slide.carrier]
-        below = motion.point(slide.carrier, (runner.x[k] - carrier.x[k]) / carrier.z[k])
-        ends[under] = complex(below.v[k])
-        vectors.append(NamedVector(f"p{under}", 0j, ends[under], "absolute"))
-        vectors.append(NamedVector(under + letter, ends[under], complex(runner.v[k]), "sliding"))
+    ends = ends_of(linkage, "p", lambda point: motion.named(point).v[k])
+    vectors = relative(linkage, ends)
+    for slide, letter, under, local in stones(motion, ends, k):
+        ends[under] = complex(motion.point(slide.carrier, local).v[k])
+        runner = complex(motion.point(slide.runner, slide.at).v[k])
+        vectors.append(NamedVector(under + letter, ends[under], runner, "sliding"))
     for name, wheel, place in pitch_points(motion, k):
-        letter = other_than(ends, name.lower())
         pose = motion.poses[wheel]
-        ends[letter] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
-        vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
+        ends[other_than(ends, name.lower())] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
     for link in linkage.moving:
         if linkage.links[link].mass:
-            letter = other_than(ends, f"s{link}")
-            ends[letter] = complex(motion.centre(link).v[k])
-            vectors.append(NamedVector(f"p{letter}", 0j, ends[letter], "absolute"))
-    return Plan(tuple(vectors), ends)
+            ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).v[k])
+    return Plan((*absolute(ends, "p"), *vectors), ends)
 
 
 def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
@@ -91,15 +101,9 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
     for mesh in linkage.meshes:
         if mesh.kind == "cam":
             continue
-        points = [linkage.shared(mesh.carrier, wheel) for wheel in (mesh.i, mesh.j)]
-        axes = [linkage.local(mesh.carrier, point) for point in points if point is not None]
+        one = axis(linkage, mesh.i, mesh.carrier)
         if mesh.kind == "gear":
-            place = Gear(mesh.name, mesh, axes[0], axes[1]).pitch(motion.poses)[0]
+            place = Gear(mesh.name, mesh, one, axis(linkage, mesh.j, mesh.carrier)).pitch(motion.poses)[0]
         else:
-            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), axes[0]).pitch(motion.poses)[0]
+            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), one).pitch(motion.poses)[0]
         yield mesh.name, mesh.j if mesh.i == FRAME else mesh.i, complex(np.broadcast_to(place, motion.q.shape)[k])
-
-
-def guide_direction(motion: Motion, carrier: str, direction: float, k: int) -> complex:
-    """The guide's direction in the drawing at position k."""
-    return complex(motion.poses[carrier].z[k] * unit(direction))

@@ -7,18 +7,11 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from tmm_cli.problem.errors import ProblemError, UnknownParameterError, nearest, quote
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.scalars import comma_error
-from tmm_cli.problem.units import (
-    ANGLE,
-    NUMBER,
-    Dimension,
-    Quantity,
-    UnitSystem,
-    parse_unit,
-    symbol,
-    unknown_unit,
-)
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, parse_unit, symbol, unknown_unit
+from tmm_cli.quantities import ANGLE, NUMBER, Dimension
 
 MAX_DEPTH: Final = 30
 
@@ -37,7 +30,7 @@ _ANGLE_OUT: Final = ("asin", "acos", "atan")
 FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, "atan2", "sqrt", "abs", "min", "max", "hypot")
 
 
-def taken(found: Quantity, want: Dimension, units: UnitSystem) -> float | None:
+def taken(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
     """The value in SI, a bare number taken in the file's unit of `want`; None when the dimension does not fit."""
     if found.dimension is None:
         return units.si(found.value, want)
@@ -48,7 +41,7 @@ class Parser:
     """Precedence climbing over the text: sums, products, powers, signs, calls."""
 
     def __init__(
-        self, text: str, parameters: Mapping[str, Quantity], units: UnitSystem, pi: Dimension | None = ANGLE
+        self, text: str, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
     ) -> None:
         self.text, self.parameters, self.units, self.pi = text, parameters, units, pi
         self.at = 0
@@ -71,10 +64,10 @@ class Parser:
                 self.at += 1
         return [name for name in found if name in self.parameters]
 
-    def whole(self) -> Quantity:
+    def whole(self) -> PhysicalValue:
         found = self.sum()
         if self.text[self.at :].strip():
-            raise self.fault("this is not arithmetic")
+            raise self.fault(_("this is not arithmetic"))
         return found
 
     def fault(self, message: str) -> ProblemError:
@@ -83,7 +76,7 @@ class Parser:
         if whole and (comma := _COMMA.match(rest)):
             return comma_error(whole[0], comma[1])
         found = quote(self.text) + (f", at {quote(rest)}" if rest and rest != self.text.strip() else "")
-        return ProblemError(message, found=found, allowed="numbers, units, parameters, + - * / ^ ( )")
+        return ProblemError(message, found=found, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
 
     def sign(self, *signs: str) -> str | None:
         match = _SIGN.match(self.text, self.at)
@@ -92,74 +85,75 @@ class Parser:
             return match[1]
         return None
 
-    def sum(self) -> Quantity:
+    def deeper(self) -> None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
+            raise self.fault(_("this is nested too deeply"))
+
+    def sum(self) -> PhysicalValue:
+        self.deeper()
         left = self.product()
         while sign := self.sign("+", "-"):
             right = self.product()
             a, b, dimension = self.alike(left, right)
-            left = Quantity(a + b if sign == "+" else a - b, dimension)
+            left = PhysicalValue(a + b if sign == "+" else a - b, dimension)
         self.depth -= 1
         return left
 
-    def product(self) -> Quantity:
+    def product(self) -> PhysicalValue:
         left = self.signed()
         while sign := self.sign("*", "/"):
             right = self.signed()
             if sign == "/" and right.value == 0:
-                raise self.fault("division by zero")
+                raise self.fault(_("division by zero"))
             value = left.value * right.value if sign == "*" else left.value / right.value
-            left = Quantity(value, self.joined(left, right, 1 if sign == "*" else -1))
+            left = PhysicalValue(value, self.joined(left, right, 1 if sign == "*" else -1))
         return left
 
-    def signed(self) -> Quantity:
+    def signed(self) -> PhysicalValue:
         minus = False
         while sign := self.sign("+", "-"):
             minus ^= sign == "-"
         found = self.power()
-        return Quantity(-found.value, found.dimension) if minus else found
+        return PhysicalValue(-found.value, found.dimension) if minus else found
 
-    def power(self) -> Quantity:
+    def power(self) -> PhysicalValue:
         base = self.atom()
         if not self.sign("^", "**"):
             return base
-        self.depth += 1
-        if self.depth > MAX_DEPTH:
-            raise ProblemError("this is nested too deeply", found=quote(self.text), allowed=f"{MAX_DEPTH} levels")
+        self.deeper()
         exponent = self.signed()
         self.depth -= 1
         if exponent.dimension not in (None, NUMBER) or abs(exponent.value) > 20:
-            raise self.fault("an exponent is a small bare number")
+            raise self.fault(_("an exponent is a small bare number"))
         dimension = base.dimension
         if dimension is not None:
             if exponent.value != int(exponent.value):
-                raise self.fault("a quantity has whole powers; see sqrt")
+                raise self.fault(_("a quantity has whole powers; see sqrt"))
             dimension = dimension.power(int(exponent.value))
-        return Quantity(self.real("this power", lambda: base.value**exponent.value), dimension)
+        return PhysicalValue(self.real("this power", lambda: base.value**exponent.value), dimension)
 
-    def atom(self) -> Quantity:
+    def atom(self) -> PhysicalValue:
         if number := _NUMBER.match(self.text, self.at):
             self.at = number.end()
             return self.with_unit(self.units.number(number[1]))
         if self.sign("("):
             inside = self.sum()
             if not self.sign(")"):
-                raise self.fault("a bracket is not closed")
+                raise self.fault(_("a bracket is not closed"))
             return inside
         if name := _NAME.match(self.text, self.at):
             return self.named(name)
-        raise self.fault("a number is wanted here" if self.text[self.at :].strip() else "a number is missing")
+        raise self.fault(_("a number is wanted here") if self.text[self.at :].strip() else _("a number is missing"))
 
-    def with_unit(self, number: float) -> Quantity:
+    def with_unit(self, number: float) -> PhysicalValue:
         """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
         found = _UNIT.match(self.text, self.at)
         if found is None:
-            return Quantity(number, None)
+            return PhysicalValue(number, None)
         name = _NAME.match(self.text, self.at)
         if name and symbol(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
-            raise self.fault(f"a * is missing before {name[1]}")
+            raise self.fault(_("a * is missing before {second}").format(second=name[1]))
         text = found[1]
         for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
             head = text[:end]
@@ -169,79 +163,79 @@ class Parser:
             if all(symbol(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
                 self.at = found.start(1) + end
                 unit = parse_unit(head)
-                return Quantity(unit.si(number), unit.dimension)
+                return PhysicalValue(unit.si(number), unit.dimension)
         raise unknown_unit(_SYMBOL.findall(text)[0])
 
-    def named(self, match: re.Match[str]) -> Quantity:
+    def named(self, match: re.Match[str]) -> PhysicalValue:
         name = match[1]
         self.at = match.end()
         if name in self.parameters:
             return self.parameters[name]
         if name == "pi":
-            return Quantity(self.units.functions["pi"], self.pi)
+            return PhysicalValue(self.units.functions["pi"], self.pi)
         if name in FUNCTIONS:
             return self.call(name)
         if symbol(name):
-            raise ProblemError("a unit without a number before it", found=quote(name), allowed=f"e.g. 1 {name}")
+            raise ProblemError(_("a unit without a number before it"), found=quote(name), allowed=f"e.g. 1 {name}")
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
-        error = UnknownParameterError(
-            "there is no such parameter", found=quote(name), allowed=", ".join(self.parameters) or "none is given",
+        raise ProblemError(
+            _("there is no such parameter"), found=quote(name), allowed=", ".join(self.parameters) or "none is given",
             near=nearest(name, names),
         )  # fmt: skip
-        error.unknown = name
-        raise error
 
-    def call(self, name: str) -> Quantity:
+    def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
-            raise self.fault(f"{name} wants its argument in brackets")
+            raise self.fault(_("{name} wants its argument in brackets").format(name=name))
         given = [self.sum()]
         while self.sign(","):
             given.append(self.sum())
         if not self.sign(")"):
-            raise self.fault("a bracket is not closed")
-        few, many = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
-        if not few <= len(given) <= many:
-            raise self.fault(f"{name} has {few} argument{'s' if few > 1 else ''}")
+            raise self.fault(_("a bracket is not closed"))
+        least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
+        if not least <= len(given) <= most:
+            raise self.fault(_("{name} wants another number of arguments").format(name=name))
         first = given[0]
+        compute = self.units.functions[name]
         if name in _ANGLE_IN:
             angle = taken(first, ANGLE, self.units)
             if angle is None:
-                raise self.fault(f"{name} wants an angle, not {first.dimension}")
+                raise self.fault(
+                    _("{name} wants an angle, not {dimension}").format(name=name, dimension=first.dimension)
+                )
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
-                raise self.fault("tan of a right angle has no value")
-            return Quantity(self.units.functions[name](angle), None)
+                raise self.fault(_("tan of a right angle has no value"))
+            return PhysicalValue(compute(angle), None)
+        what = f"{name} of {first.value:.6g}"
         if name in _ANGLE_OUT:
             if first.dimension not in (None, NUMBER):
-                raise self.fault(f"{name} wants a number, not {first.dimension}")
-            return Quantity(
-                self.real(f"{name} of {first.value:.6g}", lambda: self.units.functions[name](first.value)), ANGLE
-            )
+                raise self.fault(
+                    _("{name} wants a number, not {dimension}").format(name=name, dimension=first.dimension)
+                )
+            return PhysicalValue(self.real(what, lambda: compute(first.value)), ANGLE)
         if name == "sqrt":
             dimension = first.dimension and _half(first.dimension)
             if first.dimension is not None and dimension is None:
-                raise self.fault(f"{first.dimension} has no square root")
-            return Quantity(
-                self.real(f"sqrt of {first.value:.6g}", lambda: self.units.functions["sqrt"](first.value)), dimension
-            )
+                raise self.fault(_("{dimension} has no square root").format(dimension=first.dimension))
+            return PhysicalValue(self.real(what, lambda: compute(first.value)), dimension)
         if name == "abs":
-            return Quantity(abs(first.value), first.dimension)
+            return PhysicalValue(abs(first.value), first.dimension)
         return self.of_many(name, given)
 
-    def of_many(self, name: str, given: list[Quantity]) -> Quantity:
+    def of_many(self, name: str, given: list[PhysicalValue]) -> PhysicalValue:
         total = given[0]
         for other in given[1:]:  # the sum has the dimension of all, or they do not fit
             a, b, dimension = self.alike(total, other)
-            total = Quantity(a + b, dimension)
-        values = [self.alike(one, Quantity(0.0, total.dimension))[0] for one in given]
+            total = PhysicalValue(a + b, dimension)
+        values = [self.alike(one, PhysicalValue(0.0, total.dimension))[0] for one in given]
         dimension = total.dimension
         if name == "atan2":
-            return Quantity(self.units.functions[name](*values), ANGLE)
+            return PhysicalValue(self.units.functions[name](*values), ANGLE)
         if name == "hypot":
-            return Quantity(self.units.functions[name](*values), dimension)
-        return Quantity(self.units.functions[name](values), dimension)
+            return PhysicalValue(self.units.functions[name](*values), dimension)
+        return PhysicalValue(self.units.functions[name](values), dimension)
 
-    def alike(self, left: Quantity, right: Quantity) -> tuple[float, float, Dimension | None]:
+    def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
         """Both values in one dimension, a bare one taken in the file's unit of the other's."""
         a, b = left.dimension, right.dimension
         if a is None and b is not None:
@@ -249,11 +243,11 @@ class Parser:
         if b is None and a is not None:
             return left.value, self.units.si(right.value, a), a
         if a is not None and b is not None and not (a.fits(b) or b.fits(a)):
-            raise self.fault(f"{a} and {b} cannot be added or compared")
+            raise self.fault(_("{a} and {b} cannot be added or compared").format(a=a, b=b))
         return left.value, right.value, a
 
     @staticmethod
-    def joined(left: Quantity, right: Quantity, power: int) -> Dimension | None:
+    def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
         """Dimension of a product or quotient.
 
         A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
@@ -268,7 +262,7 @@ class Parser:
         except (ValueError, OverflowError, ZeroDivisionError):
             value = math.nan
         if isinstance(value, complex) or not math.isfinite(value):
-            raise self.fault(f"{what} has no value")
+            raise self.fault(_("{what} has no value").format(what=what))
         return float(value) if isinstance(value, int) else value
 
 

@@ -9,8 +9,10 @@ from typing import Any, Final, NoReturn
 
 import yaml
 
-from tmm_cli.problem.errors import Mark, Path, ProblemError, path_text, quote
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.scalars import HIDDEN, Scalar, comma_error, plain_value, split_number
+from tmm_cli.problem.tree import Mark, Path
 from tmm_cli.problem.yaml_errors import syntax_error
 
 MAX_DEPTH: Final = 20
@@ -49,18 +51,18 @@ class Composer:
             if isinstance(event, yaml.DocumentStartEvent):
                 self.documents += 1
                 if self.documents > 1:
-                    self.refuse(event, (), "a second document", found="---", allowed="one document in a file")
+                    self.refuse(event, (), _("a second document"), found="---", allowed=_("one document in a file"))
             elif isinstance(event, yaml.NodeEvent):
                 self.node(event)
             elif isinstance(event, yaml.CollectionEndEvent):
                 self.close(self.stack.pop())
         if self.top is None:
-            raise ProblemError("the file is empty", allowed="a mapping such as 'tmm: 1'", file=self.file)
+            raise ProblemError(_("the file is empty"), allowed=_("a mapping such as 'tmm: 1'"), file=self.file)
         if not isinstance(self.top, dict):
             raise ProblemError(
-                "the top level is not a mapping",
+                _("the top level is not a mapping"),
                 found=quote(self.top),
-                allowed="lines 'key: value'",
+                allowed=_("lines 'key: value'"),
                 file=self.file,
                 mark=self.marks[()],
             )
@@ -72,7 +74,7 @@ class Composer:
         except yaml.MarkedYAMLError as error:
             raise syntax_error(error, self.text, self.file) from None
         except (yaml.YAMLError, ValueError, OverflowError):
-            raise ProblemError("this is not YAML", file=self.file) from None
+            raise ProblemError(_("this is not YAML"), file=self.file) from None
 
     def refuse(
         self, event: Any, path: Path, message: str, found: str | None = None, allowed: str | None = None
@@ -115,46 +117,28 @@ class Composer:
     def check(self, event: Any, path: Path) -> None:
         self.nodes += 1
         if self.nodes > MAX_NODES:
-            self.refuse(event, path, "too many values", allowed=f"at most {MAX_NODES} keys and values")
+            self.refuse(event, path, _("too many values"), allowed=_("at most {most}").format(most=MAX_NODES))
         if len(self.stack) >= MAX_DEPTH and not isinstance(event, yaml.ScalarEvent):
-            where = path[:3]
-            self.refuse(event, where, "nested too deeply", allowed=f"at most {MAX_DEPTH} levels")
+            self.refuse(
+                event, path[:3], _("nested too deeply"), allowed=_("at most {most} levels").format(most=MAX_DEPTH)
+            )
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
-            sign = "*" if isinstance(event, yaml.AliasEvent) else "&"
             self.refuse(
-                event,
-                path,
-                "aliases are not part of a problem file",
-                found=quote(sign + event.anchor),
-                allowed="the value written out, or a parameter; text that starts with * or & in quotes",
-            )
+                event, path, _("aliases are not part of a problem file"),
+                allowed=_("the value written out, or a parameter; text that starts with * or & in quotes"),
+            )  # fmt: skip
         if event.tag is not None:
-            self.refuse(
-                event,
-                path,
-                "tags are not part of a problem file",
-                found=quote(event.tag),
-                allowed="plain values",
-            )
+            self.refuse(event, path, _("tags are not part of a problem file"), quote(event.tag), _("plain values"))
 
     def key(self, event: Any, frame: _Frame, mapping: dict[str, Any]) -> None:
         if not isinstance(event, yaml.ScalarEvent):
-            self.refuse(event, frame.path, "a list or mapping is used as a key", allowed="a word or number")
+            self.refuse(event, frame.path, _("a list or mapping is used as a key"), allowed=_("a word or number"))
         name: str = event.value
         path = (*frame.path, name)
-        if name == "<<" and not event.style:
-            self.refuse(event, path, "merge keys are not part of a problem file", found="<<")
-        if HIDDEN.search(name) or not name.strip():
-            self.refuse(event, frame.path, "a key that cannot be read", found=quote(name), allowed="a word or number")
         if name in mapping:
             first = self.key_marks[path]
             self.refuse(
-                event,
-                path,
-                "duplicate key",
-                found=quote(name),
-                allowed=f"one {quote(name)} in {path_text(frame.path) or 'the file'}; the first is at line "
-                f"{first.line}, column {first.column}",
+                event, path, _("duplicate key"), quote(name), _("the first is at line {line}").format(line=first.line)
             )
         self.key_marks[path] = _mark(event)
         frame.key = name
@@ -164,11 +148,13 @@ class Composer:
         text: str = event.value
         if event.style:
             if hidden := HIDDEN.search(text):
-                self.refuse(event, path, "a control character", found=quote(hidden[0]), allowed="printable text")
+                self.refuse(event, path, _("a control character"), found=quote(hidden[0]), allowed=_("printable text"))
             return text
         if event.start_mark.line != event.end_mark.line:
             if _ITEM_BELOW.search(self.text[event.start_mark.index : event.end_mark.index]):
-                self.refuse(event, path, "a value and a list below it", found=quote(text), allowed="one of the two")
+                self.refuse(
+                    event, path, _("a value and a list below it"), found=quote(text), allowed=_("one of the two")
+                )
             return text
         try:
             return plain_value(text)
@@ -186,13 +172,8 @@ class Composer:
             number = frame.events[-2]
             path = (*frame.path, frame.events[-3].value)
             raise self.placed(comma_error(number.value, name.value), number, path)
-        self.refuse(
-            name,
-            frame.path,
-            "a key without a value",
-            found=quote(name.value),
-            allowed="'key: value', a space after ':'",
-        )
+        wanted = _("'key: value', a space after ':'")
+        self.refuse(name, frame.path, _("a key without a value"), quote(name.value), wanted)
 
     def close(self, frame: _Frame) -> None:
         if not frame.flow or not isinstance(frame.value, list):

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+import difflib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from gettext import gettext as _
+from typing import Any, Self
 
-if TYPE_CHECKING:
-    from tmm_cli.problem.reader import Tree
+from tmm_cli.problem.tree import Mark, Path, Tree
 
-Path = tuple[str | int, ...]
-"""Where a value stands in a file: keys as written (str) and list indices from 0 (int)."""
+CLOSE = 0.66  # a name that is nearer to another by difflib's measure was meant for it: a third of letters is wrong
 
 # Cyrillic letters that look like Latin ones on paper and screen: the commonest invisible mistake in a key.
 _LOOKALIKES = str.maketrans("АВЕКМНОРСТУХаеорсухкмІіЅѕЈј", "ABEKMHOPCTYXaeopcyxkmIiSsJj")
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A place in a text; line and column count from 1."""
-
-    line: int
-    column: int
 
 
 class ProblemError(Exception):
@@ -70,7 +62,7 @@ class ProblemError(Exception):
         new = copy.copy(self)
         new.file = file
         if new.mark is None and tree is not None:
-            new.mark = _mark(tree, self.path, self.key)
+            new.mark = tree.mark(self.path, key=self.key)
         return new
 
     def to_dict(self) -> dict[str, Any]:
@@ -93,40 +85,37 @@ class ProblemError(Exception):
         head = ": ".join(part for part in (where, path_text(self.path), self.message) if part)
         lines = [head]
         if self.found is not None:
-            lines.append(f"found:   {self.found}")
+            lines.append(_("found:   {found}").format(found=self.found))
         if self.allowed is not None:
-            lines.append(f"allowed: {self.allowed}")
+            lines.append(_("allowed: {allowed}").format(allowed=self.allowed))
         if self.near is not None:
             same = self.found is not None and latin(self.found.strip("'")) == latin(self.near)
             same = same and self.found != quote(self.near)
-            script = f" in {'Latin' if self.near.isascii() else 'Cyrillic'} letters" if same else ""
-            lines.append(f"did you mean '{self.near}'{script}?")
+            told = _("did you mean '{near}'?")
+            if same:
+                told = _("did you mean '{near}' in Latin letters?")
+                if not self.near.isascii():
+                    told = _("did you mean '{near}' in Cyrillic letters?")
+            lines.append(told.format(near=self.near))
         return "\n  ".join(lines)
 
 
-class UnknownParameterError(ProblemError):
-    """Arithmetic on a name that is no parameter, `unknown`; where it is a key of the synthesis, that is said."""
-
-    unknown = ""
-
-    def located(self, file: str, tree: Tree | None = None) -> Self:
-        """As every error; the tree tells whether the name is a key of the block `synthesis`."""
-        new = super().located(file, tree)
-        block = tree.data.get("synthesis") if tree is not None else None
-        if isinstance(block, dict) and self.unknown in block and self.path[:1] != ("synthesis",):
-            key = clean(self.unknown, 40)
-            new.message = f"{key} is a key of the synthesis, not a parameter"
-            new.allowed = f"{key} as a parameter too: parameters: {{{key}: ...}}, synthesis: {{{key}: {key}}}"
-            new.near = None
-        return new
+@contextmanager
+def under(*path: str | int) -> Iterator[None]:
+    """What is refused inside has this path before its own."""
+    try:
+        yield
+    except ProblemError as error:
+        raise error.at(*path) from None
 
 
-def _mark(tree: Tree, path: Path, key: bool) -> Mark | None:
-    if path in tree.marks:
-        return tree.key_marks.get(path, tree.marks[path]) if key else tree.marks[path]
-    while path and path not in tree.marks:
-        path = path[:-1]
-    return tree.key_marks.get(path) or tree.marks.get(path)
+@contextmanager
+def placed_in(tree: Tree) -> Iterator[None]:
+    """What is refused inside has the file, line and column of its path."""
+    try:
+        yield
+    except ProblemError as error:
+        raise error.located(tree.file, tree) from None
 
 
 def path_text(path: Path) -> str:
@@ -159,38 +148,22 @@ def quote(value: object) -> str:
     if isinstance(value, list | tuple):
         if 0 < len(value) <= 4 and not any(isinstance(item, list | tuple | dict) for item in value):
             return clean("[" + ", ".join(item if isinstance(item, str) else quote(item) for item in value) + "]")
-        return f"a list of {len(value)}"
+        return _("a list of {count}").format(count=len(value))
     if isinstance(value, dict):
         return "a mapping with " + (", ".join(clean(str(key), 20) for key in list(value)[:4]) or "no keys")
     return clean(type(value).__name__)
 
 
 def nearest(name: str, names: Iterable[str]) -> str | None:
-    """The name that was probably meant, or None when nothing is close.
-
-    Case and Latin/Cyrillic look-alikes cost little; a swap of neighbours, a missing, extra or wrong letter
-    cost one. A third of the letters may be wrong; in names of one or two only case and order may differ.
-    """
+    """The name that was probably meant, or None when nothing is close: case and look-alike letters do not count."""
+    known = list(names)
+    if name in known:
+        return name
     wanted = _folded(name[:60])
-    best: tuple[float, str] | None = None
-    names = list(names)
-    for candidate in names:
-        if candidate == name:
-            return candidate
-        other = _folded(candidate[:60])
-        longest = max(len(wanted), len(other))
-        limit = max(1, longest // 3)
-        if not wanted or not other or abs(len(wanted) - len(other)) > limit:
-            continue
-        cost = float(_distance(wanted, other))
-        if (longest <= 2 and sorted(wanted) != sorted(other)) or cost > limit:
-            continue
-        if best is None or cost < best[0]:
-            best = (cost, candidate)
-    if best is None:  # a letter too many in a short name: EE for E
-        part = [n for n in names if n and len(wanted) <= 3 and (_folded(n) in wanted or wanted in _folded(n))]
-        return part[0] if len(part) == 1 else None
-    return best[1]
+    folded = {_folded(other[:60]): other for other in reversed(known)}
+    swapped = [other for other in folded if sorted(other) == sorted(wanted)]
+    close = swapped or difflib.get_close_matches(wanted, folded, n=1, cutoff=CLOSE)
+    return folded[close[0]] if close else None
 
 
 def latin(text: str) -> str:
@@ -200,17 +173,3 @@ def latin(text: str) -> str:
 
 def _folded(name: str) -> str:
     return latin(name).casefold().replace("-", "_").replace(" ", "_")
-
-
-def _distance(a: str, b: str) -> int:
-    """Edits from a to b, a swap of neighbours counting as one (optimal string alignment)."""
-    before: list[int] = []
-    row = list(range(len(b) + 1))
-    for i, x in enumerate(a, 1):
-        before, previous, row = row, before, [i]
-        for j, y in enumerate(b, 1):
-            cost = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (x != y))
-            if i > 1 and j > 1 and x == b[j - 2] and a[i - 2] == y:
-                cost = min(cost, previous[j - 2] + 1)
-            row.append(cost)
-    return row[-1]

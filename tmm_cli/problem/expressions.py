@@ -12,14 +12,17 @@ from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
+from tmm_cli.errors import _
 from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
-from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.units import ANGLE, Dimension, Quantity, UnitError, UnitSystem, plain_text
+from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.tree import Path
+from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem, plain_text
+from tmm_cli.quantities import ANGLE, Dimension
 
 MAX_LENGTH: Final = 200
 
 
-def evaluate(source: object, parameters: Mapping[str, Quantity], units: UnitSystem, want: Dimension) -> float:
+def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, want: Dimension) -> float:
     """A value in SI and radians. Raises ProblemError (without a path) for what is not arithmetic or does not fit."""
     try:
         return _fitting(source, evaluate_quantity(source, parameters, units), units, want)
@@ -33,31 +36,39 @@ def evaluate(source: object, parameters: Mapping[str, Quantity], units: UnitSyst
         raise first from None
 
 
-def _fitting(source: object, found: Quantity, units: UnitSystem, want: Dimension) -> float:
+def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
     value = taken(found, want, units)
     if value is None:
-        raise UnitError(f"{want} is wanted here", found=f"{quote(source)}, {units.show(found)}", allowed=want.example)
+        raise UnitError(
+            _("{want} is wanted here").format(want=want),
+            found=f"{quote(source)}, {units.show(found)}",
+            allowed=want.example,
+        )
     return value
 
 
 def evaluate_quantity(
-    source: object, parameters: Mapping[str, Quantity], units: UnitSystem, pi: Dimension | None = ANGLE
-) -> Quantity:
+    source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
+) -> PhysicalValue:
     """The value with its dimension; None for a bare number.
 
     pi is one of radians, so that pi/2 is a right angle whatever the file's unit of angles, unless told otherwise.
     """
     if isinstance(source, bool) or not isinstance(source, int | float | str):
-        raise ProblemError("a number is wanted here", found=quote(source), allowed="a number, a unit, arithmetic")
+        raise ProblemError(_("a number is wanted here"), found=quote(source), allowed=_("a number, a unit, arithmetic"))
     if isinstance(source, int | float):
         if not -1e300 < source < 1e300:
-            raise ProblemError("not a number from -1e300 to 1e300", found=quote(source))
-        return Quantity(units.number(source), None)
+            raise ProblemError(_("not a number from -1e300 to 1e300"), found=quote(source))
+        return PhysicalValue(units.number(source), None)
     if len(source) > MAX_LENGTH:
-        raise ProblemError("this is too long", found=quote(source), allowed=f"at most {MAX_LENGTH} characters")
+        raise ProblemError(
+            _("this is too long"),
+            found=quote(source),
+            allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
+        )
     found = Parser(plain_text(source), parameters, units, pi).whole()
     if not math.isfinite(found.value):
-        raise ProblemError("this number is too large", found=quote(source))
+        raise ProblemError(_("this number is too large"), found=quote(source))
     return found
 
 
@@ -65,21 +76,21 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
     """Refuse what cannot be the name of a parameter."""
     if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
         raise ProblemError(
-            "this cannot be the name of a parameter", path=path, found=quote(name),
-            allowed="letters, figures and _, a letter first", key=key,
+            _("this cannot be the name of a parameter"), path=path, found=quote(name),
+            allowed=_("letters, figures and _, a letter first"), key=key,
         )  # fmt: skip
     if name in FUNCTIONS or name == "pi":
-        raise ProblemError("this name is taken by arithmetic", path=path, found=quote(name), key=key)
+        raise ProblemError(_("this name is taken by arithmetic"), path=path, found=quote(name), key=key)
 
 
 def resolve_parameters(
-    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, Quantity] | None = None
-) -> dict[str, Quantity]:
+    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
+) -> dict[str, PhysicalValue]:
     """Parameters, each of which may be arithmetic on others, in any order, and on those that are given already."""
-    found: dict[str, Quantity] = dict(given or {})
+    found: dict[str, PhysicalValue] = dict(given or {})
     for name in raw:
         check_parameter(name, (name,))
-    known = dict.fromkeys(raw, Quantity(0.0))
+    known = dict.fromkeys(raw, PhysicalValue(0.0))
     needs = {
         name: Parser(plain_text(source[:MAX_LENGTH]), known, units).names() if isinstance(source, str) else []
         for name, source in raw.items()
@@ -88,7 +99,7 @@ def resolve_parameters(
         order = list(TopologicalSorter(needs).static_order())
     except CycleError as error:
         cycle: list[str] = error.args[1][::-1]
-        raise ProblemError("parameters go round in a circle", path=(cycle[0],), found=" -> ".join(cycle)) from None
+        raise ProblemError(_("parameters go round in a circle"), path=(cycle[0],), found=" -> ".join(cycle)) from None
     for name in order:
         try:
             found[name] = evaluate_quantity(raw[name], found, units)

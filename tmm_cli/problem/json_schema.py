@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from tmm_cli.problem.schema import File, OnLine, Output, Tabulated
+from pydantic import BaseModel
+
+from tmm_cli.problem.schema import File, Output, Tabulated
 from tmm_cli.problem.schema_chain import SpatialFile
-from tmm_cli.problem.schema_more import Cam, Friction, Gear, Rack, Spring
-from tmm_cli.problem.synthesis import reader
-from tmm_cli.synthesis import TASKS
+from tmm_cli.problem.schema_parts import OnLine
 
 
-def file_schema() -> dict[str, Any]:
-    """Made by pydantic from the shape; models that have validators of their own around them are put in by name."""
+def file_schema(tasks: Iterable[type[BaseModel]]) -> dict[str, Any]:
+    """Made by pydantic from the shape; models that have validators of their own around them are put in by name.
+
+    tasks: the shapes of the blocks that may stand under `synthesis`.
+    """
     schema = File.model_json_schema(by_alias=True)
     definitions = schema.setdefault("$defs", {})
-    for model in (OnLine, Output, Tabulated, SpatialFile, Gear, Rack, Cam, Spring, Friction):
+    for model in (OnLine, Output, Tabulated, SpatialFile):
         inner = model.model_json_schema(by_alias=True)
         for name, definition in inner.pop("$defs", {}).items():
             definitions.setdefault(name, definition)
         definitions.setdefault(model.__name__, inner)
-    tasks = [reader(task).Shape for task in TASKS]
-    for shape in tasks:
-        inner = shape.model_json_schema(by_alias=True)
+    shapes = [shape.model_json_schema(by_alias=True) for shape in tasks]
+    for inner in shapes:
         for name, definition in inner.pop("$defs", {}).items():
             definitions.setdefault(name, definition)
-    shapes = [{k: v for k, v in s.model_json_schema(by_alias=True).items() if k != "$defs"} for s in tasks]
     definitions["Synthesis"] = {"anyOf": shapes}
     whole = {
         "$defs": schema.pop("$defs"),

@@ -12,33 +12,18 @@ import codecs
 import os
 import re
 import stat
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
+from tmm_cli.errors import _
 from tmm_cli.problem.composer import Composer
-from tmm_cli.problem.errors import Mark, Path, ProblemError
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.scalars import HIDDEN
+from tmm_cli.problem.tree import Mark, Path, Tree
 from tmm_cli.problem.yaml_errors import tab_error
 
 MAX_BYTES: Final = 1_000_000
 
 _TAB = re.compile(r"^ *\t[ \t]*[^\s#]", re.MULTILINE)
-
-
-@dataclass(frozen=True)
-class Tree:
-    """A file as plain data (dict with str keys, list, str, int, float, bool, None) with places.
-
-    marks: start of every value, () being the top. key_marks: start of every key, by the path of its value.
-    commas: flow lists that may be numbers with a decimal comma, by path, with what they would then read.
-    """
-
-    file: str
-    data: dict[str, Any]
-    marks: Mapping[Path, Mark]
-    key_marks: Mapping[Path, Mark]
-    commas: Mapping[Path, str]
 
 
 def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
@@ -53,24 +38,29 @@ def read_file(path: str | os.PathLike[str]) -> Tree:
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
-            raise ProblemError("this is a directory", allowed="a YAML file", file=file)
+            raise ProblemError(_("this is a directory"), allowed=_("a YAML file"), file=file)
         if found.st_size > MAX_BYTES:
             raise _too_large(file, f"{found.st_size} bytes")
         with open(file, "rb") as stream:
             # Pipes and devices have no size to look at beforehand.
             data = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise ProblemError("no such file", file=file) from None
+        raise ProblemError(_("no such file"), file=file) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise ProblemError(f"the file cannot be read: {reason}", file=file) from None
+        raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason), file=file) from None
     if len(data) > MAX_BYTES:
         raise _too_large(file, f"more than {MAX_BYTES} bytes")
     return read_text(_decoded(data, file), file)
 
 
 def _too_large(file: str, found: str) -> ProblemError:
-    return ProblemError("the file is too large", found=found, allowed=f"at most {MAX_BYTES} bytes", file=file)
+    return ProblemError(
+        _("the file is too large"),
+        found=found,
+        allowed=_("at most {max_bytes} bytes").format(max_bytes=MAX_BYTES),
+        file=file,
+    )
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -81,9 +71,9 @@ def _decoded(data: bytes, file: str) -> str:
         before = body[: error.start]
         column = len(before[before.rfind(b"\n") + 1 :].decode()) + 1
         raise ProblemError(
-            "the file is not UTF-8 text",
+            _("the file is not UTF-8 text"),
             found=f"byte 0x{body[error.start]:02X} at position {len(data) - len(body) + error.start + 1}",
-            allowed="UTF-8; in the editor: Save with encoding, UTF-8",
+            allowed=_("UTF-8; in the editor: Save with encoding, UTF-8"),
             file=file,
             mark=Mark(before.count(b"\n") + 1, column),
         ) from None
@@ -96,9 +86,9 @@ def read_text(text: str, file: str) -> Tree:
         raise _too_large(file, f"{len(text)} characters")
     if hidden := HIDDEN.search(text):
         raise ProblemError(
-            "a control or invisible character",
+            _("a control or invisible character"),
             found=f"U+{ord(hidden[0]):04X}",
-            allowed="printable text",
+            allowed=_("printable text"),
             file=file,
             mark=_mark_at(text, hidden.start()),
         )

@@ -2,75 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+import re
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ValidationError, WithJsonSchema
 
-from tmm_cli.problem import schema, schema_chain, schema_more
-from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
-from tmm_cli.problem.reader import Tree, decimal_comma_hint
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.units import ANGLE, LENGTH
-from tmm_cli.refused import (
-    Misfit,
-    NoAssembly,
-    NoStrokes,
-    NoSuchName,
-    NoSuchPosition,
-    NotOnFrame,
-    Refused,
-    TooLarge,
-    Undecided,
-    WrongMobility,
+from tmm_cli.errors import (
+    AmbiguousSketchError,
+    AssemblyError,
+    GroupTooLargeError,
+    LinkageError,
+    MissingStrokesError,
+    MobilityError,
+    NotOnFrameError,
+    SketchMismatchError,
+    UnknownNameError,
+    UnknownPositionError,
+    _,
 )
-from tmm_cli.structure.assur import Group, Structure
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.reader import decimal_comma_hint
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.schema_parts import Strict
+from tmm_cli.problem.tree import Path, Tree
+from tmm_cli.quantities import ANGLE, LENGTH
+
+if TYPE_CHECKING:
+    from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
-ANY = object()
-MODELS: tuple[tuple[tuple[Any, ...], type[BaseModel]], ...] = (
-    ((), schema.File),
-    (("structure",), schema_chain.SpatialStructure),
-    (("structure", "spatial"), schema_chain.Spatial),
-    (("structure", "spatial", "pairs", ANY), schema_chain.SpatialPair),
-    (("guides", ANY), schema.Guide),
-    (("links", ANY), schema.Link),
-    (("links", ANY, "slides"), schema.Slide),
-    (("links", ANY, "slides", ANY), schema.Slide),
-    (("driver",), schema.Driver),
-    (("driver", ANY), schema.Driver),
-    (("gears", ANY), schema_more.Gear),
-    (("racks", ANY), schema_more.Rack),
-    (("cams", ANY), schema_more.Cam),
-    (("cams", ANY, "law", ANY), schema_more.CamPiece),
-    (("springs", ANY), schema_more.Spring),
-    (("friction",), schema_more.Friction),
-    (("friction", "pairs", ANY), schema_more.PairFriction),
-    (("masses", ANY), schema.Mass),
-    (("loads", ANY), schema.Load),
-    (("loads", ANY, "force"), schema.Tabulated),
-    (("loads", ANY, "moment"), schema.Tabulated),
-    (("output",), schema.Output),
-    (("positions",), schema.Positions),
-    (("checks",), schema.Checks),
-)
-
-WORDS = {
-    "int_type": "a whole number is wanted",
-    "int_parsing": "a whole number is wanted",
-    "int_from_float": "a whole number is wanted",
-    "string_type": "text is wanted",
-    "list_type": "a list [..., ...] is wanted",
-    "dict_type": "keys with values are wanted",
-    "model_type": "keys with values are wanted",
-    "model_attributes_type": "keys with values are wanted",
-}
+ModelAt = Callable[[Path], type[BaseModel] | None]
 
 
-def shape_error(error: ValidationError, tree: Tree) -> ProblemError:
-    """The first mistake of the file's shape, by its place in the file."""
-    meant = _meant(_flat(error, ()), tree)
-    refusals = [(kind, _refusal(kind, path, context, tree)) for kind, path, context in meant]
+def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part: Path = ()) -> ProblemError:
+    """The first mistake in the shape of a file, by its place; model: the shape of what stands at the path `part`."""
+    meant = _meant(_flat(error, part), tree)
+
+    def model_at(path: Path) -> type[BaseModel] | None:
+        return _model(model, path[len(part) :]) if path[: len(part)] == part else schema.File
+
+    refusals = [(kind, _refusal(kind, path, context, tree, model_at)) for kind, path, context in meant]
     misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
     # a key that stands there misspelt is not missing
     located = [r.located(tree.file, tree) for kind, r in refusals if kind != "missing" or r.path not in misspelt]
@@ -107,29 +80,29 @@ def _meant(errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree) -> li
     return meant or rest
 
 
-def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree) -> ProblemError:
+def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree, model: ModelAt) -> ProblemError:
     data = _at(tree.data, path)
     if kind == "extra_forbidden":
-        names = _keys(path[:-1], tree)
-        if len(path) == 1 and "structure" in tree.data:
-            names = list(schema_chain.SpatialFile.model_fields)
+        names = _keys(path[:-1], model)
         key = str(path[-1])
         return ProblemError(
-            "unknown key", path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
+            _("unknown key"), path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
         )
     if kind == "missing":
-        return ProblemError(f"the key `{path[-1]}` is missing", path=path, allowed=_describe(path, tree))
+        return ProblemError(
+            _("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=_describe(path, model)
+        )
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
-        described = _describe(path, tree) or ""
+        described = _describe(path, model) or ""
         return ProblemError(
-            "this word is not known here", path=path, found=quote(data),
+            _("this word is not known here"), path=path, found=quote(data),
             allowed=described if "[" in described else words,  # a list may stand here too
             near=nearest(str(data), words.split(", ")),
         )  # fmt: skip
     hint = decimal_comma_hint(tree, path)
-    message = WORDS.get(kind) or _limits(kind, context) or str(context["msg"])
-    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path, tree))
+    message = _words(kind, context)
+    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path, model))
 
 
 def _at(data: Any, path: Path) -> Any:
@@ -144,53 +117,79 @@ def _at(data: Any, path: Path) -> Any:
     return data
 
 
-def _limits(kind: str, context: dict[str, Any]) -> str | None:
+def _words(kind: str, context: dict[str, Any]) -> str:
+    """What is wrong with a value, by pydantic's kind of error."""
+    if kind.startswith("int_"):
+        return _("a whole number is wanted")
     if kind == "greater_than_equal":
-        return f"at least {context['ge']} is wanted"
+        return _("at least {least} is wanted").format(least=context["ge"])
     if kind == "less_than_equal":
-        return f"at most {context['le']} is wanted"
+        return _("at most {most} is wanted").format(most=context["le"])
     if kind in ("too_long", "string_too_long"):
-        return f"this is too long: at most {context['max_length']}"
-    if kind == "too_short":
-        return f"{context['min_length']} are wanted here" if context["min_length"] > 1 else "there is nothing here"
+        return _("this is too long: at most {most}").format(most=context["max_length"])
+    if kind == "too_short" and context["min_length"] > 1:
+        return _("{number} are wanted here").format(number=context["min_length"])
+    words = {
+        "string_type": _("text is wanted"),
+        "list_type": _("a list [..., ...] is wanted"),
+        "dict_type": _("keys with values are wanted"),
+        "model_type": _("keys with values are wanted"),
+        "model_attributes_type": _("keys with values are wanted"),
+        "too_short": _("there is nothing here"),
+    }
+    return words.get(kind) or str(context["msg"])
+
+
+def _model(here: type[BaseModel] | None, path: Path) -> type[BaseModel] | None:
+    """The model of what stands at a path inside another."""
+    named = False  # whether the next key is one of the user's own names
+    for step in path:
+        if isinstance(step, int) or here is None or named:
+            named = False
+            continue
+        field = here.model_fields.get(step)
+        here = None if field is None else _inside([field.annotation, *field.metadata])
+        named = field is not None and get_origin(field.annotation) is dict
+    return here
+
+
+def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
+    """The model among the parts of an annotation; where a validator stands for it, it is named in the JSON Schema."""
+    for part in parts:
+        if isinstance(part, type) and issubclass(part, BaseModel):
+            return part
+        if isinstance(part, WithJsonSchema):
+            named = re.search(r"'\$comment': '(\w+)'", str(part.json_schema))
+            inside: Iterable[Any] = [m for m in Strict.__subclasses__() if named and m.__name__ == named[1]]
+        else:
+            inside = get_args(part)
+        if found := _inside(inside):
+            return found
     return None
 
 
-def _model(path: Path, tree: Tree) -> type[BaseModel] | None:
-    if path[:1] == ("synthesis",):
-        from tmm_cli.problem.synthesis import model as inside
-
-        return inside(tree.data["synthesis"], path[1:])
-    for pattern, model in MODELS:
-        if len(pattern) == len(path) and all(p is ANY or p == s for p, s in zip(pattern, path, strict=True)):
-            return model
-    return None
+def _keys(path: Path, model: ModelAt) -> list[str]:
+    here = model(path)
+    return [field.alias or name for name, field in here.model_fields.items()] if here else []
 
 
-def _keys(path: Path, tree: Tree) -> list[str]:
-    model = _model(path, tree) or schema.OnLine
-    return [field.alias or name for name, field in model.model_fields.items()]
-
-
-def _describe(path: Path, tree: Tree) -> str | None:
+def _describe(path: Path, model: ModelAt) -> str | None:
     while path and isinstance(path[-1], int):  # an item is described with its list
         path = path[:-1]
-    model = _model(path[:-1], tree) if path else None
-    if model is None:
-        return None
-    for name, field in model.model_fields.items():
+    here = model(path[:-1]) if path else None
+    for name, field in here.model_fields.items() if here else ():
         if path[-1] in (name, field.alias):
             return field.description
     return None
 
 
-def refusal(error: Refused, problem: Problem) -> ProblemError:
+def refusal(error: LinkageError, problem: Problem) -> ProblemError:
     """A stage's refusal in the words and at the place of the file."""
     found = _stage_error(error, problem)
     return found.located(problem.file, problem.source) if problem.file else found
 
 
-def _stage_error(error: Refused, problem: Problem) -> ProblemError:
+def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
     units = problem.units
 
     def shown(value: complex | float) -> str:
@@ -202,57 +201,65 @@ def _stage_error(error: Refused, problem: Problem) -> ProblemError:
     at = units.from_si(problem.linkage.sketch.at, ANGLE if crank else LENGTH)
     place = f"{at:.6g} {units.symbol(ANGLE if crank else LENGTH)}"
     match error:
-        case WrongMobility(structure=structure):
+        case MobilityError(structure=structure):
             return mobility(structure)
-        case NoAssembly(group=group, gap=gap):
-            short = f"{units.from_si(gap, LENGTH):.6g} {units.symbol(LENGTH)} short of closing"
-            if group.type in ("PRP", "RPP"):
-                short = "their guides are parallel"
+        case AssemblyError(group=group, residual=residual):
+            short = _("it never closes")
+            if residual is not None:
+                size = f"{units.from_si(residual, LENGTH):.6g} {units.symbol(LENGTH)}"
+                short = _("{size} short of closing").format(size=size)
             return ProblemError(
-                f"{_group(group)} cannot be assembled with the driver at {place}",
-                path=("sketch", "at"), found=short, allowed="lengths that reach, or another place of the driver",
+                _("group {group} cannot be assembled with the driver at {place}").format(
+                    group=group.title, place=place
+                ),
+                path=("sketch", "at"), found=short, allowed=_("lengths that reach, or another place of the driver"),
             )  # fmt: skip
-        case Undecided(group=group, choices=choices, count=count) if choices:
+        case AmbiguousSketchError(group=group, choices=choices) if choices:
             told = list(choices.items())[:MOST_CHOICES]
             ways = "; ".join(f"{name}: {shown(a)} or {shown(b)}" for name, (a, b) in told)
-            listing = f"tmm kinematics {problem.file or 'FILE'} --assemblies"
+            undecided = _(
+                "the sketch does not say how group {group} is assembled; see tmm kinematics {file} --assemblies"
+            ).format(group=group.title, file=problem.file or "FILE")
             return ProblemError(
-                f"the sketch does not say which way round {_group(group)} {_are(group)} assembled; {listing} lists all",
-                path=("sketch",), found=f"{count} assemblies" if count > 2 else None,
-                allowed=f"with the driver at {place}, {ways}", key=True,
+                undecided, path=("sketch",), key=True,
+                allowed=_("with the driver at {place}, {ways}").format(place=place, ways=ways),
             )  # fmt: skip
-        case Undecided(group=group):
+        case AmbiguousSketchError(group=group):
             return ProblemError(
-                f"{_group(group)} {_are(group)} in a dead position in the sketch", path=("sketch", "at"),
-                found=place, allowed="another place of the driver, where the two assemblies differ",
+                _("group {group} is in a dead position in the sketch").format(group=group.title),
+                path=("sketch", "at"), found=place, allowed=_("another place of the driver"),
             )  # fmt: skip
-        case Misfit(name=name, sketched=sketched, found=value):
+        case SketchMismatchError(name=name, sketched=sketched, found=value):
             return ProblemError(
-                "the sketch fits no assembly", path=("sketch", name), found=shown(sketched),
-                allowed=f"about {shown(value)} with the driver at {place}",
+                _("the sketch fits no assembly"), path=("sketch", name), found=shown(sketched),
+                allowed=_("about {value} with the driver at {place}").format(value=shown(value), place=place),
             )  # fmt: skip
-        case TooLarge(group=group, most=most):
+        case GroupTooLargeError(group=group, most=most):
             return ProblemError(
-                f"a group of so many links is not solved: {group.title}", path=("links",), found=str(len(group.links)),
-                allowed=f"at most {most} in one group; any number of groups", key=True,
+                _("a group of so many links is not solved: {title}").format(title=group.title), path=("links",),
+                found=str(len(group.links)),
+                allowed=_("at most {most} in one group; any number of groups").format(most=most), key=True,
             )  # fmt: skip
-        case NoSuchPosition(number=number, count=count):
+        case UnknownPositionError(number=number, count=count):
             return ProblemError(
-                "there is no such position", path=("positions",), found=str(number), allowed=f"0 to {count - 1}"
-            )
-        case NoSuchName(name=name, allowed=allowed):
+                _("there is no such position"), path=("positions",), found=str(number),
+                allowed=_("0 to {last}").format(last=count - 1),
+            )  # fmt: skip
+        case UnknownNameError(name=name, allowed=allowed):
             return ProblemError(
-                "there is no such point, link or centre of mass", path=("links",), found=quote(name),
+                _("there is no such point, link or centre of mass"), path=("links",), found=quote(name),
                 allowed=", ".join(allowed), near=nearest(name, list(allowed)), key=True,
             )  # fmt: skip
-        case NotOnFrame(link=link, allowed=allowed):
+        case NotOnFrameError(link=link, allowed=allowed):
             return ProblemError(
-                "this link cannot drive: it is not joined to the frame", path=("links",), found=quote(link),
+                _("this link cannot drive: it is not joined to the frame"), path=("links",), found=quote(link),
                 allowed=", ".join(allowed), near=nearest(link, list(allowed)), key=True,
             )  # fmt: skip
-        case NoStrokes(link=link, path=path):
-            what = "no output is joined to the frame" if link is None else f"link {link} has no ends of its stroke"
-            return ProblemError("there is no working stroke", path=path, found=what, allowed="see output:")
+        case MissingStrokesError(link=link, path=path):
+            what = _("no output is joined to the frame")
+            if link is not None:
+                what = _("link {link} has no ends of its stroke").format(link=link)
+            return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
     return ProblemError(str(error))
 
 
@@ -261,51 +268,31 @@ def mobility(structure: Structure) -> ProblemError:
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
-    stuck = next((bodies for name, bodies in structure.idle if name == "driver"), None)
-    if stuck is not None and (structure.loose or wanted > 1):
-        number, driver = [(k, d) for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(stuck)][-1]
-        loose = f"; {_listed(structure.loose)} loose" if structure.loose else ""
+    loose, redundant = structure.under_constrained, structure.redundant_pairs
+    held = next((bodies for name, bodies in redundant if name == "driver"), None)
+    if not redundant and not loose:
+        held = structure.links
+    if held is not None:
+        number = max((k for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(held)), default=0)
         return ProblemError(
-            f"link {driver.link} cannot be driven: {'other drivers and pairs hold' if wanted > 1 else 'pairs hold'} it "
-            "already", path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
-            found=f"{count}; over-held: links {', '.join(stuck)}{loose}",
-            allowed=f"W = {wanted}, and " + ("drivers on links" if wanted > 1 else "a driver on a link")
-            + " that can still move",
+            _("link {link} cannot be driven: pairs or other drivers hold it already").format(
+                link=structure.drivers[number].link
+            ),
+            path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
+            found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(held)),
+            allowed=f"W = {wanted}",
         )  # fmt: skip
-    if structure.loose:
-        links = structure.loose
-        more = structure.freedom > wanted and not structure.idle
-        driven = "as one link is driven" if wanted == 1 else f"as {wanted} links are driven"
+    if loose:
         return ProblemError(
-            f"mobility is not {wanted}: {_listed(links)} loose", path=("links", links[0]), found=count,
-            allowed=f"W = {wanted}, {driven}" + (f"; or {structure.freedom} drivers" if more else ""), key=True,
+            _("mobility is not {wanted}: these links are loose: {links}").format(wanted=wanted, links=", ".join(loose)),
+            path=("links", loose[0]), found=count,
+            allowed=_("W = {wanted}, as many as there are drivers").format(wanted=wanted), key=True,
         )  # fmt: skip
-    name, bodies = structure.idle[0] if structure.idle else ("driver", structure.links)
-    if name == "driver":
-        return ProblemError(
-            f"mobility is not {wanted}: the driver cannot move, its links are a truss", path=("driver", "link"),
-            found=f"{count}; over-held: links {', '.join(bodies)}", allowed=f"W = {wanted}",
-        )  # fmt: skip
+    name, bodies = redundant[0]
     links = tuple(b for b in bodies if b in structure.links)
     return ProblemError(
-        f"mobility is not {wanted}: pair {name} holds what is held already",
-        path=("links", links[0]) if links else ("links",),
-        found=f"{count}; over-held: links {', '.join(bodies)}", allowed=f"W = {wanted}", key=True,
+        _("mobility is not {wanted}: pair {name} holds what is held already").format(wanted=wanted, name=name),
+        path=("links", links[0]) if links else ("links",), key=True,
+        found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(bodies)),
+        allowed=f"W = {wanted}",
     )  # fmt: skip
-
-
-def _listed(links: tuple[str, ...]) -> str:
-    return f"link {links[0]} is" if len(links) == 1 else f"links {', '.join(links)} are"
-
-
-def _group(group: Group) -> str:
-    """links 2 and 3, group II(2,3)."""
-    return f"link{'s' if len(group.links) > 1 else ''} {_and(group.links)}, group {group.title},"
-
-
-def _are(group: Group) -> str:
-    return "are" if len(group.links) > 1 else "is"
-
-
-def _and(links: tuple[str, ...]) -> str:
-    return ", ".join(links[:-1]) + f" and {links[-1]}" if len(links) > 1 else links[0]

@@ -6,6 +6,7 @@ import math
 import re
 from typing import Final
 
+from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, quote
 
 Scalar = str | int | float | bool | None
@@ -34,12 +35,16 @@ def plain_value(text: str) -> Scalar:
         return _BOOL[text]
     if _INT.fullmatch(text):
         if len(text) > MAX_DIGITS:
-            raise ProblemError("the number is too long", found=quote(text), allowed=f"at most {MAX_DIGITS} digits")
+            raise ProblemError(
+                _("the number is too long"),
+                found=quote(text),
+                allowed=_("at most {max_digits} digits").format(max_digits=MAX_DIGITS),
+            )
         return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
     if _FLOAT.fullmatch(text):
         return finite_float(text)
     if _NOT_FINITE.fullmatch(text):
-        raise ProblemError("not a finite number", found=quote(text), allowed="a finite number")
+        raise ProblemError(_("not a finite number"), found=quote(text), allowed=_("a finite number"))
     whole, comma, part = text.partition(",")
     if comma and split_number(whole, part):
         raise comma_error(whole, part)
@@ -50,8 +55,9 @@ def finite_float(text: str) -> float:
     """The number, from decimal digits. Raises ProblemError when float64 has no place for it."""
     number = float(text)
     if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
-        size = "large" if number else "small"
-        raise ProblemError(f"the number is too {size}", found=quote(text), allowed="sizes from 1e-300 to 1e300")
+        raise ProblemError(
+            _("the number is too large or too small"), found=quote(text), allowed=_("sizes from 1e-300 to 1e300")
+        )
     return number
 
 
@@ -63,7 +69,7 @@ def split_number(whole: str, part: str) -> bool:
 def comma_error(whole: str, part: str) -> ProblemError:
     """The refusal of `whole,part`, naming what to write instead."""
     return ProblemError(
-        f"decimal comma: write {whole}.{part}",
+        _("decimal comma: write {whole}.{part}").format(whole=whole, part=part),
         found=quote(f"{whole},{part}"),
-        allowed=f"a decimal point; a list is written [{whole}, {part}]",
+        allowed=_("a decimal point; a list is written [{whole}, {part}]").format(whole=whole, part=part),
     )

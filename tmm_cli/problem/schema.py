@@ -7,76 +7,24 @@ the file is built into a linkage (build), which knows the parameters and units. 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
-MAX_LINKS = 100
-MAX_POSITIONS = 100_000
-
-
-def checked_value(found: Any) -> Any:
-    """A number, or text that may be one."""
-    if isinstance(found, bool) or not isinstance(found, int | float | str):
-        raise PydanticCustomError("value", "a number, text with a unit, or arithmetic on parameters is wanted")
-    return found
-
-
-def _name(found: Any) -> str:
-    if isinstance(found, int) and not isinstance(found, bool):
-        return str(found)
-    if not isinstance(found, str) or not found.strip():
-        raise PydanticCustomError("name", "a name is wanted")
-    if len(found) > 40:
-        raise PydanticCustomError("name", "a name is at most 40 characters long")
-    return found
-
-
-def _vector(found: Any) -> Any:
-    if not isinstance(found, list) or len(found) != 2:
-        raise PydanticCustomError("vector", "two coordinates [x, y] are wanted")
-    return [checked_value(item) for item in found]
-
-
-VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-Value = Annotated[Any, BeforeValidator(checked_value), WithJsonSchema(VALUE)]
-_NAMES = [{"type": "string"}, {"type": "integer"}]
-Name = Annotated[str, BeforeValidator(_name), WithJsonSchema({"anyOf": _NAMES})]
-Vector = Annotated[
-    Any, BeforeValidator(_vector), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
-]
-
-
-def _place(found: Any) -> Any:
-    if isinstance(found, str):
-        return _name(found)
-    if isinstance(found, dict):
-        return OnLine.model_validate(found)
-    return _vector(found)
-
-
-class Strict(BaseModel):
-    """Every key is known or refused."""
-
-    # built when it first validates: a model that is part of another needs no validator of its own
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
-
-
-class OnLine(Strict):
-    """A place on the line of two points of the link: `at` is 0 at the first, 1 at the second; `side` is off it."""
-
-    on: Name = Field(description="two points of the link, written together: CD (or C-D)")
-    at: Value = Field(default=0.5, description="share of the way from the first to the second")
-    side: Value = Field(default=0, description="distance to the left of the line")
-
-
-Place = Annotated[
-    Any,
-    BeforeValidator(_place),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$comment": "OnLine"}]}),
-]
+from tmm_cli.problem.schema_parts import (
+    MAX_LINKS,
+    MAX_POSITIONS,
+    NAMES,
+    VALUE,
+    Name,
+    Place,
+    Strict,
+    Value,
+    Vector,
+    checked_name,
+    checked_value,
+    checked_vector,
+)  # fmt: skip
 
 
 class Guide(Strict):
@@ -110,6 +58,11 @@ class Link(Strict):
     also: dict[Name, Place] = Field(default_factory=dict, description="further points, in its axes")
     slides: Slide | list[Slide] | None = Field(default=None, description="what it slides on")
 
+    @property
+    def sliding(self) -> list[Slide]:
+        """Its sliding pairs, of which the file may give one without a list."""
+        return self.slides if isinstance(self.slides, list) else [self.slides] if self.slides else []
+
 
 class Driver(Strict):
     """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
@@ -125,31 +78,8 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
-def _shaped(name: str) -> Callable[[Any], Any]:
-    """The shape of a block that few files have: its model is made only for those."""
-
-    def shaped(found: Any) -> Any:
-        from tmm_cli.problem import schema_more
-
-        return getattr(schema_more, name).model_validate(found)
-
-    return shaped
-
-
-Gear = Annotated[Any, BeforeValidator(_shaped("Gear")), WithJsonSchema({"$comment": "Gear"})]
-Rack = Annotated[Any, BeforeValidator(_shaped("Rack")), WithJsonSchema({"$comment": "Rack"})]
-Cam = Annotated[Any, BeforeValidator(_shaped("Cam")), WithJsonSchema({"$comment": "Cam"})]
-Spring = Annotated[Any, BeforeValidator(_shaped("Spring")), WithJsonSchema({"$comment": "Spring"})]
-Friction = Annotated[Any, BeforeValidator(_shaped("Friction")), WithJsonSchema({"$comment": "Friction"})]
-
-
-def _synthesis(found: Any) -> Any:
-    from tmm_cli.problem.synthesis import shaped
-
-    return shaped(found)
-
-
-Synthesis = Annotated[Any, BeforeValidator(_synthesis), WithJsonSchema({"anyOf": [{"$comment": "Synthesis"}]})]
+# the block of a task is plain data here; tmm_cli.synthesis.reading checks it
+Synthesis = Annotated[Any, WithJsonSchema({"anyOf": [{"$comment": "Synthesis"}]})]
 
 
 class Mass(Strict):
@@ -171,11 +101,13 @@ class Tabulated(Strict):
         description="what the table's first column is: run of the output from the start of its working stroke; "
         "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
     )
-    table: list[Vector] | None = Field(default=None, max_length=10_000, description="rows [argument, size]")
+    table: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=10_000, description="rows [argument, size]"
+    )
 
 
 def _force(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else _vector(found)
+    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_vector(found)
 
 
 def _moment(found: Any) -> Any:
@@ -200,6 +132,87 @@ class Load(Strict):
     when: Literal["always", "working stroke"] = "always"
 
 
+class Gear(Strict):
+    """Two toothed wheels in mesh, hinged to a common carrier."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
+    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
+    teeth: list[Value] | None = Field(default=None, min_length=2, max_length=2, description="numbers of teeth of both")
+    radii: list[Value] | None = Field(
+        default=None, min_length=2, max_length=2, description="radii of both pitch circles"
+    )
+    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
+    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
+    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
+    offset: Value = Field(
+        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
+    )
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class Rack(Strict):
+    """A wheel that rolls on a rack."""
+
+    wheel: Name
+    rack: Name = Field(description="the link with the rack; it slides on the carrier")
+    carrier: Name = Field(default="0", description="the link that holds both")
+    radius: Value = Field(description="of the wheel's pitch circle")
+    side: Literal["left", "right"] | None = Field(
+        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
+    )
+    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class CamPiece(Strict):
+    """A part of a cam's turn."""
+
+    over: Value = Field(description="angle of the cam")
+    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
+    law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
+
+
+class Cam(Strict):
+    """A cam on the frame and its follower, by the follower's law of motion."""
+
+    cam: Name
+    follower: Name = Field(description="it slides on the frame, or swings about a hinge on it")
+    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
+    start: Value = Field(default=0, description="angle of the cam where the first piece starts")
+    offset: Value = Field(default=0, description="run (or angle) of the follower there")
+
+
+class Spring(Strict):
+    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
+    at: list[Place] | None = Field(
+        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
+    )
+    rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
+    torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
+    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
+    preload: Value = Field(
+        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
+    )
+    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
+
+
+class PairFriction(Strict):
+    """Friction in one pair."""
+
+    coefficient: Value | None = None
+    radius: Value | None = Field(default=None, description="of the journal of a hinge")
+
+
+class Friction(Strict):
+    """Coulomb friction in pairs. Without this block nothing of it is computed."""
+
+    coefficient: Value = Field(default=0, description="in every pair that is not named")
+    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
+    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
+
+
 class Output(Strict):
     """The link whose stroke or swing is the purpose of the mechanism."""
 
@@ -210,7 +223,7 @@ class Output(Strict):
 
 
 def _output(found: Any) -> Any:
-    return Output.model_validate(found) if isinstance(found, dict) else Output(link=_name(found))
+    return Output.model_validate(found) if isinstance(found, dict) else Output(link=checked_name(found))
 
 
 def _outputs(found: Any) -> Any:
@@ -221,7 +234,9 @@ class Positions(Strict):
     """Which positions are computed. They are numbered from 0 in the driver's sense."""
 
     count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
-    from_: Any = Field(default=None, alias="from", description="place of position 0: an angle, or `working stroke`")
+    from_: Value | None = Field(
+        default=None, alias="from", description="place of position 0: an angle, or `working stroke`"
+    )
     at: list[Value] | None = Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
     detail: list[int] = Field(default_factory=list, max_length=24, description="numbers of positions drawn in detail")
 
@@ -251,7 +266,7 @@ class File(Strict):
     racks: dict[Name, Rack] = Field(default_factory=dict, max_length=100)
     cams: dict[Name, Cam] = Field(default_factory=dict, max_length=100)
     springs: dict[Name, Spring] = Field(default_factory=dict, max_length=100)
-    friction: Friction = None
+    friction: Friction | None = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
         description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
@@ -260,7 +275,7 @@ class File(Strict):
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
     output: Annotated[
-        Any, BeforeValidator(_outputs), WithJsonSchema({"anyOf": [*_NAMES, {"$comment": "Output"}, {"type": "array"}]})
+        Any, BeforeValidator(_outputs), WithJsonSchema({"anyOf": [*NAMES, {"$comment": "Output"}, {"type": "array"}]})
     ] = Field(default=[], max_length=20, description="a link, or {link, working}, or several of them in a list")
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
-from tmm_cli.problem.schema import MAX_LINKS, Name, Strict, _name
+from tmm_cli.problem.schema_parts import MAX_LINKS, Name, Strict
 
 MAX_PAIRS = 300
 MAX_MOBILITY = 6 * MAX_LINKS
-_NAME = {"anyOf": [{"type": "string"}, {"type": "integer"}]}
 
 Kind = Literal[
     "turning", "sliding", "screw", "cylindrical", "spherical with a pin", "universal", "spherical", "planar",
@@ -19,38 +17,13 @@ Kind = Literal[
 ]  # fmt: skip
 
 
-def _two(found: Any) -> list[str]:
-    if not isinstance(found, list) or len(found) != 2:
-        raise PydanticCustomError("two", "two links [1, 2] are wanted")
-    return [_name(item) for item in found]
-
-
-def _links(found: Any) -> int | list[str]:
-    if isinstance(found, list):
-        if not 1 <= len(found) <= MAX_LINKS:
-            raise PydanticCustomError("links", f"1 to {MAX_LINKS} links are wanted")
-        return [_name(item) for item in found]
-    return _whole(found, 1, MAX_LINKS, "how many links there are, or a list of their names")
-
-
-def _local(found: Any) -> int | dict[str, int]:
-    if isinstance(found, dict):
-        return {_name(link): _whole(many, 0, MAX_MOBILITY, "a number of freedoms") for link, many in found.items()}
-    return _whole(found, 0, MAX_MOBILITY, "a number of freedoms, or links with theirs")
-
-
-def _whole(found: Any, least: int, most: int, what: str) -> int:
-    if isinstance(found, bool) or not isinstance(found, int) or not least <= found <= most:
-        raise PydanticCustomError("whole", f"{what}: a whole number from {least} to {most} is wanted")
-    return found
+Freedoms = Annotated[int, Field(ge=0, le=MAX_MOBILITY)]
 
 
 class SpatialPair(Strict):
     """A pair of two links."""
 
-    between: Annotated[
-        Any, BeforeValidator(_two), WithJsonSchema({"type": "array", "items": _NAME, "minItems": 2, "maxItems": 2})
-    ] = Field(description="the two links; the frame is 0")
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
     kind: Kind | None = Field(default=None, description="its kind, which says the freedoms")
     freedoms: int | None = Field(default=None, ge=1, le=5, description="instead of kind: 1 to 5 freedoms")
 
@@ -58,22 +31,16 @@ class SpatialPair(Strict):
 class Spatial(Strict):
     """A chain in space, given by pairs alone."""
 
-    links: Annotated[
-        Any,
-        BeforeValidator(_links),
-        WithJsonSchema({"anyOf": [{"type": "integer"}, {"type": "array", "items": _NAME}]}),
-    ] = Field(default=None, description="moving links, names or how many; those of the pairs when left out")
+    links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
+        Field(default=None, description="moving links, names or how many; those of the pairs when left out")
+    )
     pairs: dict[Name, SpatialPair] = Field(min_length=1, max_length=MAX_PAIRS)
     output: Name | None = Field(default=None, description="the link that is held for the manoeuvrability")
-    local: Annotated[
-        Any,
-        BeforeValidator(_local),
-        WithJsonSchema(
-            {"anyOf": [{"type": "integer"}, {"type": "object", "additionalProperties": {"type": "integer"}}]}
-        ),
-    ] = Field(default=None, description="local freedoms Wm, all of them or by link; found from the pairs when left out")
-    wanted: int | None = Field(
-        default=None, ge=0, le=MAX_MOBILITY, description="mobility Wo that it is meant to have, for q = Wo + Wm - W"
+    local: Freedoms | dict[Name, Freedoms] | None = Field(
+        default=None, description="local freedoms Wm, all of them or by link; found from the pairs when left out"
+    )
+    wanted: Freedoms | None = Field(
+        default=None, description="mobility Wo that it is meant to have, for q = Wo + Wm - W"
     )
 
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
+from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Hinge, Link, Slide
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import Path, ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.tree import Path
 
 
 def nothing_stray(
@@ -22,13 +25,13 @@ def nothing_stray(
     for name in links:
         if name not in joined and name != FRAME:
             raise ProblemError(
-                "this link is joined to nothing", path=("links", name), found=", ".join(links[name].points),
-                allowed="a point that another link or the frame has too, or slides", key=True,
+                _("this link is joined to nothing"), path=("links", name), found=", ".join(links[name].points),
+                allowed=_("a point that another link or the frame has too, or slides"), key=True,
             )  # fmt: skip
-    used = {s.on for link in shape.links.values() for s in _slides(link)}
+    used = {s.on for link in shape.links.values() for s in link.sliding}
     for guide in shape.guides:
         if guide not in used:
-            raise ProblemError("nothing slides on this guide", path=("guides", guide), found=quote(guide), key=True)
+            raise ProblemError(_("nothing slides on this guide"), path=("guides", guide), found=quote(guide), key=True)
     _named_twice(shape, data, links, hinges, slides)
 
 
@@ -43,9 +46,9 @@ def _named_twice(
     everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
     pairs = {a + b: (a, b) for a in everything for b in everything}
     elsewhere: set[str] = set()
-    for word in _words_outside_points(data):
+    for word in _words({**data, "parameters": {}, "title": "", "description": ""}):
         elsewhere |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
-    for slide in (s for link in shape.links.values() for s in _slides(link)):
+    for slide in (s for link in shape.links.values() for s in link.sliding):
         if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
             elsewhere |= set(links[slide.on].points)  # its two points are the guide
     for name, link in links.items():
@@ -56,28 +59,22 @@ def _named_twice(
                 continue
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
             raise ProblemError(
-                "this point is named nowhere else", path=path, found=quote(point),
-                allowed="a point of another link; a point that is only watched has coordinates (see also:)",
+                _("this point is named nowhere else"), path=path, found=quote(point),
+                allowed=_("a point of another link; a point that is only watched has coordinates (see also:)"),
                 near=nearest(point, [p for p in everything if p != point and p not in link.points]),
                 key=name == FRAME,
             )  # fmt: skip
 
 
-def _slides(link: schema.Link) -> list[schema.Slide]:
-    return link.slides if isinstance(link.slides, list) else [link.slides] if link.slides else []
-
-
-def _words_outside_points(data: dict[str, Any]) -> list[str]:
-    """Every text of the file that may name a point, the links' own lists of points left out."""
-    words: list[str] = []
-    todo: list[Any] = [{**data, "points": {}, "parameters": {}, "title": "", "description": ""}]
-    while todo:
-        part = todo.pop()
-        if isinstance(part, dict):
-            words += [k for k in part if isinstance(k, str)]
-            todo += [v for k, v in part.items() if k != "points"]
-        elif isinstance(part, list):
-            todo += part
-        elif isinstance(part, str):
-            words.append(part)
-    return words
+def _words(part: Any) -> Iterator[str]:
+    """Every text of a file that may name a point, the links' own lists of points left out."""
+    if isinstance(part, dict):
+        yield from part
+        for key, value in part.items():
+            if key != "points":
+                yield from _words(value)
+    elif isinstance(part, list):
+        for value in part:
+            yield from _words(value)
+    elif isinstance(part, str):
+        yield part

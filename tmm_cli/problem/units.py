@@ -9,54 +9,27 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
 
-from tmm_cli.problem.dimensions import (
-    ACCELERATION,
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
+from tmm_cli.problem.scalars import finite_float
+from tmm_cli.quantities import (
     ANGLE,
-    ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
     FORCE,
-    INERTIA,
     KINDS,
     LENGTH,
     MASS,
     MOMENT,
     NUMBER,
-    SPEED,
-    STIFFNESS,
     TIME,
     Dimension,
     product_text,
 )
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
-from tmm_cli.problem.scalars import finite_float
 
 
 class UnitError(ProblemError):
     """A unit that is not known, or that measures something else."""
 
-
-__all__ = [
-    "ACCELERATION",
-    "ANGLE",
-    "ANGULAR_ACCELERATION",
-    "ANGULAR_SPEED",
-    "FORCE",
-    "INERTIA",
-    "KINDS",
-    "LENGTH",
-    "MASS",
-    "MOMENT",
-    "NUMBER",
-    "SPEED",
-    "STIFFNESS",
-    "TIME",
-    "Dimension",
-    "Quantity",
-    "Unit",
-    "UnitError",
-    "UnitSystem",
-    "parse_unit",
-]
 
 _SHORT: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
@@ -95,7 +68,7 @@ def _pi(number: float) -> float:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class PhysicalValue:
     """A value in SI and radians; without a dimension a bare number, in the file's unit where it is used."""
 
     value: float
@@ -168,11 +141,11 @@ def parse_unit(text: str) -> Unit:
     while position < len(source):
         match = _FACTOR.match(source, position)
         if not match or (match[1] and not position) or factors >= 8:
-            raise UnitError("not a unit", found=quote(text), allowed="e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2")
+            raise UnitError(_("not a unit"), found=quote(text), allowed=_("e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2"))
         sign, name, power, digit = match.groups()
         exponent = int((power or digit or "1")[:6]) * (-1 if sign == "/" else 1)
         if abs(exponent) > 4:
-            raise UnitError("not a unit: the power is too large", found=quote(text), allowed="powers up to 4")
+            raise UnitError(_("not a unit: the power is too large"), found=quote(text), allowed=_("powers up to 4"))
         if name != "1":
             found = symbol(name)
             if found is None:
@@ -181,7 +154,7 @@ def parse_unit(text: str) -> Unit:
             names.append(name)
         position, factors = match.end(), factors + 1
     if not factors:
-        raise UnitError("a unit is missing", found=quote(text), allowed="e.g. mm, deg, rpm, kN")
+        raise UnitError(_("a unit is missing"), found=quote(text), allowed=_("e.g. mm, deg, rpm, kN"))
     alone = len(names) == 1 and symbol(names[0]) == SYMBOLS["min"]
     return _PER_MINUTE if alone and unit.dimension == Dimension(time=-1) else unit
 
@@ -189,7 +162,7 @@ def parse_unit(text: str) -> Unit:
 def unknown_unit(name: str) -> UnitError:
     """The refusal of a symbol, with the nearest known one."""
     near = nearest(name, SYMBOLS)
-    return UnitError("unknown unit", found=quote(name), allowed="e.g. mm, deg, rpm, kg, N, N*m", near=near)
+    return UnitError(_("unknown unit"), found=quote(name), allowed=_("e.g. mm, deg, rpm, kg, N, N*m"), near=near)
 
 
 class UnitSystem:
@@ -208,7 +181,7 @@ class UnitSystem:
                 allowed = [_key(kind) for kind in KINDS if kind != "number"]
                 near = nearest(key, allowed)
                 raise ProblemError(
-                    "unknown key",
+                    _("unknown key"),
                     path=(key,),
                     found=quote(key),
                     allowed=", ".join(allowed),
@@ -222,15 +195,15 @@ class UnitSystem:
                 raise error.at(key) from None
             if not found.fits(kind.dimension):
                 raise UnitError(
-                    "wrong unit",
+                    _("wrong unit"),
                     path=(key,),
                     found=f"{quote(name)}, {found}",
-                    allowed=f"a unit of {full}, e.g. {kind.default}",
+                    allowed=_("a unit of {full}, e.g. {default}").format(full=full, default=kind.default),
                 )
             self._names[kind.dimension] = name
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
-    functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max}  # what arithmetic computes with
+    functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max, "abs": abs}  # what arithmetic computes with
 
     def number(self, written: str | int | float) -> float:
         """The value of a number as it is written."""
@@ -264,7 +237,7 @@ class UnitSystem:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _bases(dimension)})
 
-    def show(self, quantity: Quantity) -> str:
+    def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:
             return f"a bare number ({quantity.value:.6g})"

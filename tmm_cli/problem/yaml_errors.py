@@ -2,61 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import yaml
 
-from tmm_cli.problem.errors import Mark, ProblemError, quote
-
-_INDENT: Final = "keys and items of one level start in one column, indented by spaces"
-
-# PyYAML's words (of both its parsers) -> our message, what is allowed, whether the place is the start.
-_SYNTAX: Final = (
-    (
-        "mapping values are not",
-        "a ':' where none can be",
-        "one 'key: value' in a line; text with ': ' in quotes",
-        False,
-    ),
-    ("expected ',' or ']'", "'[' is not closed", "'[1, 2]', items separated by commas", True),
-    ("expected ',' or '}'", "'{' is not closed", "'{a: 1, b: 2}', items separated by commas", True),
-    ("end of stream", "a quote is not closed", "text between two equal quotes", True),
-    ("found unexpected document", "a quote is not closed", "text between two equal quotes", True),
-    ("could not find expected ':'", "a line without ':'", "'key: value', with a space after ':'", True),
-    ("escape", "an unknown escape after '\\' in double quotes", "single quotes, where '\\' is plain", False),
-    (
-        "hexdecimal",
-        "an unknown escape after '\\' in double quotes",
-        "single quotes, where '\\' is plain",
-        False,
-    ),
-    ("cannot start any token", "a value cannot start with this character", "text between quotes", False),
-    ("expected <block end>", "this does not fit the lines above", _INDENT, False),
-    ("did not find expected key", "this does not fit the lines above", _INDENT, False),
-    ("expected '-' indicator", "this does not fit the list above", _INDENT, False),
-    (
-        "entries are not allowed",
-        "a list item '-' where none can be",
-        "each '- item' in a line of its own",
-        False,
-    ),
-    ("node content", "a value is missing", "a value", False),
-    ("<document start>", "text after the end of the document", "one document in a file", False),
-    (
-        "tag",
-        "tags are not part of a problem file",
-        "plain values; text that starts with ! goes in quotes",
-        False,
-    ),
-)
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.tree import Mark
 
 
 def tab_error(file: str, mark: Mark) -> ProblemError:
     """The refusal of a tab where the indentation counts."""
     return ProblemError(
-        "a tab is used for indentation",
+        _("a tab is used for indentation"),
         found="a tab",
-        allowed="spaces, two for each level",
+        allowed=_("spaces, two for each level"),
         file=file,
         mark=mark,
     )
@@ -64,25 +22,34 @@ def tab_error(file: str, mark: Mark) -> ProblemError:
 
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
     """The error of either of PyYAML's parsers on `text`, with its line and column."""
+    opened, shown = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
+    indent = _("keys and items of one level start in one column, indented by spaces")
+    quoted = _("a quote is not closed"), _("text between two equal quotes"), opened
+    table = {  # PyYAML's words (of both its parsers): what is wrong, what is allowed, and where
+        "mapping values are not": (
+            _("a ':' where none can be"), _("one 'key: value' in a line; text with ': ' in quotes"), shown
+        ),
+        "expected ',' or ']'": (_("'[' is not closed"), _("'[1, 2]', items separated by commas"), opened),
+        "expected ',' or '}'": (_("'{' is not closed"), _("'{a: 1, b: 2}', items separated by commas"), opened),
+        "end of stream": quoted,
+        "found unexpected document": quoted,
+        "could not find expected ':'": (_("a line without ':'"), _("'key: value', with a space after ':'"), opened),
+        "cannot start any token": (_("a value cannot start with this character"), _("text between quotes"), shown),
+        "expected <block end>": (_("this does not fit the lines above"), indent, shown),
+        "did not find expected key": (_("this does not fit the lines above"), indent, shown),
+        "entries are not allowed": (
+            _("a list item '-' where none can be"), _("each '- item' in a line of its own"), shown
+        ),
+        "node content": (_("a value is missing"), _("a value"), shown),
+    }  # fmt: skip
     problem = f"{error.problem} {error.context}"
-    place = error.problem_mark or error.context_mark
-    message = f"not YAML: {error.problem}"
-    allowed: str | None = None
-    if "alias" in problem or "anchor" in problem:
-        message, allowed = "aliases are not part of a problem file", "text that starts with * or & in quotes"
-    else:
-        for words, ours, instead, from_start in _SYNTAX:
-            if words in problem:
-                message, allowed = ours, instead
-                place = (error.context_mark or place) if from_start else place
-                break
+    plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
+    message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
     if place is None:
         return ProblemError(message, allowed=allowed, file=file)
     mark = Mark(place.line + 1, place.column + 1)
-    char = text[place.index : place.index + 1]
-    if char == "\t":
+    rest = text[place.index :]
+    if rest.startswith("\t"):
         return tab_error(file, mark)
-    line = text[place.index :].splitlines()[:1]
-    return ProblemError(
-        message, found=quote(line[0]) if line and line[0] else None, allowed=allowed, file=file, mark=mark
-    )
+    line = rest.split("\n")[0].strip()
+    return ProblemError(message, found=quote(line) if line else None, allowed=allowed, file=file, mark=mark)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from tmm_cli.errors import _
+from tmm_cli.results.table import Table, table_of_words
+
+Path = tuple[str, ...]
+
 IGNORED = {"files", "tmm", "problem", "warnings", "digits"}
-DERIVED = {"arm"}  # follows from others, and has no size of its own where those pass through zero
+DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
-FLOOR = 1e-9  # of the largest value of the same name anywhere: below that a quantity is zero but for rounding
+FLOOR = 1e-6  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-15 of it passes
 
 
 @dataclass(frozen=True)
@@ -24,28 +30,68 @@ class Difference:
     size: float | None
 
 
+def recorded(result: dict[str, Any]) -> dict[str, Any]:
+    """What of result.json is kept as a golden run: what is compared, to 12 digits."""
+    kept = {key: part for key, part in result.items() if key not in IGNORED}
+    whole: dict[str, Any] = json.loads(json.dumps(kept), parse_float=lambda text: float(f"{float(text):.12g}"))
+    return whole
+
+
 def differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[Difference]:
     """The worst deviation of every quantity that is beyond the tolerance, in the order of the file."""
-    largest: dict[str, float] = {}
-    for path, values in _series(expected):
-        name = _kind(path)
-        largest[name] = max(largest.get(name, 0.0), _peak(values))
-    vectors = _vector_peaks(expected)
     want, have = dict(_series(expected)), dict(_series(found))
+    scales = _scales(want)
     out = [Difference(_text(p), None, "there", "missing", None) for p in want if p not in have]
     out += [Difference(_text(p), None, "nothing", "there", None) for p in have if p not in want]
     for path, values in want.items():
-        if path in have and path[-1] not in DERIVED and path[-2:-1] != ("angle",):
-            scale = 1.0 if set(path) & SHARES else max(vectors.get(path, _peak(values)), FLOOR * largest[_kind(path)])
-            if path[-1] == "at":  # a place on the driver's way, which may be the zero
-                scale = max(scale, largest.get("driver", 0.0))
-            worst = _worst(path, values, have[path], scale)
+        follows = path[-1] in DERIVED or (path[-1] == "angle" and "reactions" in path)
+        if path in have and not follows:
+            worst = _worst(path, values, have[path], scales[path])
             if worst is not None and (worst.size is None or worst.size > tolerance):
                 out.append(worst)
     return out
 
 
-def _worst(path: tuple[str, ...], expected: list[Any], found: list[Any], scale: float) -> Difference | None:
+def _scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
+    """What deviations of each series are relative to: its largest value, that of a vector for both components."""
+    peaks = {path: max((abs(v) for v in values if _number(v)), default=0.0) for path, values in series.items()}
+    for path, values in series.items():
+        across = (*path[:-1], "y")
+        if path[-1] == "x" and across in series:
+            parts = (part for part in zip(values, series[across], strict=False) if all(map(_number, part)))
+            peaks[path] = peaks[across] = max((math.hypot(*part) for part in parts), default=0.0)
+    largest: dict[str, float] = {}
+    for path, peak in peaks.items():
+        largest[_kind(path)] = max(largest.get(_kind(path), 0.0), peak)
+    scales = {}
+    for path, peak in peaks.items():
+        scales[path] = max(peak, FLOOR * largest[_kind(path)])
+        if path[-1] == "angle":
+            scales[path] = math.pi
+        elif set(path) & SHARES:
+            scales[path] = max(1.0, peak)  # of a synthesis a margin may be one in newtons
+        elif path[-1] == "at":  # a place of the driver, which may be the zero
+            scales[path] = max(scales[path], largest.get("driver", 0.0))
+    return scales
+
+
+def difference_table(different: Mapping[str, Sequence[Difference]]) -> Table:
+    """Differences by problem."""
+    headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("found"), _("relative"))
+    rows = [
+        (name, d.quantity, "" if d.position is None else str(d.position), brief(d.expected), brief(d.found),
+         "" if d.size is None else f"{d.size:.2g}")
+        for name, here in different.items() for d in here
+    ]  # fmt: skip
+    return table_of_words("check", _("What differs from the expected values"), headers, rows)
+
+
+def brief(value: Any) -> str:
+    """A value in a cell."""
+    return f"{value:.15g}" if isinstance(value, float) else str(value)[:60]
+
+
+def _worst(path: Path, expected: list[Any], found: list[Any], scale: float) -> Difference | None:
     if len(expected) != len(found):
         return Difference(_text(path), None, f"{len(expected)} values", f"{len(found)} values", None)
     worst: Difference | None = None
@@ -57,16 +103,14 @@ def _worst(path: tuple[str, ...], expected: list[Any], found: list[Any], scale: 
             continue
         gap = abs(a - b)
         if path[-1] == "angle":  # a turn more or less is the same place
-            gap, scale = abs(math.remainder(gap, 2 * math.pi)), math.pi
-            if "reactions" in path:  # follows from the components; of a force that vanishes it means nothing
-                continue
+            gap = abs(math.remainder(gap, 2 * math.pi))
         size = gap / scale if scale else (0.0 if gap == 0 else math.inf)
         if worst is None or size > (worst.size or 0.0):
             worst = Difference(_text(path), position, a, b, size)
     return worst
 
 
-def _series(value: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], list[Any]]]:
+def _series(value: Any, path: Path = ()) -> Iterator[tuple[Path, list[Any]]]:
     """Every leaf or list of leaves with its path; list items that have a name are known by it."""
     if isinstance(value, dict):
         for key, part in value.items():
@@ -80,30 +124,13 @@ def _series(value: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
         yield path, value if isinstance(value, list) else [value]
 
 
-def _vector_peaks(result: dict[str, Any]) -> dict[tuple[str, ...], float]:
-    """For both components of a vector the largest length of the vector: a component may vanish."""
-    series = dict(_series(result))
-    peaks = {}
-    for path, values in series.items():
-        if path[-1] == "x" and (*path[:-1], "y") in series:
-            other = series[*path[:-1], "y"]
-            peak = max((math.hypot(a, b) for a, b in zip(values, other, strict=False) if _number(a) and _number(b)),
-                       default=0.0)  # fmt: skip
-            peaks[path] = peaks[*path[:-1], "y"] = peak
-    return peaks
-
-
-def _peak(values: Iterable[Any]) -> float:
-    return max((abs(v) for v in values if _number(v)), default=0.0)
-
-
 def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _kind(path: tuple[str, ...]) -> str:
+def _kind(path: Path) -> str:
     return path[-2] if path[-1] in ("x", "y") and len(path) > 1 else path[-1]
 
 
-def _text(path: tuple[str, ...]) -> str:
+def _text(path: Path) -> str:
     return ".".join(path)

@@ -1,188 +1,262 @@
-"""What a file was understood to say, what will be computed by which group, what is skipped and why."""
+"""What a file was understood to say; then the way of the calculation (results.stages)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.groups.base import Closed
-from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED, Dimension
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.linkage import FRAME, Driver, Load, Mesh, Spring
 from tmm_cli.problem.record import Problem
-from tmm_cli.results.explain_pairs import further
-from tmm_cli.results.stages import how, stages
-from tmm_cli.results.table import Column, Table
-from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.words import say
+from tmm_cli.quantities import (
+    ANGLE,
+    ANGULAR_SPEED,
+    DAMPING,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    SPEED,
+    STIFFNESS,
+    TORSION,
+    TORSION_DAMPING,
+    Dimension,
+    place_dimension,
+)  # fmt: skip
+from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, steps
+from tmm_cli.results.table import Table, table_of_words
 
 
 def explain(results: Results) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation."""
     problem = results.problem
     if problem.synthesis is not None and problem.synthesis.names:
-        from tmm_cli.results.synthesis import parameters
+        from tmm_cli.results.reports.synthesis import parameters
 
         yield parameters(problem.synthesis, problem.units)
     yield _points(problem)
     if problem.linkage.slides:
         yield _slides(problem)
-    yield _facts(problem)
-    yield from further(problem)
+    yield table_of_words("facts", _("Driver, positions, limits"), (_("what"), _("value")), _facts(problem))
+    yield from _further(problem)
     if any(np.any(link.mass != 0) for link in problem.linkage.links.values()):
         yield _masses(problem)
     if problem.linkage.loads:
-        yield _loads(problem)
-    yield _way(results)
-    yield _words(
-        "stages", list(stages(results)), tuple(f"explain.{k}" for k in ("stage", "groups", "places", "motion", "note"))
-    )
-    skipped = list(_skipped(problem))
-    if skipped:
-        yield _words("skipped", skipped, ("word.what", "explain.why"))
-
-
-def _show(problem: Problem, value: float, dimension: Dimension) -> str:
-    return f"{problem.units.from_si(float(np.real(value)), dimension):.6g} {problem.units.symbol(dimension)}"
-
-
-def _xy(problem: Problem, value: complex) -> str:
-    return f"[{', '.join(f'{problem.units.from_si(float(v), LENGTH):.6g}' for v in (value.real, value.imag))}]"
-
-
-def _words(name: str, rows: Sequence[tuple[str, ...]], headers: tuple[str, ...]) -> Table:
-    columns = (Column(say(header), [row[k] for row in rows]) for k, header in enumerate(headers))
-    return Table(name, say(f"explain.{name}"), tuple(columns))
+        yield table_of_words(
+            "loads", _("Loads"), (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
+            [_load(problem, load) for load in problem.linkage.loads],
+        )  # fmt: skip
+    yield steps(results)
+    yield stages_table(results)
+    yield from skipped(problem)
 
 
 def _points(problem: Problem) -> Table:
     rows = [
-        (say("explain.frame") if name == FRAME else name, point, _xy(problem, complex(local)))
+        (link_name(name), point, show_vector(problem, local))
         for name, link in problem.linkage.links.items()
         for point, local in link.points.items()
     ]
-    table = _words("points", rows, ("word.link", "word.point", "explain.place"))
-    note = say("explain.points_note", unit=problem.units.symbol(LENGTH))
-    return Table(table.name, table.title, table.columns, notes=(note,))
+    note = _("Lengths in {unit}. A point on two links is a hinge; on three and more, a compound hinge.")
+    return table_of_words(
+        "points", _("Points, each in the axes of its link"), (_("link"), _("point"), _("place")), rows,
+        (note.format(unit=problem.units.symbol(LENGTH)),),
+    )  # fmt: skip
 
 
 def _slides(problem: Problem) -> Table:
-    rows = [
-        (
-            s.name, s.runner, s.point, say("explain.frame") if s.carrier == FRAME else s.carrier,
-            _xy(problem, complex(s.through)), _show(problem, s.direction, ANGLE), _show(problem, s.turned, ANGLE),
-        )
-        for s in problem.linkage.slides
-    ]  # fmt: skip
-    keys = ("pair", "link", "point", "on", "through", "angle", "turned")
-    return _words("slides", rows, tuple(("explain." if k in keys[3:] else "word.") + k for k in keys))
+    return table_of_words(
+        "slides", _("Sliding pairs"),
+        (_("pair"), _("link"), _("point"), _("slides on"), _("guide through"), _("guide's angle"), _("turned by")),
+        [(s.name, s.runner, s.point, link_name(s.carrier), show_vector(problem, s.through),
+          show(problem, s.direction, ANGLE), show(problem, s.turned, ANGLE)) for s in problem.linkage.slides],
+    )  # fmt: skip
 
 
-def _facts(problem: Problem) -> Table:
-    linkage, request = problem.linkage, problem.request
-    driver = linkage.driver
-    crank = driver.kind == "turn"
-    speed = f"{driver.rate:.6g} {'rad/s' if crank else 'm/s'}"
-    if driver.acceleration:
-        speed += f", {driver.acceleration:.6g} {'rad/s2' if crank else 'm/s2'}"
-    sense = say("explain.ccw" if driver.sense > 0 else "explain.cw") if crank else ""
-    measure = ANGLE if crank else LENGTH
-    if request.places:
-        asked = ", ".join(_show(problem, q, measure) for q in request.places[:12])
+def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
+    linkage, units = problem.linkage, problem.units
+    driver, measure = linkage.driver, place_dimension(linkage.driver.kind)
+    dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
+    yield _("bare numbers are in"), ", ".join(units.symbol(dimension) for dimension in dimensions)
+    yield _("a bare speed is in"), units.symbol(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
+    if driver.kind == "slide":
+        text = _("link {link}, {speed}")
+    elif driver.sense > 0:
+        text = _("link {link}, {speed} counterclockwise")
     else:
-        start = request.start if isinstance(request.start, str) else _show(problem, request.start, measure)
-        if driver.stroke is not None:
-            start = say(
-                "explain.stroke", **{n: _show(problem, q, measure) for n, q in zip("ab", driver.stroke, strict=True)}
-            )
-        elif not crank:
-            start = say("explain.whole_way")
-        asked = say("explain.count", count=request.count, start=start)
-    units = problem.units
-    rows = [
-        (say("explain.units"), ", ".join(units.symbol(d) for d in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA))),
-        (say("explain.speed"), units.symbol(ANGULAR_SPEED if crank else SPEED)),
-        (say("explain.driver"), say("explain.driver_is", link=driver.link, speed=speed, sense=sense)),
-        (say("explain.gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s2"),
-        (say("explain.positions"), asked),
-        (say("explain.sketch"), _sketch(problem, measure)),
-        (say("explain.limit"), f"{100 * problem.lever_limit:.6g} %"),
-    ]
-    return _words("facts", rows, ("word.what", "word.value"))
+        text = _("link {link}, {speed} clockwise")
+    yield _("driver"), text.format(link=driver.link, speed=_speed(driver))
+    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s2"
+    yield _("positions"), _positions(problem, measure)
+    sketch = linkage.sketch
+    places = [show(problem, sketch.at, measure)]
+    places += [f"{name} {show_vector(problem, place)}" for name, place in sketch.points.items()]
+    places += [f"{name} {show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
+    yield _("sketch, driver at"), ", ".join(places)
+    yield _("limit of the lever check"), f"{100 * problem.lever_limit:.6g} %"
 
 
-def _sketch(problem: Problem, measure: Dimension) -> str:
-    sketch = problem.linkage.sketch
-    parts = [_show(problem, sketch.at, measure)]
-    parts += [f"{name} {_xy(problem, place)}" for name, place in sketch.points.items()]
-    parts += [f"{name} {_show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
-    return ", ".join(parts)
+def _positions(problem: Problem, measure: Dimension) -> str:
+    request, driver = problem.request, problem.linkage.driver
+    if request.places:
+        return ", ".join(show(problem, q, measure) for q in request.places[:12])
+    if driver.stroke is not None:
+        a, b = (show(problem, q, measure) for q in driver.stroke)
+        return _("{count} from {a} to {b}").format(count=request.count, a=a, b=b)
+    if driver.kind == "slide":
+        return _("{count} from one end of its way to the other").format(count=request.count)
+    start = request.start if isinstance(request.start, str) else show(problem, request.start, measure)
+    return _("{count} from {start}").format(count=request.count, start=start)
 
 
 def _masses(problem: Problem) -> Table:
-    links = [link for link in problem.linkage.links.values() if np.any(link.mass != 0) or np.any(link.inertia != 0)]
-    rows = [
-        (x.name, _show(problem, x.mass, MASS), _show(problem, x.inertia, INERTIA), _xy(problem, complex(x.centre)))
-        for x in links
-    ]
-    return _words("masses", rows, ("word.link", "explain.mass", "explain.inertia", "explain.centre"))
+    links = [problem.linkage.links[name] for name in heavy(problem.linkage)]
+    return table_of_words(
+        "masses", _("Masses"), (_("link"), _("mass"), _("inertia about S"), _("S in the link's axes")),
+        [(x.name, show(problem, x.mass, MASS), show(problem, x.inertia, INERTIA), show_vector(problem, x.centre))
+         for x in links],
+    )  # fmt: skip
 
 
-def _loads(problem: Problem) -> Table:
-    rows = []
-    for load in problem.linkage.loads:
-        unit = problem.units.symbol(FORCE)
-        if load.table is not None:
-            what = say("explain.table", rows=len(load.table.values), against=load.table.against)
-        elif load.force:
-            parts = ", ".join(f"{problem.units.from_si(v, FORCE):.6g}" for v in (load.force.real, load.force.imag))
-            what = f"[{parts}] {unit}"
-        else:
-            what = _show(problem, load.moment, MOMENT)
-        when = say("explain.working" if load.working_stroke_only else "explain.always")
-        place = _xy(problem, load.at) if load.force else ""
-        rows.append((load.name, load.link, place, what, when))
-    return _words("loads", rows, ("forces.name", "word.link", "explain.at", "explain.size", "explain.when"))
+def _load(problem: Problem, load: Load) -> tuple[str, ...]:
+    if load.table is not None:
+        size = _("table of {rows} rows against the {against}").format(
+            rows=len(load.table.values), against=load.table.against
+        )
+    elif load.force:
+        size = f"{show_vector(problem, load.force, FORCE)} {problem.units.symbol(FORCE)}"
+    else:
+        size = show(problem, load.moment, MOMENT)
+    place = show_vector(problem, load.at) if load.force else ""
+    return load.name, load.link, place, size, _("working stroke") if load.working_stroke_only else _("always")
 
 
-def _way(results: Results) -> Table:
-    structure = results.structure
-    linkage = results.linkage
-    rows = [("1", " + ".join(f"I({d.base},{d.link})" for d in linkage.drivers),
-             say("explain.given_all" if linkage.others else "explain.given"), "", say("stages.closed"))]  # fmt: skip
-    solved = {link: k for k in results.kernels for link in k.group.links}
-    for number, group in enumerate(structure.groups, 2):
-        hangs = "; ".join(_hang(pair, group) for pair in group.outer)
-        kernel = solved.get(group.links[0])
-        if isinstance(kernel, Closed):
-            one = kernel.assemblies == 1
-            which = say("explain.one") if one else say("explain.two", sign=f"{kernel.sign:+d}")
-        elif kernel is not None:
-            which = say("explain.newton")
-        else:
-            which = say("explain.unsolved")
-        rows.append((str(number), f"{group.title} {group.type}", hangs, which, "" if kernel is None else how(kernel)))
-    table = _words("way", rows, ("explain.step", "word.group", "explain.hangs", "explain.assembly", "explain.how"))
-    return Table(table.name, table.title, table.columns, notes=(say("explain.back"),))
+def show(problem: Problem, value: float, dimension: Dimension) -> str:
+    """A value with its unit, of the file where it has one for this dimension."""
+    number = problem.units.from_si(float(np.ravel(value)[0]), dimension)
+    return f"{number + 0.0:.6g} {problem.units.symbol(dimension)}"
 
 
-def _hang(pair: Pair, group: Group) -> str:
-    known = pair.i if pair.j in group.links else pair.j
-    return say("explain.from", pair=pair.name, link=say("explain.frame") if known == FRAME else known)
+def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH) -> str:
+    """Both components in the unit of the file: `[120, 0]`."""
+    value = complex(np.ravel(value)[0])
+    return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
 
 
-def _skipped(problem: Problem) -> Iterable[tuple[str, str]]:
-    linkage: Linkage = problem.linkage
-    light = [n for n in linkage.moving if not np.any(linkage.links[n].mass != 0)]
-    if light:
-        yield say("explain.no_weight", links=", ".join(light)), say("explain.massless")
-    spinless = [n for n in linkage.moving if not np.any(linkage.links[n].inertia != 0) and n not in light]
-    if spinless:
-        yield say("explain.no_couple", links=", ".join(spinless)), say("explain.inertialess")
-    if not linkage.loads and len(light) == len(linkage.moving):
-        yield say("explain.no_forces"), say("explain.nothing")
-    if linkage.gravity == 0:
-        yield say("explain.no_gravity"), say("explain.gravityless")
-    if not problem.request.detail:
-        yield say("explain.no_detail"), say("explain.detailless")
+def _speed(driver: Driver) -> str:
+    """A driver's speed, and its acceleration where it has one."""
+    turns = driver.kind == "turn"
+    rate = f"{driver.rate:.6g} {'rad/s' if turns else 'm/s'}"
+    return rate + (f", {driver.acceleration:.6g} {'rad/s2' if turns else 'm/s2'}" if driver.acceleration else "")
+
+
+def _further(problem: Problem) -> Iterable[Table]:
+    """A table for each block that the file has of these."""
+    linkage = problem.linkage
+    if linkage.others or linkage.driver.base != FRAME:
+        yield table_of_words(
+            "drivers", _("Drivers; they pass through the places of the sketch together"),
+            (_("link"), _("driven from"), _("in pair"), _("it"), _("speed"), _("sense"), _("in the sketch at")),
+            [_driver(problem, driver) for driver in linkage.drivers],
+        )  # fmt: skip
+    wheels = [_mesh(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
+    if wheels:
+        note = _(
+            "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
+            "for an angle in rad."
+        )
+        yield table_of_words(
+            "meshes", _("Toothed wheels and racks"),
+            (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
+            wheels, (note.format(unit=problem.units.symbol(LENGTH)),),
+        )  # fmt: skip
+    cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam(problem, mesh)]
+    if cams:
+        note = _(
+            "Of a sliding follower the force is taken as that of a flat face: along the guide, ds/da "
+            "from the cam's axis. A swinging one is loaded by a couple."
+        )
+        yield table_of_words(
+            "cams", _("Cams, by the law of the follower"),
+            (_("pair"), _("cam"), _("follower"), _("piece"), _("cam from"), _("to"), _("rise"), _("law"),
+             _("follower then at")),
+            cams, (note,),
+        )  # fmt: skip
+    if linkage.springs:
+        yield table_of_words(
+            "springs", _("Springs"),
+            (_("name"), _("between"), _("ends"), _("stiffness"), _("free at"), _("preload"), _("damping")),
+            [_spring(problem, spring) for spring in linkage.springs],
+        )  # fmt: skip
+    if linkage.friction:
+        slides = {slide.name for slide in linkage.slides}
+        yield table_of_words(
+            "friction", _("Friction"), (_("pair"), _("coefficient"), _("journal's radius")),
+            [(f.pair, f"{f.coefficient:.6g}", _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH))
+             for f in linkage.friction],
+        )  # fmt: skip
+
+
+def _driver(problem: Problem, driver: Driver) -> tuple[str, ...]:
+    senses = {"turn": (_("clockwise"), _("counterclockwise")), "slide": (_("in"), _("out"))}
+    at = problem.linkage.sketch.at if driver is problem.linkage.driver else driver.at
+    return (
+        driver.link, link_name(driver.base), driver.joint, _("turns") if driver.kind == "turn" else _("slides"),
+        _speed(driver), senses[driver.kind][driver.sense > 0], show(problem, at, place_dimension(driver.kind)),
+    )  # fmt: skip
+
+
+def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
+    """A row of two wheels, or of a wheel and a rack, with the equation of their motion."""
+    linkage = problem.linkage
+    if mesh.kind == "rack":
+        kind = _("wheel and rack")
+        step = problem.units.from_si(mesh.ratio, LENGTH)
+        law, offset = f"s_{mesh.j} = {step:.6g} phi_{mesh.i}", show(problem, mesh.offset, LENGTH)
+        radii = show(problem, abs(mesh.ratio), LENGTH)
+    else:
+        kind = _("inner mesh") if mesh.ratio > 0 else _("outer mesh")
+        law, offset = f"phi_{mesh.j} = {mesh.ratio:.6g} phi_{mesh.i}", show(problem, mesh.offset, ANGLE)
+        points = [linkage.shared(mesh.carrier, link) for link in (mesh.i, mesh.j)]
+        a, b = (complex(np.ravel(linkage.local(mesh.carrier, p))[0]) for p in points if p is not None)
+        pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
+        radii = ", ".join(show(problem, abs(pitch - axis), LENGTH) for axis in (a, b))
+    if mesh.offset:
+        law += f" + {offset}"
+    return (
+        mesh.name, kind, f"{link_name(mesh.i)}, {link_name(mesh.j)}", link_name(mesh.carrier), law, radii,
+        show(problem, mesh.pressure, ANGLE),
+    )  # fmt: skip
+
+
+def _cam(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
+    """The pieces of a cam's law, a row each."""
+    assert mesh.law is not None
+    measure = LENGTH if mesh.slide else ANGLE
+    at, run = mesh.law.start, mesh.offset
+    for number, piece in enumerate(mesh.law.pieces):
+        name = (mesh.name, mesh.i, mesh.j) if number == 0 else ("", "", "")
+        end, run = at + piece.over, run + piece.rise
+        law = piece.shape if piece.rise else _("dwell")
+        yield (
+            *name, str(number + 1), show(problem, at, ANGLE), show(problem, end, ANGLE),
+            show(problem, piece.rise, measure), law, show(problem, run, measure),
+        )  # fmt: skip
+        at = end
+
+
+def _spring(problem: Problem, spring: Spring) -> tuple[str, ...]:
+    between = f"{link_name(spring.i)}, {link_name(spring.j)}"
+    if spring.turns:
+        ends, measures = "", (TORSION, ANGLE, MOMENT, TORSION_DAMPING)
+    else:
+        ends = f"{show_vector(problem, spring.at_i)}, {show_vector(problem, spring.at_j)}"
+        measures = (STIFFNESS, LENGTH, FORCE, DAMPING)
+    values = (spring.rate, spring.free, spring.preload, spring.damping)
+    rate, free, preload, damping = (show(problem, v, measure) for v, measure in zip(values, measures, strict=True))
+    if not spring.rate:
+        rate, free = _("constant force"), ""
+    return spring.name, between, ends, rate, free, preload if spring.preload else "", damping if spring.damping else ""

@@ -7,19 +7,22 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_cli.chain import ChainResults
-from tmm_cli.pipeline import Results
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.reports import walk
 from tmm_cli.results.text import csv_text, json_text
 
 if TYPE_CHECKING:
-    from tmm_cli.results.digits import Trusted
+    from tmm_cli.results.digits import AccuracyReport
 
 
 def write_results(
-    results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = (), digits: Trusted | None = None
+    results: Results | ChainResults,
+    out: Path,
+    more: Iterable[tuple[str, bytes]] = (),
+    digits: AccuracyReport | None = None,
 ) -> Path:
     """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
 
@@ -29,9 +32,9 @@ def write_results(
     folder = out / folder_name(results.problem.name)
     shown = walk(results)
     if digits is not None:
-        from tmm_cli.results.digits import judged_tables
+        from tmm_cli.results.digits import with_bounds
 
-        shown = judged_tables(shown, digits)
+        shown = with_bounds(shown, digits)
     earlier = listed(folder)
     with Staged(folder) as staged:
         for table in shown:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.problem.dimensions import Dimension
+from tmm_cli.quantities import NUMBER, Dimension
+
+if TYPE_CHECKING:
+    from tmm_cli.problem.units import UnitSystem
 
 
 @dataclass(frozen=True)
@@ -26,6 +30,33 @@ class Column:
     lengths: Any = None
     paper: Any = None
 
+    def heading(self, units: UnitSystem) -> str:
+        """The header with the unit."""
+        if self.dimension is None or self.dimension == NUMBER:
+            return self.header
+        return f"{self.header}, {units.symbol(self.dimension)}"
+
+    @property
+    def array(self) -> Any:
+        """Its values, nan where there is none."""
+        values = self.values
+        return (
+            np.array([np.nan if v is None else v for v in values]) if isinstance(values, list) else np.asarray(values)
+        )
+
+    def numbers(self, units: UnitSystem) -> Any:
+        """Its values in the units of the file, nan where there is none."""
+        assert self.dimension is not None
+        return units.unit(self.dimension).from_si(self.array.astype(float))
+
+    def true_figures(self, units: UnitSystem) -> Any:
+        """How many figures of each number are true, -1 where that is not known; None where it was not judged."""
+        if self.dimension is None or self.bound is None:
+            return None
+        numbers, bound = self.numbers(units), np.asarray(self.bound) * units.unit(self.dimension).from_si(1.0)
+        known = np.isfinite(numbers) & np.isfinite(bound)
+        return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
+
 
 def true_digits(values: Any, bound: Any) -> Any:
     """How many figures of each value are true: half a unit of the last one is not below the bound; 0: none is."""
@@ -43,8 +74,17 @@ class Table:
     title: str
     columns: tuple[Column, ...]
     long: bool = False
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()
 
     @property
     def rows(self) -> int:
         return len(self.columns[0].values) if self.columns else 0
+
+
+def table_of_words(
+    name: str, title: str, headers: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
+) -> Table:
+    """A table without numbers, row by row."""
+    rows = list(rows)
+    columns = (Column(header, [row[k] for row in rows]) for k, header in enumerate(headers))
+    return Table(name, title, tuple(columns), notes=tuple(notes))

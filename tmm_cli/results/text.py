@@ -1,8 +1,4 @@
-"""Tables as CSV and records as JSON, a chunk of text at a time: a long cycle never stands in memory as text.
-
-Numbers are formatted many at once, and one that stands several times in succession (the driver's place before every
-point, the angle of a slider) once only.
-"""
+"""Tables as CSV and records as JSON, a chunk of text at a time: a long cycle never stands in memory as text."""
 
 from __future__ import annotations
 
@@ -10,91 +6,47 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.problem.dimensions import NUMBER
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.table import Column, Table, true_digits
-from tmm_cli.results.terminal import heading
-from tmm_cli.vectors import Real
+from tmm_cli.results.table import Column, Table
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 PLAIN = re.compile(r"-?\d+(\.\d*)?(e[+-]?\d+)?")  # a number that stands among words
 ROWS, NUMBERS = 2048, 8192  # of a table, of an array in a chunk: they stay in the cache
-FIGURES = ["%.0s0", *(f"%.{n}g" for n in range(1, 18)), ""]  # by how many are true; the last one: not known
-REPEATED = 0.5  # of an array: with more repetitions than that it is worth to format each number once
+FULL = "%.15g"  # of a number that was not judged
+FIGURES = ["%.0s0", *(f"%.{n}g" for n in range(1, 18))]  # by how many are true; a zero where none is
 
 
 def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as CSV in the units of the file; a cell that a spreadsheet would run as a formula is quoted."""
-    yield ",".join(_cell(heading(c, units)) for c in table.columns) + "\n"
-    told: dict[str, str] = {}
-    columns = [_values(column, units) for column in table.columns]
-    figures = [_figures(column, units, values) for column, values in zip(table.columns, columns, strict=True)]
+    yield ",".join(_cell(column.heading(units)) for column in table.columns) + "\n"
+    columns = [_numbers_or_words(column, units) for column in table.columns]
     for start in range(0, table.rows, ROWS):
         here = slice(start, start + ROWS)
-        part = [
-            _texts(values[here], told, None if true is None else true[here])
-            for values, true in zip(columns, figures, strict=True)
-        ]
-        line = ",".join(form for form, _ in part) + "\n"
-        cells = [cell for row in zip(*(texts for _, texts in part), strict=True) for cell in row]
-        yield line * (len(cells) // len(part)) % tuple(cells)
+        cells = [_cells(values[here], figures if figures is None else figures[here]) for values, figures in columns]
+        yield "".join([",".join(row) + "\n" for row in zip(*cells, strict=True)])
 
 
-def _values(column: Column, units: UnitSystem) -> Any:
-    """Words as they are, numbers as an array in the units of the file."""
+def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
+    """Numbers in the units of the file and how many figures of each are true, or words."""
     if column.dimension is None:
-        return column.values
-    given = column.values
-    values = np.array([np.nan if v is None else v for v in given] if isinstance(given, list) else given, dtype=float)
-    return values if column.dimension == NUMBER else units.unit(column.dimension).from_si(values)
+        return column.values, None
+    return column.numbers(units), column.true_figures(units)
 
 
-def _figures(column: Column, units: UnitSystem, values: Any) -> Any:
-    """How many figures of each number are true; None where it was not judged, -1 where it is not known."""
-    if column.bound is None:
-        return None
-    factor = 1.0 if column.dimension in (None, NUMBER) else units.unit(column.dimension).from_si(1.0)
-    known = np.isfinite(values) & np.isfinite(column.bound)
-    true = true_digits(np.where(known, values, 0.0), np.where(known, column.bound, 0.0) * factor)
-    return np.where(known, true, -1)
-
-
-def _texts(values: Any, told: dict[str, str], true: Any = None) -> tuple[str, list[Any]]:
-    """How the cells of a column are put into a line, and what is put there. told: words met before as cells.
-
-    true: how many figures of each number are.
-    """
+def _cells(values: Any, figures: Any) -> list[str]:
     if not isinstance(values, np.ndarray):
-        for word in set(values):
-            if word not in told:
-                told[word] = _cell(word)
-        return "%s", [told[word] for word in values]
-    if true is not None:
-        formats = [FIGURES[n] for n in true.tolist()]
-        return "%s", [form % v if form else "" for form, v in zip(formats, values.tolist(), strict=True)]
-    if not np.all(np.isfinite(values)):
-        return "%s", [f"{v:.15g}" if math.isfinite(v) else "" for v in values.tolist()]
-    once, again = _runs(values)
-    if again is None:
-        return "%.15g", values.tolist()
-    texts = [f"{v:.15g}" for v in once.tolist()]
-    return "%s", [texts[k] for k in again.tolist()]
+        return [_cell(word) for word in values]
+    if figures is None:
+        return [FULL % v if v - v == 0 else "" for v in values.tolist()]  # nan and infinity have no cell
+    return [FIGURES[n] % v if n >= 0 else "" for v, n in zip(values.tolist(), figures.tolist(), strict=True)]
 
 
-def _runs(values: Real) -> tuple[Real, Real | None]:
-    """Each run of equal numbers once, and which of them stands at every place; None where it would save little."""
-    bits = values.view(np.int64)  # -0.0 is not 0.0
-    new = np.ones(len(values), dtype=bool)
-    new[1:] = bits[1:] != bits[:-1]
-    if np.count_nonzero(new) > (1 - REPEATED) * len(values):
-        return values, None
-    return values[new], np.cumsum(new) - 1
-
-
+@lru_cache(maxsize=1024)
 def _cell(text: str) -> str:
     safe = "'" + text if text.startswith(FORMULA) and not PLAIN.fullmatch(text) else text
     return '"' + safe.replace('"', '""') + '"' if any(c in safe for c in ',"\r\n') else safe
@@ -140,15 +92,8 @@ def _series(values: Any) -> Iterator[str]:
     """An array on one line."""
     yield "["
     for start in range(0, len(values), NUMBERS):
-        if start:
-            yield ", "
-        part = np.ascontiguousarray(values[start : start + NUMBERS])
-        once, again = _runs(part) if part.dtype == float and bool(np.all(np.isfinite(part))) else (part, None)
-        if again is None:
-            yield json.dumps(plain(part), allow_nan=False)[1:-1]
-        else:
-            texts = [repr(v) for v in once.tolist()]
-            yield ", ".join([texts[k] for k in again.tolist()])
+        yield ", " if start else ""
+        yield json.dumps(plain(values[start : start + NUMBERS]), allow_nan=False)[1:-1]
     yield "]"
 
 

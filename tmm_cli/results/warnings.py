@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.assembly import sketch_deviations
+from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.assembly.sketch import sketch_deviations
+from tmm_cli.errors import _
 from tmm_cli.forces.springs import twisted
-from tmm_cli.motion import Law, move
-from tmm_cli.pipeline import Results, at_positions
-from tmm_cli.problem.dimensions import ANGLE, LENGTH
-from tmm_cli.results.synthesis import missed
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
+from tmm_cli.results.reports.synthesis import missed
+from tmm_cli.synthesis.check import measured_on
 from tmm_cli.vectors import dot
-from tmm_cli.words import say
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
-    from tmm_cli.forces.friction import Rubbed
     from tmm_cli.linkage import Load
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
@@ -29,125 +30,206 @@ SKETCH = 0.15  # a sketched point farther off than this share of the linkage's s
 
 def warnings(results: Results) -> Iterable[str]:
     """One sentence each, in the units of the file."""
-    motion, way = results.motion, results.way
-    if motion is None or way is None:
+    if results.motion is None or results.driver_range is None:
         return
-    units = results.problem.units
-    measure = ANGLE if results.linkage.driver.kind == "turn" else LENGTH
+    yield from _range(results)
+    yield from _sketch(results)
+    yield from _dead(results)
+    yield from _unreached(results, results.motion)
+    yield from _near(results, results.motion)
+    yield from _passive(results)
+    if not results.driver_range.repeats:
+        yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
+    yield from _pressure(results)
+    yield from _locked(results)
+    yield from _twisted(results)
+    yield from _impacts(results)
+    yield from _loads(results, results.motion)
+    yield from missed(measured_on(results), results.problem.units)
+    yield from _lever(results, results.motion)
 
-    def place(q: float) -> str:
-        return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
 
-    request = results.problem.request
-    given = "" if request.places else say("warning.given")
-    if given and not isinstance(request.start, str) and request.start:
-        given += say("warning.from", start=place(request.start))
-    ends = {"link": results.linkage.driver.link, "start": place(way.start), "end": place(way.end)}
-    groups = ", ".join(dict.fromkeys(limit.group for limit in way.limits if limit.group))
-    if groups and results.linkage.driver.kind == "turn":
-        yield say("warning.range", groups=groups, **ends) + given
-    if any(limit.driver for limit in way.limits):
-        yield say("warning.range_stopped", **ends) + given
-    there = move(results.linkage, results.kernels, np.array([results.linkage.sketch.at]), Law(0.0, 1.0, 0.0, 1), 0)
-    for point, off in sketch_deviations(results.linkage, there.poses).items():
+def _place(results: Results, q: float) -> str:
+    """A place of the driver."""
+    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
+
+
+def _range(results: Results) -> Iterable[str]:
+    """Where the driver does not go all the way round, what stops it, and what that does to the positions."""
+    driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
+    assert driver_range is not None
+    start, end = _place(results, driver_range.start), _place(results, driver_range.end)
+    groups = ", ".join(dict.fromkeys(limit.group for limit in driver_range.limits if limit.group))
+    said = []
+    if groups and driver.kind == "turn":
+        text = _(
+            "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} "
+            "comes to its dead position"
+        )
+        said.append(text.format(link=driver.link, start=start, end=end, groups=groups))
+    if any(limit.driver for limit in driver_range.limits):
+        text = _("driving link {link} goes from {start} to {end} only: it slows down and stops there")
+        said.append(text.format(link=driver.link, start=start, end=end))
+    for what in said:
+        if request.places:
+            yield what
+        elif isinstance(request.start, str) or not request.start:
+            yield _("{what}; results are given for that range").format(what=what)
+        else:
+            yield _(
+                "{what}; results are given for that range; positions.from ({start}) is for a driver that turns fully"
+            ).format(what=what, start=_place(results, request.start))
+
+
+def _sketch(results: Results) -> Iterable[str]:
+    """Points that are sketched far from where they are."""
+    linkage = results.linkage
+    there = move(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
+    for point, off in sketch_deviations(linkage, there.poses).items():
         if off > SKETCH:
-            yield say("warning.sketch", point=point, share=f"{100 * off:.0f}", place=place(results.linkage.sketch.at))
+            yield _(
+                "in the sketch {point} is {share} % of the mechanism's size from its place with the "
+                "driver at {place}: is sketch.at right?"
+            ).format(point=point, share=f"{100 * off:.0f}", place=_place(results, linkage.sketch.at))
+
+
+def _dead(results: Results) -> Iterable[str]:
     for dead in results.dead:
-        name = "warning.passed" if dead.passed else "warning.dead"
-        yield say(name, place=place(dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
+        text = (
+            _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): there the group "
+                "may leave its way for that of another assembly; the results go on along the smooth one"
+            )
+            if dead.passed
+            else _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and "
+                "forces grow without bound there, and the group may leave it either way; the results "
+                "keep to the side of the sketch"
+            )
+        )
+        yield text.format(place=_place(results, dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
+
+
+def _unreached(results: Results, motion: Motion) -> Iterable[str]:
+    """Positions that have no numbers."""
+    units = results.problem.units
     unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
     for k in unreached[:MOST_POSITIONS]:
-        number = results.numbers[k]
-        for title, lost in motion.missing.items():
+        number, place = results.numbers[k], _place(results, float(motion.q[k]))
+        for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
-                gap = motion.placements[list(motion.missing).index(title)].gap[k]
-                short = f"{units.from_si(float(gap), LENGTH):.6g} {units.symbol(LENGTH)}"
-                yield say("warning.missing", number=number, place=place(float(motion.q[k])), group=title, gap=short)
-        for title, dead_here in motion.dead.items():
-            if dead_here[k]:
-                yield say("warning.dead_here", number=number, place=place(float(motion.q[k])), group=title)
+                gap = f"{units.from_si(float(at.residual[k]), LENGTH):.6g} {units.symbol(LENGTH)}"
+                yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
+                    number=number, place=place, group=group, gap=gap
+                )
+        for group, dead in motion.dead.items():
+            if dead[k]:
+                yield _(
+                    "position {number} ({place}): {group} is in its dead position; no velocities and forces"
+                ).format(number=number, place=place, group=group)
     if len(unreached) > MOST_POSITIONS:
-        yield say("warning.more", count=len(unreached) - MOST_POSITIONS)
-    stopped = [n for k, n in enumerate(results.numbers) if not np.isfinite(motion.rate[k])]
-    if stopped:
-        yield say("warning.stopped", link=results.linkage.driver.link, number=stopped[0])
-    for dyad, at in zip(motion.kernels, motion.placements, strict=True):
+        yield _("... and {count} positions more that cannot be reached or are dead").format(
+            count=len(unreached) - MOST_POSITIONS
+        )
+    stopped = np.flatnonzero(~np.isfinite(motion.rate))
+    if stopped.size:
+        yield _(
+            "driver {link} slows down and stops before it comes to position {number}: no velocities "
+            "and forces from there on"
+        ).format(link=results.linkage.driver.link, number=results.numbers[stopped[0]])
+
+
+def _near(results: Results, motion: Motion) -> Iterable[str]:
+    """The position of each group that is nearest to a dead one, if it is near."""
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         margin = np.where(motion.moving, at.margin, np.inf)
-        if margin.size and np.min(margin) < dyad.near:
+        if margin.size and np.min(margin) < kernel.near:
             k = int(np.argmin(margin))
-            yield say(
-                "warning.near", number=results.numbers[k], group=dyad.group.title, margin=f"{float(margin[k]):.2g}"
-            )
+            yield _(
+                "position {number} is near a dead position of {group}: sine of the transmission angle {margin}"
+            ).format(number=results.numbers[k], group=kernel.group.title, margin=f"{float(margin[k]):.2g}")
+
+
+def _passive(results: Results) -> Iterable[str]:
     for passive in results.structure.passive:
         i, j = passive.links
-        yield say("warning.passive", pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
-    if not way.repeats:
-        yield say("warning.cycle")
-    chosen = way.full and _chosen_freely(results)
-    for pressure in results.pressure if any(results.problem.limits_set) or chosen else ():
-        said = results.problem.limits_set[0 if pressure.slides else 1]
-        if (chosen or said) and not pressure.holds:
-            largest, allowed = (f"{units.from_si(v, ANGLE):.6g} {units.symbol(ANGLE)}" for v in
-                                (pressure.largest, pressure.allowed))  # fmt: skip
-            words = "warning.pressure" if said else "warning.pressure_usual"
-            key = "pressure_sliding" if pressure.slides else "pressure_turning"
-            yield say(words, link=pressure.link, largest=largest, allowed=allowed, check=key)
-    if results.friction is not None and np.any(results.friction.locked):
-        yield say("warning.locked", places="; ".join(_locked(results, results.friction)))
-    yield from _twisted(results, place)
-    yield from _impacts(results)
-    for load in results.loads:
-        if load.kind == "load" and _drives(results, load):
-            yield say("warning.drives", load=load.name)
-    for tabled in results.linkage.loads:
-        if tabled.table is not None and _short_table(results, tabled):
-            yield say("warning.table", load=tabled.name, against=tabled.table.against)
-    for asked in results.linkage.loads:
-        if asked.working_stroke_only and (results.strokes is None or not results.strokes.strokes):
-            yield say("warning.always", load=asked.name)
-    if results.synthesis is not None:
-        yield from missed(results.measured, units)
-    if results.lever is not None and not results.lever_holds:
-        worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
-        k = int(np.argmax(worst))
-        yield say(
-            "warning.lever", number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
-            limit=f"{100 * results.problem.lever_limit:.3g}",
-        )  # fmt: skip
+        yield _(
+            "pair {pair} holds link {j} on link {i} where it would be without it: this works with "
+            "exact dimensions only, and the reactions of links {among} are indeterminate (given: the "
+            "least ones)"
+        ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
+
+
+def _pressure(results: Results) -> Iterable[str]:
+    """Pressure angles beyond what the file allows, or what is usual where a synthesis chose them freely."""
+    units, limits_set = results.problem.units, results.problem.limits_set
+    chosen = results.driver_range is not None and results.driver_range.full and _chosen_freely(results)
+    if not (chosen or any(limits_set)):
+        return
+    for pressure in results.pressure:
+        said = limits_set[0 if pressure.slides else 1]
+        if pressure.holds or not (chosen or said):
+            continue
+        largest, allowed = (
+            f"{units.from_si(angle, ANGLE):.6g} {units.symbol(ANGLE)}" for angle in (pressure.largest, pressure.allowed)
+        )
+        text = (
+            _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
+            if said
+            else _(
+                "the pressure angle on link {link} comes to {largest}; usual is at most {allowed} "
+                "(another limit: checks: {{{check}: ...}})"
+            )
+        )
+        check = "pressure_sliding" if pressure.slides else "pressure_turning"
+        yield text.format(link=pressure.link, largest=largest, allowed=allowed, check=check)
 
 
 def _chosen_freely(results: Results) -> bool:
     """Whether a synthesis found the linkage, and was asked nothing about its pressure angle."""
-    found = results.synthesis
+    found = results.problem.synthesis
     if found is None:
         return False
     asked = [d for d in found.outcome.demands if d.asked or found.task == "optimal"]
-    return not any(d.words.endswith(".pressure") for d in asked)
+    return not any(d.of == "pressure" for d in asked)
 
 
-def _locked(results: Results, rubbed: Rubbed) -> Iterable[str]:
+def _locked(results: Results) -> Iterable[str]:
     """Where friction locks the mechanism, by the pair that rubs most."""
-    lost = np.flatnonzero(rubbed.locked)
-    for name in dict.fromkeys(rubbed.pair[k] for k in lost):
-        numbers = [str(results.numbers[k]) for k in lost if rubbed.pair[k] == name]
+    if results.friction is None or not np.any(results.friction.locked):
+        return
+    lost, most = np.flatnonzero(results.friction.locked), results.friction.pair
+    places = []
+    for name in dict.fromkeys(most[k] for k in lost):
+        numbers = [str(results.numbers[k]) for k in lost if most[k] == name]
         pair = results.structure.pair(name)
-        yield say(
-            "warning.locked_in", s="s" if len(numbers) > 1 else "", numbers=", ".join(numbers), pair=name,
-            i=pair.i, j=pair.j,
-        )  # fmt: skip
+        text = (
+            _("in position {numbers}, most of all in pair {pair} of links {i} and {j}")
+            if len(numbers) == 1
+            else _("in positions {numbers}, most of all in pair {pair} of links {i} and {j}")
+        )
+        places.append(text.format(numbers=", ".join(numbers), pair=name, i=pair.i, j=pair.j))
+    yield _("the mechanism locks itself by friction: {places}; no forces are given there").format(
+        places="; ".join(places)
+    )
 
 
-def _twisted(results: Results, place: Callable[[float], str]) -> Iterable[str]:
+def _twisted(results: Results) -> Iterable[str]:
     """Torsion springs that come to half a turn from their free angle."""
     springs = [s for s in results.linkage.springs if s.turns]
     if not springs or results.reactions is None:
         return
-    motion = at_positions(results, results.closely(CLOSELY * (results.way.turns if results.way else 1) + 1), 0)
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(CLOSELY * turns + 1), 0)
     for spring in springs:
         with np.errstate(invalid="ignore"):
             jumps = np.flatnonzero(np.abs(np.diff(twisted(spring, motion))) > np.pi)
         if jumps.size:
-            yield say("warning.twist", spring=spring.name, place=place(float(motion.q[jumps[0]])))
+            yield _(
+                "torsion spring {spring} is turned by more than half a turn from its free angle at "
+                "{place}: its moment jumps there, as angles are counted within half a turn"
+            ).format(spring=spring.name, place=_place(results, float(motion.q[jumps[0]])))
 
 
 def _impacts(results: Results) -> Iterable[str]:
@@ -156,31 +238,51 @@ def _impacts(results: Results) -> Iterable[str]:
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()
         if jumps:
-            places = ", ".join(f"{units.from_si(a, ANGLE):.6g}" for a in jumps[:MOST_IMPACTS])
-            more = ", ..." if len(jumps) > MOST_IMPACTS else ""
-            yield say("warning.impact", cam=mesh.i, follower=mesh.j, places=f"{places}{more} {units.symbol(ANGLE)}")
+            places = [f"{units.from_si(a, ANGLE):.6g}" for a in jumps[:MOST_IMPACTS]]
+            places += ["..."] * (len(jumps) > MOST_IMPACTS)
+            yield _(
+                "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
+                "a hard impact, the acceleration there is not finite and is not in the tables"
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{', '.join(places)} {units.symbol(ANGLE)}")
 
 
-def _drives(results: Results, load: Applied) -> bool:
-    """Whether a load of the working stroke helps the motion at every position where it acts: it should resist."""
-    given = {x.name: x for x in results.linkage.loads}.get(load.name)
-    motion = results.motion
-    if given is None or not given.working_stroke_only or motion is None:
-        return False
+def _loads(results: Results, motion: Motion) -> Iterable[str]:
+    """Loads that drive, tables that are too short, and working strokes that there are not."""
+    loads = results.linkage.loads
+    working = [load.name for load in loads if load.working_stroke_only]
+    for load in results.loads:
+        if load.kind == "load" and load.name in working and _drives(motion, load):
+            yield _(
+                "load {load} acts along the motion in the whole working stroke: it drives and does not resist"
+            ).format(load=load.name)
+    for given in loads:
+        if given.table is not None and _short_table(results, motion, given):
+            yield _(
+                "the table of load {load} does not reach as far as the {against} goes: its end value is held"
+            ).format(load=given.name, against=given.table.against)
+    for name in working if results.strokes is None or not results.strokes.strokes else ():
+        yield _(
+            "load {load} is one of the working stroke, but there are no whole strokes on this way of "
+            "the driver: it acts always"
+        ).format(load=name)
+
+
+def _drives(motion: Motion, load: Applied) -> bool:
+    """Whether a load helps the motion at every position where it acts: it should resist."""
     power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
-    reach = max((d.size for d in results.kernels), default=1.0) if results.linkage.driver.kind == "turn" else 1.0
+    crank = motion.linkage.driver.kind == "turn"
+    reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
     # at the ends of a stroke the speed is only rounding, and its sign says nothing
     most = np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
     acting = motion.moving & (np.abs(power) > 1e-6 * most)
     return bool(np.any(acting)) and bool(np.all(power[acting] > 0))
 
 
-def _short_table(results: Results, load: Load) -> bool:
+def _short_table(results: Results, motion: Motion, load: Load) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
     from tmm_cli.forces.loads import table_argument
 
-    motion = results.motion
-    if load.table is None or motion is None or not results.loads:
+    if load.table is None or not results.loads:
         return False
     acting = motion.placed
     if load.working_stroke_only and results.strokes is not None and results.strokes.strokes:
@@ -189,3 +291,16 @@ def _short_table(results: Results, load: Load) -> bool:
     first, last = load.table.arguments[0], load.table.arguments[-1]
     slack = 1e-6 * (last - first)
     return bool(np.any((argument < first - slack) | (argument > last + slack)))
+
+
+def _lever(results: Results, motion: Motion) -> Iterable[str]:
+    if results.lever is None or results.lever_holds:
+        return
+    worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
+    k = int(np.argmax(worst))
+    yield _(
+        "the lever differs from the force plan by {difference} % at position {number}, more than the limit of {limit} %"
+    ).format(
+        number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
+        limit=f"{100 * results.problem.lever_limit:.3g}",
+    )  # fmt: skip

@@ -2,7 +2,7 @@
 
 Class and order after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class
 II; otherwise the class is the number of sides of its largest closed contour of inner pairs, or of the inner pairs of
-its richest link when it has no contour; the order is the number of leads (outer pairs). A pair that is passive as a
+its richest link when it has no contour; the order is the number of outer pairs. A pair that is passive as a
 whole (an idle wheel in a ring) holds nothing, and gives a group no higher class.
 """
 
@@ -47,7 +47,7 @@ class Pair:
         """The link at the other side."""
         return self.j if link == self.i else self.i
 
-    def again(self, linkage: Linkage) -> Pair:
+    def rebind(self, linkage: Linkage) -> Pair:
         """The same pair with the numbers of another linkage."""
         slide = None if self.slide is None else linkage.slide(self.slide.name)
         mesh = None if self.mesh is None else next(m for m in linkage.meshes if m.name == self.mesh.name)
@@ -58,32 +58,41 @@ class Pair:
 class Group:
     """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type.
 
-    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are. idle:
-    names of its pairs that are passive as a whole; they are no leads.
+    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are.
+    redundant_pairs: names of its pairs that are passive as a whole; they do not count for its order.
     """
 
     links: tuple[str, ...]
     inner: tuple[Pair, ...]
     outer: tuple[Pair, ...]
-    grade: int
+    group_class: int
     type: str
     drivers: tuple[Driver, ...] = ()
-    idle: tuple[str, ...] = ()
+    redundant_pairs: tuple[str, ...] = ()
+
+    def own(self, pair: Pair) -> str:
+        """The link of the group in one of its outer pairs."""
+        return pair.i if pair.i in self.links else pair.j
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """The links that it hangs on, pair by pair."""
+        return tuple(pair.other(self.own(pair)) for pair in self.outer)
 
     @property
     def order(self) -> int:
-        return sum(pair.name not in self.idle for pair in self.outer)
+        return sum(pair.name not in self.redundant_pairs for pair in self.outer)
 
-    def again(self, linkage: Linkage) -> Group:
+    def rebind(self, linkage: Linkage) -> Group:
         """The same group with the numbers of another linkage."""
-        inner, outer = (tuple(pair.again(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
+        inner, outer = (tuple(pair.rebind(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
         drivers = tuple(d for own in self.drivers for d in linkage.drivers if d.link == own.link)
         return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property
     def title(self) -> str:
         """II(2,3): class and links, as the formula of structure writes it."""
-        return f"{ROMAN[min(self.grade, 10)]}({','.join(self.links)})"
+        return f"{ROMAN[min(self.group_class, 10)]}({','.join(self.links)})"
 
 
 @dataclass(frozen=True)
@@ -105,8 +114,9 @@ class Structure:
     """The structure of a linkage.
 
     mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
-    over-held). groups are in solving order. loose and idle name what is wrong when the mobility is not the number of
-    drivers. passive: what the numerical rank found to be redundant; mobility is then less than the truth by as much.
+    over-held). groups are in solving order. under_constrained and redundant_pairs name what is wrong when the mobility
+    is not the number of drivers. passive: what the numerical rank found to be redundant; mobility is then less than
+    the truth by as much.
     """
 
     links: tuple[str, ...]
@@ -115,8 +125,8 @@ class Structure:
     groups: tuple[Group, ...]
     mobility: int
     freedom: int
-    loose: tuple[str, ...] = ()
-    idle: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    under_constrained: tuple[str, ...] = ()
+    redundant_pairs: tuple[tuple[str, tuple[str, ...]], ...] = ()
     passive: tuple[Passive, ...] = ()
 
     @property
@@ -138,12 +148,16 @@ class Structure:
     def sound(self) -> bool:
         """Whether each freedom is driven and nothing held twice, but for what is known to be passive."""
         wanted = len(self.drivers)
-        return self.freedom == wanted == self.mobility + self.redundant and not self.idle and not self.loose
+        return (
+            self.freedom == wanted == self.mobility + self.redundant
+            and not self.redundant_pairs
+            and not self.under_constrained
+        )
 
-    def again(self, linkage: Linkage) -> Structure:
+    def rebind(self, linkage: Linkage) -> Structure:
         """The same structure with the numbers of another linkage."""
-        groups = tuple(group.again(linkage) for group in self.groups)
-        return replace(self, pairs=tuple(pair.again(linkage) for pair in self.pairs), groups=groups)
+        groups = tuple(group.rebind(linkage) for group in self.groups)
+        return replace(self, pairs=tuple(pair.rebind(linkage) for pair in self.pairs), groups=groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
         """The pair in which a driver works."""
@@ -164,7 +178,7 @@ class Structure:
     @property
     def mechanism_class(self) -> int:
         """The class of its highest group."""
-        return max((g.grade for g in self.groups), default=1)
+        return max((g.group_class for g in self.groups), default=1)
 
     @property
     def solved(self) -> tuple[Group, ...]:
@@ -181,22 +195,13 @@ class Structure:
         pairs = [p for p in self.pairs if {p.i, p.j} & links]
         one = Group(
             tuple(link for link in self.links if link in links), tuple(p for p in pairs if {p.i, p.j} <= links),
-            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.grade for g in self.groups[first:last]), "",
+            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.group_class for g in self.groups[first:last]), "",
             tuple(d for g in self.groups[first:last] for d in g.drivers),
         )  # fmt: skip
         return (*self.groups[:first], one, *self.groups[last:])
 
     def pair(self, name: str) -> Pair:
         return next(p for p in self.pairs if p.name == name)
-
-    def needed_by(self, links: Iterable[str]) -> tuple[Group, ...]:
-        """The groups on the way to the given links, in solving order."""
-        wanted, chosen = set(links), []
-        for group in reversed(self.groups):
-            if wanted & set(group.links):
-                chosen.append(group)
-                wanted |= {pair.i for pair in group.outer} | {pair.j for pair in group.outer}
-        return tuple(reversed(chosen))
 
 
 def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
@@ -207,7 +212,7 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     less = dropped or {}
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
     loosened = {tie.name for k, tie in enumerate(ties) if k in less and not tie.constraints}
-    idle = loosened - {hinge.point for hinge in linkage.hinges if len(hinge.links) > 2}
+    redundant_pairs = loosened - {hinge.point for hinge in linkage.hinges if len(hinge.links) > 2}
     pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2)
     bodies = tuple(linkage.links)
     undriven = count(bodies, FRAME, ties, pins)
@@ -217,10 +222,15 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
     pairs = tuple(_pairs(linkage, rank))
     mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
-    sound = undriven.free == len(linkage.drivers) and not undriven.idle and not driven.idle and driven.free == 0
+    sound = (
+        undriven.free == len(linkage.drivers)
+        and not undriven.redundant_pairs
+        and not driven.redundant_pairs
+        and driven.free == 0
+    )
     cranks = {(driver.link,) for driver in linkage.cranks}
     parts_left = [part for part in solved if part not in cranks] if sound else []
-    groups = tuple(_group(part, pairs, rank, linkage, idle) for part in parts_left)
+    groups = tuple(_group(part, pairs, rank, linkage, redundant_pairs) for part in parts_left)
     return Structure(
         linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free, *_faults(linkage, undriven, driven)
     )
@@ -259,9 +269,13 @@ def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
 
 
 def _group(
-    links: tuple[str, ...], pairs: tuple[Pair, ...], rank: Mapping[str, int], linkage: Linkage, idle: Collection[str]
+    links: tuple[str, ...],
+    pairs: tuple[Pair, ...],
+    rank: Mapping[str, int],
+    linkage: Linkage,
+    redundant_pairs: Collection[str],
 ) -> Group:
-    """The group of these links; idle: names of its pairs that are passive."""
+    """The group of these links; redundant_pairs: names of its pairs that are passive."""
     here = rank[links[0]]
     inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
     outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
@@ -274,12 +288,12 @@ def _group(
         kind = outer[0].kind + inner[0].kind + outer[1].kind
         return Group(tuple(own[p.name] for p in outer), inner, tuple(outer), 2, kind)
     kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
-    within, leads = ([p for p in some if p.name not in idle] for some in (inner, outer))
-    passive = tuple(p.name for p in (*inner, *outer) if p.name in idle)
-    return Group(links, inner, tuple(outer), _grade(links, within, leads, drivers), kind, drivers, passive)
+    within, leads = ([p for p in some if p.name not in redundant_pairs] for some in (inner, outer))
+    passive = tuple(p.name for p in (*inner, *outer) if p.name in redundant_pairs)
+    return Group(links, inner, tuple(outer), _group_class(links, within, leads, drivers), kind, drivers, passive)
 
 
-def _grade(links: tuple[str, ...], inner: list[Pair], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
+def _group_class(links: tuple[str, ...], inner: list[Pair], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
     """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link."""
     one = {name: name for name in links}
     for driver in drivers:
@@ -330,8 +344,8 @@ def _faults(
     order = {name: k for k, name in enumerate(linkage.links)}
 
     def named(count_: Count) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        return tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in count_.idle)
+        return tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in count_.redundant_pairs)
 
     # With the driver in, a link is loose when it moves on its own; without it, every link may move with the crank.
-    loose = tuple(sorted(driven.loose, key=order.__getitem__))
-    return loose, named(undriven) or named(driven)
+    under_constrained = tuple(sorted(driven.under_constrained, key=order.__getitem__))
+    return under_constrained, named(undriven) or named(driven)

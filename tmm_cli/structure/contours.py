@@ -70,7 +70,7 @@ def classification(structure: Structure) -> tuple[str, ...]:
         return (chain, "elementary") if len(structure.links) == 1 else (chain,)
     if len(structure.groups) == 1:
         return (chain, "simple")
-    types = {(group.grade, group.order, group.type) for group in structure.groups}
+    types = {(group.group_class, group.order, group.type) for group in structure.groups}
     return (chain, "complex", "several types" if len(types) > 1 else "same type")
 
 

@@ -33,14 +33,14 @@ class Count:
     """What the game found.
 
     free: freedoms left to all bodies together, the root's three excepted. depends: body -> bodies its place depends
-    on directly. idle: ties with a condition that repeats others, with the bodies that were rigid already.
-    loose: bodies that still have a freedom.
+    on directly. redundant_pairs: ties with a condition that repeats others, with the bodies that were rigid already.
+    under_constrained: bodies that still have a freedom.
     """
 
     free: int
     depends: dict[str, tuple[str, ...]]
-    idle: tuple[tuple[Tie, tuple[str, ...]], ...]
-    loose: tuple[str, ...]
+    redundant_pairs: tuple[tuple[Tie, tuple[str, ...]], ...]
+    under_constrained: tuple[str, ...]
 
 
 class PebbleGame:
@@ -109,18 +109,18 @@ def count(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[
     """Play the game over all ties of the bodies and pins (names of pins are none of the bodies')."""
     bodies, pins = tuple(bodies), frozenset(pins)
     game = PebbleGame(bodies, root, pins)
-    idle = []
+    redundant_pairs = []
     for tie in ties:
         added = [game.add(tie.a, tie.b) for _ in range(tie.constraints)]
         if not all(added):
-            idle.append((tie, tuple(b for b in game.reach(tie.a, tie.b) if b not in pins)))
+            redundant_pairs.append((tie, tuple(b for b in game.reach(tie.a, tie.b) if b not in pins)))
     game.settle()
     free = sum(game.pebbles.values()) - FREEDOMS
-    loose = tuple(
+    under_constrained = tuple(
         body for body in bodies if body != root and any(game.pebbles[b] for b in game.reach(body) if b != root)
     )
     depends = {body: tuple(dict.fromkeys(targets)) for body, targets in game.out.items()}
-    return Count(free, depends, tuple(idle), loose)
+    return Count(free, depends, tuple(redundant_pairs), under_constrained)
 
 
 def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:

@@ -1,10 +1,14 @@
-"""What each link is called, from its pairs and from whether it can turn all the way round (a crank) or not."""
+"""What each link is called, from its pairs and from whether it can turn all the way round or not; the output."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import FRAME, Linkage
+
+if TYPE_CHECKING:
+    from tmm_cli.structure.assur import Group
 
 
 def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
@@ -53,4 +57,17 @@ def _cylinder(linkage: Linkage, name: str) -> str | None:
     for slide in linkage.slides:
         if slide.name in driven and name in (slide.carrier, slide.runner):
             return "cylinder" if name == slide.carrier else "piston"
+    return None
+
+
+def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
+    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder."""
+    if linkage.output is not None:
+        return linkage.output.link
+    driving = {link for driver in linkage.drivers for link in (driver.link, driver.base)}
+    for group in reversed(groups):
+        held = [link for link in group.links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
+        held = [link for link in held if link not in driving] or held
+        if held:
+            return next((link for link in held if linkage.slides_on_frame(link)), held[0])
     return None

@@ -29,7 +29,8 @@ import numpy as np
 
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Pair, Structure
-from tmm_cli.structure.spatial import KINDS, Chain, SpatialPair
+from tmm_cli.structure.spatial import KINDS, SpatialChain, SpatialPair
+from tmm_cli.tolerances import DEPENDENT
 from tmm_cli.vectors import Real
 
 TOUCHING = ("cylinder on plane", "sphere on plane")
@@ -40,7 +41,6 @@ CHOICES = {
 """Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 0."""
 CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
 GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
-INDEPENDENT = 1e-9  # of the largest singular value, or of a row; dependent rows are at 1e-15
 MOST_TRIES = 12
 
 
@@ -73,10 +73,10 @@ class Space:
     wanted: its mobility Wo. replacements is None when no proposal was found. rank is of the proposal.
     """
 
-    chain: Chain
+    chain: SpatialChain
     wanted: int
     replacements: tuple[Replacement, ...] | None
-    proposed: Chain
+    proposed: SpatialChain
     rank: Rank
 
     @property
@@ -111,10 +111,10 @@ def space(linkage: Linkage, structure: Structure, wanted: int | None = None) -> 
     return Space(chain, wanted, None, chain, rank_of(linkage, structure, {}))
 
 
-def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> Chain:
+def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
     """The linkage as a chain in space; `kinds` are those of pairs that are replaced, by name."""
     named = ((p, kinds.get(p.name, CHOICES[p.kind][0])) for p in structure.pairs)
-    return Chain(structure.links, tuple(SpatialPair(p.name, p.i, p.j, KINDS[kind], kind) for p, kind in named))
+    return SpatialChain(structure.links, tuple(SpatialPair(p.name, p.i, p.j, KINDS[kind], kind) for p, kind in named))
 
 
 def rank_of(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> Rank:
@@ -274,7 +274,7 @@ def _extend(basis: list[Real], rows: Iterable[Real], columns: int) -> bool:
         for _ in range(2):  # twice: once leaves rounding of the first
             rest = rest - (np.array(basis).T @ (np.array(basis) @ rest) if basis else 0.0)
         length = float(np.linalg.norm(rest))
-        if len(basis) == columns or length <= INDEPENDENT * size:
+        if len(basis) == columns or length <= DEPENDENT * size:
             return False
         basis.append(rest / length)
     return True
@@ -288,7 +288,7 @@ def _rank(matrix: Real) -> int:
     if not matrix.size:
         return 0
     values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > INDEPENDENT * values[0]))
+    return int(np.sum(values > DEPENDENT * values[0]))
 
 
 def _local(matrix: Real) -> int:

@@ -42,7 +42,7 @@ class SpatialPair:
     kind: str = ""
 
     @property
-    def grade(self) -> int:
+    def pair_class(self) -> int:
         """Class of the pair after I. I. Artobolevsky: the number of its constraints."""
         return SPACE - self.freedoms
 
@@ -52,7 +52,7 @@ class SpatialPair:
 
 
 @dataclass(frozen=True)
-class Chain:
+class SpatialChain:
     """Moving links and the pairs that join them to one another and to the frame, link "0"."""
 
     links: tuple[str, ...]
@@ -65,7 +65,7 @@ class Chain:
     @property
     def mobility(self) -> int:
         """Somov-Malyshev's W."""
-        return SPACE * len(self.links) - sum(pair.grade for pair in self.pairs)
+        return SPACE * len(self.links) - sum(pair.pair_class for pair in self.pairs)
 
     @property
     def count(self) -> str:
@@ -74,13 +74,13 @@ class Chain:
         parts = "".join(f" - {f'{weight}*' if weight > 1 else ''}{many}" for weight, many in terms if many)
         return f"{SPACE}*{len(self.links)}{parts} = {self.mobility}"
 
-    def held(self, link: str) -> Chain:
+    def held(self, link: str) -> SpatialChain:
         """The chain with one more link held: a part of the frame. Its pairs with the frame have nothing to do then."""
         pairs = (
             SpatialPair(p.name, FRAME if p.i == link else p.i, FRAME if p.j == link else p.j, p.freedoms, p.kind)
             for p in self.pairs
         )
-        return Chain(tuple(name for name in self.links if name != link), tuple(p for p in pairs if p.i != p.j))
+        return SpatialChain(tuple(name for name in self.links if name != link), tuple(p for p in pairs if p.i != p.j))
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class Findings:
     number). wanted: mobility that the chain is meant to have. output: the link to be held for the manoeuvrability.
     """
 
-    chain: Chain
+    chain: SpatialChain
     contours: tuple[Contour, ...]
     local: tuple[LocalFreedom, ...]
     given_local: int | None = None
@@ -149,13 +149,13 @@ class Findings:
 
 
 def examine(
-    chain: Chain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
+    chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> Findings:
     """Everything that can be counted of a chain."""
     return Findings(chain, contours(chain.pairs, chain.links), local_freedoms(chain), given_local, wanted, output)
 
 
-def local_freedoms(chain: Chain) -> tuple[LocalFreedom, ...]:
+def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
     """Local freedoms that are certain from the kinds of pairs, whatever the dimensions.
 
     A link between two balls turns about the line of their centres; between a ball and a plate, about the normal
@@ -185,7 +185,7 @@ def _certain(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
     return max(sum(p.freedoms for p in (*inner, *ends)) - SPACE * (len(ends) - 1), int(turns))
 
 
-def _struts(chain: Chain, around: dict[str, list[SpatialPair]]) -> Iterable[tuple[str, ...]]:
+def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterable[tuple[str, ...]]:
     """The links one by one, or together when they are parts of a strut; in the order of the chain."""
     part_of = {link: [link] for link in chain.links}
     for pair in chain.pairs:

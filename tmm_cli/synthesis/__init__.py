@@ -1,8 +1,13 @@
-"""Synthesis: one file a task. A new task is a file here, one in problem/synthesis, one in words, and a line below.
+"""Synthesis: one task, one room. A room is a package here with the name of its task:
 
-The file here (numbers only, SI and radians) has PARAMETERS, kinds by name of what it may find, and
-`solve(asked) -> Outcome`, which raises Infeasible. The file in problem/synthesis has the shape of the task's keys and
-makes the record `asked` from them. All three files have the same name; words/synthesis_<name>.py.
+    block.py   the task's keys in a problem file: `Shape`, and `read(shape, values) -> Task`, which raises ProblemError;
+               `parameters(shape)`, where what may be found depends on what is asked
+    solver.py  its numbers, SI and radians: the frozen record `Task`, PARAMETERS (kinds by name of what may be found),
+               and `solve(task) -> Outcome`, which raises Infeasible with the reason and one value that could be met
+
+and further files where one would be too long. block.py is the edge: it alone knows pydantic and units. What rooms share
+stands beside them: record.py (what a task gives), measures.py (what is measured on its mechanism), mean_ratio.py (k),
+construction.py (drawings as records). A new task is a new room, and a line here.
 """
 
 from __future__ import annotations
@@ -11,7 +16,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import Any, Final
 
-TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name of the task's files
+TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the room
     "crank-slider": "crank_slider",
     "grashof": "grashof",
     "four-bar-by-angles": "four_bar_by_angles",
@@ -23,6 +28,11 @@ TASKS: Final[Mapping[str, str]] = {  # as problem files write them, and the name
 }
 
 
-def task(name: str) -> Any:
-    """The module of a task; only that of the file's own task is imported."""
-    return import_module(f"{__name__}.{TASKS[name]}")
+def solver(task: str) -> Any:
+    """The numbers of a task; only the room of the file's own task is imported."""
+    return import_module(f"{__name__}.{TASKS[task]}.solver")
+
+
+def block(task: str) -> Any:
+    """The keys of a task; only the room of the file's own task is imported."""
+    return import_module(f"{__name__}.{TASKS[task]}.block")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from tmm_cli.synthesis.record import Demand, Outcome
 
 if TYPE_CHECKING:
-    from tmm_cli.pipeline import Results
+    from tmm_cli.analysis.pipeline import Results
 
 MET = 1e-9  # relative: what differs by more is not met
 ROUNDING = 1e-12  # relative: what is smaller is zero
@@ -29,6 +30,15 @@ class Measured:
     @property
     def met(self) -> bool:
         return self.difference <= max(MET, self.open)
+
+
+@lru_cache(maxsize=1)
+def measured_on(results: Results) -> tuple[Measured, ...]:
+    """What a problem's synthesis asked and foretold, on its mechanism; nothing where there is none, or no motion."""
+    synthesis = results.problem.synthesis
+    if synthesis is None or results.of or results.motion is None:
+        return ()
+    return measured(synthesis.outcome, results)
 
 
 def measured(outcome: Outcome, results: Results) -> tuple[Measured, ...]:

@@ -93,7 +93,7 @@ class Centre:
 
 @dataclass(frozen=True)
 class Construction:
-    """A sheet to scale. title: key of its words; notes: keys of words for the corner; name: of its file.
+    """A sheet to scale. title, and notes for the corner: texts with letters in {}; name: of its file.
 
     wishes: what else is on the sheet if the mechanism stays large enough on it, first wish first. Places that are not
     in `places` or granted are cut at the edge. chain: which mechanism it is, so that joints can be called as in a file.
@@ -128,12 +128,12 @@ def box(centre: complex, radius: float) -> tuple[complex, ...]:
 
 @dataclass(frozen=True)
 class Line:
-    """A curve of a diagram: values over its x (SI, rad); words: key of its name; dots: drawn as single points.
+    """A curve of a diagram: values over its x (SI, rad); text: what it is called; dots: drawn as single points.
 
     faint: behind the others.
     """
 
-    words: str
+    text: str
     x: Any
     y: Any
     dots: bool = False
@@ -142,10 +142,10 @@ class Line:
 
 @dataclass(frozen=True)
 class Diagram:
-    """A diagram (largest pressure angle along an arc, structural error). x, y: words and kind of the axes.
+    """A diagram (largest pressure angle along an arc, structural error). x, y: text and kind of the axes.
 
     equal: both to one scale, as a path has to be.
-    lower: curves of a panel below it over the same x, with an axis (words, kind) that is logarithmic.
+    lower: curves of a panel below it over the same x, with an axis (text, kind) that is logarithmic.
     """
 
     name: str

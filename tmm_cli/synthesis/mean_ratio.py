@@ -1,18 +1,30 @@
-"""k of one candidate, closely: strokes end where the slope of the output changes its sign.
+"""The coefficient k of change of mean speed: from the angle theta between the extreme cranks, and of any curve.
 
-Dwells, in which the slope is exactly zero, belong to no stroke; where the output all but rests rounding gives the slope
-one sign and the other, and the middle of such places is one end. Both as in tmm_cli.strokes.
+k of a curve is found closely: strokes end where the slope of the output changes its sign. Dwells, in which the slope is
+exactly zero, belong to no stroke; where the output all but rests rounding gives the slope one sign and the other, and
+the middle of such places is one end. Both as in tmm_cli.kinematics.strokes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from tmm_cli.vectors import Real
+from tmm_cli.roots import bisect
+from tmm_cli.vectors import Real, pi
 
-ROUNDS, PARTS = 9, 32  # of looking closer, and into how many parts each
+
+def theta_of(k: Any) -> Any:
+    """The angle theta between the extreme cranks, from k."""
+    k = np.asarray(k)
+    return pi(1.0 * k) * (k - 1) / (k + 1)
+
+
+def k_of(theta: Any) -> Any:
+    """The coefficient k from theta."""
+    return (pi(theta) + theta) / (pi(theta) - theta)
 
 
 def ratio(slope: Callable[[Real], Real], shares: Real) -> float:
@@ -41,10 +53,4 @@ def ratio(slope: Callable[[Real], Real], shares: Real) -> float:
 
 def _edges(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
     """Where a slope that has the sign `before` at low has it no more, at most a step farther on."""
-    for _ in range(ROUNDS):
-        there = low[:, None] + step * np.arange(PARTS + 1) / PARTS
-        same = np.sign(slope(there.ravel())).reshape(there.shape) == before[:, None]
-        first = np.where(np.all(same, axis=1), PARTS, np.argmin(same, axis=1))  # at its end, but for rounding
-        low = there[np.arange(len(low)), np.maximum(first - 1, 0)]
-        step /= PARTS
-    return low
+    return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.kinematics.strokes import output_slope
 from tmm_cli.linkage import FRAME
-from tmm_cli.strokes import output_slope
 
 if TYPE_CHECKING:
-    from tmm_cli.pipeline import Results
+    from tmm_cli.analysis.pipeline import Results
 
 NONE = math.nan
 NOISE = 64 * np.finfo(float).eps  # of the largest speed: the sign of a larger one is sure
@@ -21,10 +21,10 @@ Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is
 
 def stroke(results: Results, ends: Ends = None) -> float:
     """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over a way of the driver."""
-    if results.way is not None and (ends or not results.way.full):
-        from tmm_cli.strokes import find_travel
+    if results.driver_range is not None and (ends or not results.driver_range.full):
+        from tmm_cli.kinematics.strokes import find_travel
 
-        way, link = results.way, results.mechanism.output
+        way, link = results.driver_range, results.mechanism.output
         found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
         return found.high - found.low if found else NONE
     strokes = results.strokes
@@ -45,7 +45,7 @@ def slower_ratio(results: Results) -> float:
 
 def ratio_open(results: Results) -> float:
     """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
-    from tmm_cli.pipeline import at_positions
+    from tmm_cli.analysis.pipeline import at_positions
 
     strokes = results.strokes
     if strokes is None or not strokes.strokes:
@@ -69,11 +69,11 @@ def pressure(results: Results, ends: Ends = None) -> float:
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
     if ends and results.motion is not None:
-        from tmm_cli.pressure import find_pressure
-        from tmm_cli.quality import Range
+        from tmm_cli.kinematics.driver_range import DriverRange
+        from tmm_cli.kinematics.pressure import find_pressure
 
-        way, limits = Range(*ends, False, inclusive=True), results.problem.pressure_limits
-        over = find_pressure(results.linkage, results.kernels, way, results.motion, limits)
+        way = DriverRange(*ends, False, inclusive=True)
+        over = find_pressure(results.linkage, results.kernels, way, results.inputs.pressure_limits)
     found = [p.largest for p in over if p.link == link] or [p.largest for p in over]
     return max(found, default=NONE)
 
@@ -90,7 +90,7 @@ def mean_speed(results: Results) -> float:
 
 def goes_its_way(results: Results, ends: Ends = None) -> bool:
     """Whether the driver turns fully, goes the whole of its stroke, or from one end to the other."""
-    way = results.way
+    way = results.driver_range
     if way is None:
         return False
     return way.full or (way.start <= ends[0] and ends[1] <= way.end if ends else way.inclusive)

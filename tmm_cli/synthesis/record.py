@@ -8,38 +8,42 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from tmm_cli.errors import _
+
 if TYPE_CHECKING:
     from tmm_cli.linkage import Sketch
     from tmm_cli.synthesis.construction import Construction, Diagram
 
-Shown = tuple[Any, ...]  # of a refusal: value, kind, and perhaps which side of it is allowed
+Shown = tuple[Any, ...]  # of a refusal: value (SI), kind, and perhaps which side of it is allowed
 SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
 
 @dataclass(frozen=True)
 class Value:
-    """A quantity of a task (SI, rad). words: the key of its name; text: the key of what it is, for a word."""
+    """A quantity of a task (SI, rad); text: what it is called. Of kind `word` the value is a text itself.
+
+    name: of the parameter that it is, or of the key that gives it.
+    """
 
     name: str
     value: Any
     kind: Kind
-    words: str
-    text: str = ""
+    text: str
 
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of what was found. columns: key of the header's words and kind of the values; name: of its file; a long
-    one is for files only.
+    """A table of what was found. columns: name in result.json, text of the header, and kind of the values; name: of its
+    file; a long one is for files only.
 
-    kind `word`: keys of words; `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind
-    `unit`. None: there is none.
+    kind `word`, `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind `unit`. None:
+    there is none.
     """
 
     name: str
     title: str
-    columns: tuple[tuple[str, Kind], ...]
+    columns: tuple[tuple[str, str, Kind], ...]
     rows: tuple[tuple[Any, ...], ...]
     long: bool = False
 
@@ -48,18 +52,20 @@ class Listing:
 class Demand:
     """What must come back when the mechanism is analysed: value (SI, rad), and how it is measured on the Results.
 
-    asked: by the file; else it is what the synthesis foretells. A measure gives nan where the mechanism has no such
-    quantity. at: the least size that counts in the relative difference, for a value that may be zero. open: by how
-    much of it rounding leaves the measured value open; None: by next to nothing.
+    text: what it is called. asked: by the file; else it is what the synthesis foretells. A measure gives nan where the
+    mechanism has no such quantity. at: the least size that counts in the relative difference, for a value that may be
+    zero. open: by how much of it rounding leaves the measured value open; None: by next to nothing. of: what is
+    measured, where a warning looks for it (pressure).
     """
 
-    words: str
+    text: str
     value: float
     kind: Kind
     measure: Callable[[Any], float]
     asked: bool = True
     at: float = 0.0
     open: Callable[[Any], float] | None = None
+    of: str = ""
 
     def difference(self, measured: float) -> float:
         """Relative to what is wanted, or absolute where that is zero."""
@@ -68,10 +74,10 @@ class Demand:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a task gives. parameters: what the linkage may use, by name; source: key of the words on the formula.
+    """What a task gives. parameters: what the linkage may use, by name; source: where the formula is from.
 
     asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
-    notes: keys of words below what was found; listings: further tables. sketch: how the mechanism is assembled,
+    notes: texts below what was found; listings: further tables. sketch: how the mechanism is assembled,
     where the file's own does not show it.
     """
 
@@ -93,25 +99,21 @@ class Outcome:
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
-    key: which of what was given is at fault, or the way to it inside the block; reason: key of the words, with
-    `values` in their places; nearest: words and values of what could be met. Values are (number in SI, kind) or
-    (number, kind, side): `most`, `least` allowed, or `below`, `above` for limits that are not allowed themselves; they
-    are rounded to that side, so that what is printed can be typed in; `exact`: nothing beside it will do. whole:
-    the words tell all that must change; then: what must change beside them.
+    key: which of what was given is at fault, or the way to it inside the block; reason: a text, with `values` in its
+    fields. suggestion: the nearest feasible value of what the key gives, (number in SI, kind, side), or a text; None:
+    no value of it helps. side: `least`, `most` allowed, or `above`, `below` for a limit that is not allowed itself: it
+    is rounded to that side, so that what is printed can be typed in.
     """
-
-    then: Infeasible | None = None
 
     def __init__(
         self,
         key: str | tuple[str | int, ...],
         reason: str,
-        nearest: str,
+        suggestion: str | Shown | None,
         values: Mapping[str, Shown] | None = None,
-        whole: bool = False,
     ) -> None:
         self.path = (key,) if isinstance(key, str) else key
-        self.reason, self.nearest, self.values, self.whole = reason, nearest, dict(values or {}), whole
+        self.reason, self.suggestion, self.values = reason, suggestion, dict(values or {})
         super().__init__(reason)
 
 
@@ -119,5 +121,7 @@ def sound(outcome: Outcome) -> Outcome:
     """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
-            raise Infeasible((), "synthesis.no_number", "synthesis.no_number_other", {"name": (value.words, "said")})
+            raise Infeasible(
+                (), _("no mechanism was found: it has no {name}"), _("other numbers"), {"name": (value.text, "word")}
+            )
     return outcome

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.tape.program import Outputs, Program
-from tmm_cli.tape.stand import DependsOnData, Stand
 from tmm_cli.tape.terms import Tape
+from tmm_cli.tape.traced_array import DependsOnData, TracedArray
 
-__all__ = ["DependsOnData", "Outputs", "Program", "Stand", "record"]
+__all__ = ["DependsOnData", "Outputs", "Program", "TracedArray", "record"]
 
 
 def record(function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None) -> Program:
@@ -22,10 +22,10 @@ def record(function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping
     differ.
     """
     tape = Tape(dict(data or {}))
-    stands = [Stand(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
+    stands = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
     outputs = {}
     for name, value in function(*stands).items():
-        if isinstance(value, Stand):
+        if isinstance(value, TracedArray):
             outputs[name] = (value.re, value.im)
         else:
             one = np.ravel(value)[0]

@@ -1,1 +1,1 @@
-"""Variants of a linkage that no tape can be written of: solved together on arrays, or one after another."""
+"""Many linkages of one kind at once: a batch at places of the driver, or variants whose numbers come later."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from importlib.util import find_spec
 
-from tmm_cli.accuracy.case import Method
+from tmm_cli.bench.methods.case import Method
 
 RIVALS = ("pylinkage", "kinepy")
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Answers, Case, Method, Unable
+from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
+from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME
-from tmm_cli.motion import move
 from tmm_cli.vectors import Real, Vector, cross, unit
 
 STEP = 2 * np.pi / 360  # rad: places are at most so far apart, since differences over time are taken between them
@@ -20,28 +20,19 @@ SAME = 1e-6  # of the linkage's size
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
-    """Its `solve_dynamics` for places q at equal steps, two more at the ends, whose values it loses.
-
-    Raises Unable.
-    """
+    """Its answers in the common form, for places q at equal steps. Raises Unable."""
     model = _Model(case)
-    acting: dict[tuple[float, float, int], list[tuple[str, complex, Vector, Real]]] = {}
 
     def at(q: Real) -> Answers:
-        step = float(q[1] - q[0])
-        times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # places between two that are asked for
-        step /= times
-        grid = q[0] + step * np.arange(-1, (len(q) - 1) * times + 2)
-        key = (float(q[0]), step, len(q))
-        if key not in acting:  # loads of the task are data
-            motion = move(case.linkage, case.kernels, grid, case.law)
-            acting[key] = [(a.link, a.at, a.force, a.moment) for a in case.loads(motion) if a.kind == "load"]
-        model.load(acting[key])
-        dt = step / (case.law.sense * case.law.rate)
-        model.system.solve_dynamics(grid[None, :].copy(), dt * len(grid))
-        return model.answers(slice(1, -1, times), dt)
+        chosen, dt = model.solve(q)
+        return model.answers(chosen, dt)
 
     return at
+
+
+def alone(case: Case) -> Callable[[Real], object]:
+    """Its `solve_dynamics` and nothing else: it has one route, in NumPy. Raises Unable."""
+    return _Model(case).solve
 
 
 class _Model:
@@ -76,7 +67,7 @@ class _Model:
         self.crank = self.joints[case.structure.driving_pair(driver).name]
         gravity = self.case.linkage.gravity
         self.system.add_gravity(_xy(gravity))
-        self._loads: list[Any] = []
+        self._loaded: tuple[float, float, int] | None = None
         with redirect_stdout(io.StringIO()):  # it tells what it does
             self.system.pilot(self.crank)
             self.system.block(self.crank)
@@ -99,6 +90,24 @@ class _Model:
             if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.points):
                 return
         raise Unable("it does not solve this linkage")
+
+    def solve(self, q: Real) -> tuple[slice, float]:
+        """Everything at places q at equal steps, two more at the ends, whose values it loses.
+
+        Gives which of its places are those that are asked for, and the seconds between two.
+        """
+        key = (float(q[0]), float(q[1] - q[0]), len(q))
+        if key != self._loaded:
+            step = key[1]
+            self._times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # places between two that are asked for
+            step /= self._times
+            self._grid = q[0] + step * np.arange(-1, (len(q) - 1) * self._times + 2)
+            motion = move(self.case.linkage, self.case.kernels, self._grid, self.case.law)  # loads are data
+            self.load([(a.link, a.at, a.force, a.moment) for a in self.case.loads(motion) if a.kind == "load"])
+            self._dt = step / (self.case.law.sense * self.case.law.rate)
+            self._loaded = key
+        self.system.solve_dynamics(self._grid[None, :].copy(), self._dt * len(self._grid))
+        return slice(1, -1, self._times), self._dt
 
     def load(self, acting: list[tuple[str, complex, Vector, Real]]) -> None:
         """Loads of the task, instead of those before."""
@@ -151,4 +160,4 @@ def _xy(vector: Any) -> tuple[float, float]:
     return float(np.real(vector)), float(np.imag(vector))
 
 
-METHOD = Method("kinepy", "kinepy", prepare)
+METHOD = Method("kinepy", "kinepy", prepare, alone=alone)

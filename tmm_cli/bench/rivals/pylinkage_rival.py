@@ -7,18 +7,40 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.case import Answers, Case, Method, Unable
+from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
+from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME
-from tmm_cli.motion import move
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.vectors import Real, unit
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
-    """Its fastest route, `step_fast_with_kinematics`, for places q at equal steps. Raises Unable."""
+    """Its answers in the common form, for places q at equal steps. Raises Unable."""
+    simulated, names = _simulated(case)
+    own = [(k, name) for k, name in enumerate(names) if name in case.points]
+
+    def at(q: Real) -> Answers:
+        x, v, a = ({name: part[:, k, 0] + 1j * part[:, k, 1] for k, name in own} for part in simulated(q))
+        return Answers(x, v, a)
+
+    return at
+
+
+def alone(case: Case) -> Callable[[Real], object]:
+    """Its own call and nothing else. Raises Unable."""
+    return _simulated(case)[0]
+
+
+def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list[str]]:
+    """Positions, velocities, accelerations (places, joints, 2) at equal steps of the crank, and the joints' names.
+
+    This is the fastest route that its documentation has: the solver that numba compiles, called directly with arrays
+    that are made once (pylinkage.solver).
+    """
     from pylinkage.actuators import Crank
     from pylinkage.components import Ground
     from pylinkage.simulation import Linkage
+    from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
@@ -34,34 +56,39 @@ def prepare(case: Case) -> Callable[[Real], Answers]:
         raise Unable("a crank has one end")
     radius = abs(arm[ends[0]] - arm[driver.joint])
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
-    extra: list[Any] = []
+    guides: list[Any] = []
     for group in case.structure.groups:
-        _add(group, case, parts, extra, places)
-    linkage = Linkage([*parts.values(), *extra])
+        _add(group, case, parts, guides, places)
+    linkage = Linkage([*parts.values(), *guides])
     names = [component.name for component in linkage.components]
-    linkage.set_input_velocity(crank, omega=case.law.sense * case.law.rate)
-    before: dict[tuple[float, float], dict[str, complex]] = {}
+    made: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
 
-    def at(q: Real) -> Answers:
-        step = float(q[1] - q[0]) if len(q) > 1 else 0.0
-        key = (float(q[0]), step)
-        if key not in before:  # where it starts from, one step earlier
-            motion = move(case.linkage, case.kernels, q[:1] - step, case.law)
-            before[key] = {point: complex(motion.named(point).x[0]) for point in case.points}
-        for name, was in before[key].items():
-            if name in parts:
-                parts[name].x, parts[name].y = was.real, was.imag
+    def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
+        """Joints one step before the first place, and what else its solver is given."""
+        before = move(case.linkage, case.kernels, np.array([first - step]), case.law)
+        for name in set(case.points) & set(parts):
+            at = complex(before.named(name).x[0])
+            parts[name].x, parts[name].y = at.real, at.imag
         crank.angular_velocity = step
-        linkage.compile()
-        x, v, a = linkage.step_fast_with_kinematics(len(q))
-        own = [(k, name) for k, name in enumerate(names) if name in case.points]
-        one, two, three = ({name: p[:, k, 0] + 1j * p[:, k, 1] for k, name in own} for p in (x, v, a))
-        return Answers(one, two, three)
+        data = linkage_to_solver_data(linkage)
+        return data.positions, (
+            np.zeros((len(names), 2)), np.zeros((len(names), 2)), data.constraints, data.joint_types,
+            data.parent_indices, data.constraint_offsets, data.solve_order,
+            np.array([case.law.sense * case.law.rate]), np.zeros(1), np.array([names.index(crank.name)], np.int32),
+        )  # fmt: skip
 
-    return at
+    def at(q: Real) -> tuple[Any, Any, Any]:
+        key = (float(q[0]), float(q[1] - q[0]) if len(q) > 1 else 0.0)
+        if key not in made:
+            made[key] = arrays(*key)
+        positions, rest = made[key]
+        found: tuple[Any, Any, Any] = simulate_with_kinematics(positions.copy(), *rest, len(q), 1.0)
+        return found
+
+    return at, names
 
 
-def _add(group: Group, case: Case, parts: dict[str, Any], extra: list[Any], places: Mapping[str, complex]) -> None:
+def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], places: Mapping[str, complex]) -> None:
     """The inner hinge of a group."""
     from pylinkage.components import Ground
     from pylinkage.dyads import RRPDyad, RRRDyad
@@ -87,10 +114,10 @@ def _add(group: Group, case: Case, parts: dict[str, Any], extra: list[Any], plac
     if slide.carrier != FRAME or slide.at != local(slide.runner, point):
         raise Unable("it knows guides through hinges only")
     one, r = reach(turning[0])
-    guide = [slide.through, slide.through + unit(slide.direction)]
-    ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(guide)]
-    extra += ends
+    line = [slide.through, slide.through + unit(slide.direction)]
+    ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(line)]
+    guides += ends
     parts[point] = RRPDyad(one, *ends, r, x, y, name=point)
 
 
-METHOD = Method("pylinkage", "pylinkage", prepare)
+METHOD = Method("pylinkage", "pylinkage", prepare, alone=alone)

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from importlib import import_module
 
-from tmm_cli.chain import ChainResults
-from tmm_cli.pipeline import Results
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.table import Table
 
 # file here, the part of Results that it needs, the tables it gives (of other names where there are none): a report of a
 # stage that did not run, or of which no table is wanted, is not even imported
 REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("synthesis", "synthesis", ("synthesis-asked", "synthesis-found", "synthesis-measured")),
+    ("synthesis", "motion", ("synthesis-asked", "synthesis-found", "synthesis-measured")),
     ("structure", "structure", ("structure", "links", "pairs", "groups")),
     ("space", "structure", ("contours", "space", "replacements")),
     ("chain", "chain", ()),

@@ -6,37 +6,39 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.motion import Motion
-from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_SPEED,
-    FORCE,
-    LENGTH,
-    MOMENT,
-    NUMBER,
-    SPEED,
-    Dimension,
-)
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.linkage import Driver
+from tmm_cli.quantities import FORCE, LINK, MOMENT, NUMBER, SLIDE, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
-from tmm_cli.strokes import output_link, output_run
 from tmm_cli.vectors import Real, pi
-from tmm_cli.words import say
+
+OF_OUTPUT = {
+    "run": _("s of {link}"),
+    "v": _("v of {link}"),
+    "a": _("a of {link}"),
+    "angle": _("angle of {link}"),
+    "omega": _("omega of {link}"),
+    "epsilon": _("epsilon of {link}"),
+}
 
 
 def driver_columns(results: Results) -> list[Column]:
     """Number of each position and the driver's place."""
-    motion = results.motion
-    assert motion is not None
-    turns = results.linkage.driver.kind == "turn"
-    round_and_round = turns and results.way is not None and results.way.full
-    q = np.mod(motion.q, 2 * pi(motion.q)) if round_and_round else motion.q
+    assert results.motion is not None
+    name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
     return [
-        Column(say("word.position"), [str(n) for n in results.numbers]),
-        Column(say("cycle.phi" if turns else "cycle.drive"), q, ANGLE if turns else LENGTH),
+        Column(_("position"), [str(n) for n in results.numbers]),
+        _place(results, results.linkage.driver, name, results.motion.q),
     ]
+
+
+def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
+    """A driver's places, within a turn where it turns round and round."""
+    full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
+    return Column(name, np.mod(q, 2 * pi(q)) if full else q, place_dimension(driver.kind))
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -44,47 +46,26 @@ def tables(results: Results) -> Iterable[Table]:
     motion = results.motion
     if motion is None:
         return
-    columns = [*driver_columns(results), *_other_drivers(results)]
-    for link in output_links(results):
-        for key, values, dimension in output_motion(results, motion, link):
-            columns.append(Column(say(f"cycle.{key}", link=link), values, dimension))
+    columns = driver_columns(results)
+    for driver in results.linkage.others:
+        name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
+        columns.append(_place(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
+    for link in results.mechanism.outputs:
+        columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(say("word.state"), states(results)))
-    yield Table("cycle", say("cycle.title"), tuple(columns))
-
-
-def _other_drivers(results: Results) -> Iterable[Column]:
-    """Where the drivers beside the first are."""
-    motion = results.motion
-    assert motion is not None
-    for driver in results.linkage.others:
-        value = motion.drives[driver.link].value
-        turns = driver.kind == "turn"
-        full = turns and results.way is not None and results.way.full
-        key = "cycle.place_turn" if turns else "cycle.place_slide"
-        yield Column(
-            say(key, link=driver.link), np.mod(value, 2 * pi(value)) if full else value, ANGLE if turns else LENGTH
-        )
-
-
-def output_links(results: Results) -> tuple[str, ...]:
-    """The outputs that the file names, or the one that is taken where it names none."""
-    if results.linkage.outputs:
-        return tuple(output.link for output in results.linkage.outputs)
-    link = output_link(results.linkage, results.structure.groups)
-    return () if link is None else (link,)
+        columns.append(Column(_("state"), states(results)))
+    yield Table("cycle", _("Cycle"), tuple(columns))
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
-    """Run (or angle), speed and acceleration of an output: key of its name, values, what they measure."""
-    slides = results.linkage.slides_on_frame(link)
+    """Run (or angle), speed and acceleration of an output: what it is called, its values, what they measure."""
     run, first, second = output_run(motion, link)
     v = first * motion.rate
     a = second * motion.rate**2 + first * motion.acceleration
-    names = ("run", "v", "a") if slides else ("psi", "omega", "epsilon")
-    dims = (LENGTH, SPEED, ACCELERATION) if slides else (ANGLE, ANGULAR_SPEED, ANGULAR_ACCELERATION)
-    return zip(names, (run, v, a), dims, strict=True)
+    quantities = SLIDE if results.linkage.slides_on_frame(link) else LINK
+    for quantity, values in zip(quantities, (run, v, a), strict=False):
+        yield OF_OUTPUT[quantity.name].format(link=link), values, quantity.dimension
 
 
 def _balance(results: Results) -> Iterable[Column]:
@@ -94,25 +75,25 @@ def _balance(results: Results) -> Iterable[Column]:
         return
     from tmm_cli.forces.plan import power  # kinematics alone does not need it
 
-    difference = Column(say("cycle.difference"), lever.difference * 100, NUMBER, digits=2)
+    difference = Column(_("difference, %"), lever.difference * 100, NUMBER, digits=2)
     if len(reactions.balances) == 1:
         balance = reactions.balance
-        crank = balance.kind == "moment"
-        plan = balance.moment if crank else balance.force
-        by_lever = lever.balancing if crank else lever.balancing / balance.arm
-        size = MOMENT if crank else FORCE
-        yield Column(say("cycle.plan" if crank else "cycle.plan_force"), plan, size)
-        yield Column(say("cycle.lever" if crank else "cycle.lever_force"), by_lever, size)
+        if balance.kind == "moment":
+            yield Column(_("M_b, force plan"), balance.moment, MOMENT)
+            yield Column(_("M_b, lever"), lever.balancing, MOMENT)
+        else:
+            yield Column(_("F_b, force plan"), balance.force, FORCE)
+            yield Column(_("F_b, lever"), lever.balancing / balance.arm, FORCE)
         yield difference
         return
     for balance in reactions.balances:
-        turns = balance.moment is not None
-        name = say("cycle.moment_of" if turns else "cycle.force_of", link=balance.driver.link)
-        yield Column(name, balance.generalized, MOMENT if turns else FORCE)
+        turns, link = balance.moment is not None, balance.driver.link
+        name = _("M_b of {link}") if turns else _("F_b of {link}")
+        yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
     first = results.linkage.driver
     size = MOMENT if first.kind == "turn" else FORCE
-    yield Column(say("cycle.sum_plan", link=first.link), power(motion, reactions), size)
-    yield Column(say("cycle.sum_lever", link=first.link), lever.balancing, size)
+    yield Column(_("reduced to {link}, force plan").format(link=first.link), power(motion, reactions), size)
+    yield Column(_("reduced to {link}, lever").format(link=first.link), lever.balancing, size)
     yield difference
 
 
@@ -120,20 +101,9 @@ def states(results: Results) -> list[str]:
     """What is wrong with each position, or nothing."""
     motion = results.motion
     assert motion is not None
-    lost = ~motion.moving | results.locked
-    return [_state(results, k) if wrong else "" for k, wrong in enumerate(lost.tolist())]
-
-
-def _state(results: Results, k: int) -> str:
-    """What is wrong with a position, or nothing."""
-    motion = results.motion
-    assert motion is not None
-    for title, lost in motion.missing.items():
-        if lost[k]:
-            return say("state.missing", group=title)
-    for title, dead in motion.dead.items():
-        if dead[k]:
-            return say("state.dead", group=title)
-    if motion.moving[k]:
-        return say("state.locked") if results.locked[k] else ""
-    return say("state.stopped")
+    told = np.where(motion.moving, "", _("the driver has stopped before")).astype(object)
+    told[results.locked & motion.moving] = _("locks by friction")
+    for text, groups in ((_("{group} is dead"), motion.dead), (_("{group} cannot be assembled"), motion.missing)):
+        for group, lost in reversed(list(groups.items())):
+            told[lost & (~motion.moving | results.locked)] = text.format(group=group)
+    return list(told)

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.quantities import ENERGY, LENGTH, NUMBER, columns
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
-from tmm_cli.words import say
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -18,21 +18,15 @@ def tables(results: Results) -> Iterable[Table]:
     found, motion = results.energy, results.motion
     if found is None or motion is None:
         return
-    crank = results.linkage.driver.kind == "turn"
-    columns = [
+    left_out = () if results.friction is not None else ("friction",)
+    quantities = [quantity for quantity in ENERGY if quantity.name not in left_out]
+    columns_of = columns(quantities, found, results.linkage.driver.kind == "slide")
+    table = [
         *driver_columns(results),
-        Column(say("energy.J" if crank else "energy.m"), found.inertia, INERTIA if crank else MASS),
-        Column(say("energy.M" if crank else "energy.F"), found.moment, MOMENT if crank else FORCE),
-        Column(say("energy.T"), found.kinetic, NUMBER),
-        Column(say("energy.rate"), found.rate, NUMBER),
-        Column(say("energy.drivers"), found.drivers, NUMBER),
-        Column(say("energy.weights"), found.weights, NUMBER),
-        Column(say("energy.loads"), found.loads, NUMBER),
+        *(Column(header, values, dimension) for header, values, dimension in columns_of),
+        Column(_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
     ]
-    if results.friction is not None:
-        columns.append(Column(say("energy.friction"), found.friction, NUMBER))
-    columns.append(Column(say("energy.balance"), 100 * np.abs(found.balance), NUMBER, digits=2))
-    yield Table("energy", say("energy.title"), tuple(columns))
+    yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table))
     if results.friction is not None:
         yield _friction(results)
 
@@ -43,17 +37,21 @@ def _friction(results: Results) -> Table:
     given = results.linkage.friction
     notes = []
     share = None if lost is None else lost.efficiency
-    notes.append(say("friction.none") if share is None else say("friction.efficiency", share=f"{100 * share:.4g}"))
+    notes.append(
+        _("no efficiency over the cycle: the driver is locked somewhere, or does no work")
+        if share is None
+        else _("efficiency over the cycle: {share} %").format(share=f"{100 * share:.4g}")
+    )
     locked = [str(n) for n, lost in zip(results.numbers, rubbed.locked, strict=True) if lost]
     if locked:
-        notes.append(say("friction.locked", numbers=", ".join(locked)))
+        notes.append(_("locked in positions {numbers}").format(numbers=", ".join(locked)))
     return Table(
-        "friction", say("friction.title"),
+        "friction", _("Friction"),
         (
-            Column(say("word.pair"), [f.pair for f in given]),
-            Column(say("friction.coefficient"), [f.coefficient for f in given], NUMBER),
-            Column(say("friction.radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(say("friction.work"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+            Column(_("pair"), [f.pair for f in given]),
+            Column(_("mu"), [f.coefficient for f in given], NUMBER),
+            Column(_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
+            Column(_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
     )  # fmt: skip

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
 from tmm_cli.forces.lever import Item
-from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import FORCE, LENGTH, MOMENT, NUMBER
-from tmm_cli.results.reports.long import Values, long_table
+from tmm_cli.quantities import LEVER_COUPLE, LEVER_FORCE, LEVER_MOMENT, NamedValues, columns
+from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Table
-from tmm_cli.words import say
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -17,17 +17,16 @@ def tables(results: Results) -> Iterable[Table]:
     lever = results.lever
     if lever is None or not lever.items:
         return
-    crank = results.linkage.driver.kind == "turn"
-    words = {"forces.name": [i.name for i in lever.items], "word.link": [i.link for i in lever.items]}
-    yield long_table(results, "lever", words, [_values(i, crank) for i in lever.items], say("lever.note"))
+    slider = results.linkage.driver.kind == "slide"
+    words = {_("name"): [i.name for i in lever.items], _("link"): [i.link for i in lever.items]}
+    note = _("Arms are those of the lever drawn for a crank that turns with 1 rad/s, 1 m for 1 m/s.")
+    items = [_columns(item, slider) for item in lever.items]
+    yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
 
 
-def _values(item: Item, crank: bool) -> Values:
-    force = item.end is not None
+def _columns(item: Item, slider: bool) -> list[NamedValues]:
+    force, couple = (item, None) if item.end is not None else (None, item)
     return [
-        ("lever.force", item.size if force else None, FORCE),
-        ("lever.arm", item.arm if force else None, LENGTH if crank else NUMBER),
-        ("lever.couple", None if force else item.size, MOMENT),
-        ("lever.ratio", None if force else item.arm, NUMBER),
-        ("lever.moment", item.moment, MOMENT if crank else FORCE),
-    ]
+        *columns(LEVER_FORCE, force, slider), *columns(LEVER_COUPLE, couple, slider),
+        *LEVER_MOMENT.columns(item, slider),
+    ]  # fmt: skip

@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from tmm_cli.pipeline import Results
-from tmm_cli.problem.dimensions import Dimension
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.quantities import NamedValues
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
-from tmm_cli.words import say
-
-Values = Sequence[tuple[str, Any, Dimension]]  # key of the header, one value a position (or None), dimension
 
 
 def long_table(
-    results: Results, name: str, words: Mapping[str, Sequence[str]], values: Sequence[Values], note: str = ""
-) -> Table:
-    """Position by position, a row for each thing. words: what tells the things apart, by key of the header."""
-    count, number = len(results.numbers), len(values)
+    results: Results, name: str, title: str, words: Mapping[str, Sequence[str]],
+    things: Sequence[Sequence[NamedValues]], note: str = "",
+) -> Table:  # fmt: skip
+    """Position by position, a row for each thing. words: what tells the things apart, by header.
+
+    things: their columns (quantities.columns), which have the same headers.
+    """
+    count, number = len(results.numbers), len(things)
     head = [
         Column(c.header, np.repeat(np.asarray(c.values), number).tolist(), c.dimension) for c in driver_columns(results)
     ]
-    told = [Column(say(key), list(texts) * count) for key, texts in words.items()]
-    columns = [*head, *told]
-    for k, (key, _, dimension) in enumerate(values[0]):
-        parts = [np.nan if thing[k][1] is None else thing[k][1] for thing in values]
+    columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
+    for same in zip(*things, strict=True):
+        parts = [np.nan if values is None else values for __, values, __ in same]
         stacked = np.stack([np.broadcast_to(part, (count,)) for part in parts], axis=1)
-        columns.append(Column(say(key), stacked.ravel(), dimension))
-    return Table(name, say(f"{name}.title"), tuple(columns), long=True, notes=(note,) if note else ())
+        header, __, dimension = same[0]
+        columns.append(Column(header, stacked.ravel(), dimension))
+    return Table(name, title, tuple(columns), long=True, notes=(note,) if note else ())

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-import numpy as np
-
-from tmm_cli.pipeline import Results
-from tmm_cli.pressure import NOTHING
-from tmm_cli.problem.dimensions import ANGLE, LENGTH, NUMBER
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.quantities import ANGLE, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table
-from tmm_cli.words import say
+from tmm_cli.tolerances import NO_PRESSURE
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -19,25 +17,28 @@ def tables(results: Results) -> Iterable[Table]:
     found = results.pressure
     if not found:
         return
-    turns = results.linkage.driver.kind == "turn"
-    way = results.way
-    full = turns and way is not None and way.full
-    places = [float(np.mod(p.place, 2 * np.pi * way.turns)) if full and way else p.place for p in found]
-    places = [place if p.largest > NOTHING else math.nan for place, p in zip(places, found, strict=True)]
-    note = say("pressure.note.file" if any(results.problem.limits_set) else "pressure.note.default")
+    driver, driver_range = results.linkage.driver, results.driver_range
+    places = [p.place if p.largest > NO_PRESSURE else math.nan for p in found]
+    if driver.kind == "turn" and driver_range is not None and driver_range.full:
+        places = [place % (2 * math.pi * driver_range.turns) for place in places]
+    note = (
+        _("Allowed: as the file says.")
+        if any(results.problem.limits_set)
+        else _("Allowed where the file says nothing: 30 deg on a sliding link, 45 deg on a turning one.")
+    )
     yield Table(
-        "pressure", say("pressure.title"),
+        "pressure", _("Pressure angles"),
         (
-            Column(say("word.group"), [p.group for p in found]),
-            Column(say("pressure.link"), [p.link for p in found]),
-            Column(say("pressure.motion"), [say("pressure.slides" if p.slides else "pressure.turns") for p in found]),
-            Column(say("pressure.pair"), [p.pair for p in found]),
-            Column(say("pressure.largest"), [p.largest for p in found], ANGLE),
-            Column(say("pressure.place"), places, ANGLE if turns else LENGTH),
-            Column(say("pressure.transmission"), [p.transmission for p in found], ANGLE),
-            Column(say("pressure.gain"), [p.gain for p in found], NUMBER),
-            Column(say("pressure.allowed"), [p.allowed for p in found], ANGLE),
-            Column(say("pressure.verdict"), [say("pressure.holds" if p.holds else "pressure.exceeds") for p in found]),
+            Column(_("group"), [p.group for p in found]),
+            Column(_("driven link"), [p.link for p in found]),
+            Column(_("it"), [_("slides") if p.slides else _("turns") for p in found]),
+            Column(_("driven in pair"), [p.pair for p in found]),
+            Column(_("largest"), [p.largest for p in found], ANGLE),
+            Column(_("driver there at"), places, place_dimension(driver.kind)),
+            Column(_("least transmission angle"), [p.transmission for p in found], ANGLE),
+            Column(_("force increase"), [p.gain for p in found], NUMBER),
+            Column(_("allowed"), [p.allowed for p in found], ANGLE),
+            Column(_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
         ),
         notes=(note,),
     )  # fmt: skip

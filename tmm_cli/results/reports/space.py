@@ -4,11 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.pipeline import Results
-from tmm_cli.results.table import Column, Table
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.contours import Contour, contours
 from tmm_cli.structure.redundancy import space
-from tmm_cli.words import say
+
+KINDS = {
+    "turning": _("turning"),
+    "sliding": _("sliding"),
+    "screw": _("screw"),
+    "cylindrical": _("cylindrical"),
+    "spherical with a pin": _("spherical with a pin"),
+    "universal": _("universal"),
+    "spherical": _("spherical"),
+    "planar": _("planar"),
+    "sphere in cylinder": _("sphere in cylinder"),
+    "cylinder on plane": _("cylinder on plane"),
+    "sphere on plane": _("sphere on plane"),
+}
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -16,44 +30,46 @@ def tables(results: Results) -> Iterable[Table]:
     structure = results.structure
     yield contour_table(contours(structure.pairs, structure.links))
     found = space(results.linkage, structure)
-    q = say("space.count", wanted=found.wanted, local=found.local, w=_signed(found.chain.mobility), q=found.redundant)
-    facts = [(say("space.W"), found.chain.count), (say("space.q"), q)]
+    facts = [
+        (_("W by Somov-Malyshev"), found.chain.count),
+        (_("redundant constraints q = Wo + Wm - W"),
+         redundancy(found.wanted, found.local, found.chain.mobility, found.redundant)),
+    ]  # fmt: skip
     if found.replacements:
-        q = say("space.count", wanted=found.wanted, local=found.rank.local, w=_signed(found.proposed.mobility),
-                q=found.redundant_then)  # fmt: skip
-        facts += [(say("space.then", what=say("space.W")), found.proposed.count)]
-        facts += [(say("space.then", what=say("space.q")), q)]
-    note = () if found.replacements is not None else (say("space.none"),)
-    yield Table(
-        "space", say("space.title"),
-        (Column(say("word.what"), [a for a, _ in facts]), Column(say("word.value"), [b for _, b in facts])),
-        notes=note,
+        q = redundancy(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
+        facts += [(_("W by Somov-Malyshev, with the pairs below"), found.proposed.count)]
+        facts += [(_("redundant constraints q = Wo + Wm - W, with the pairs below"), q)]
+    note = _(
+        "No replacement of turning pairs by cylindrical or spherical ones and of sliding pairs "
+        "by cylindrical or planar ones was found that leaves q = 0."
+    )
+    yield table_of_words(
+        "space", _("The same pairs in space: redundant constraints"), (_("what"), _("value")), facts,
+        () if found.replacements is not None else (note,),
     )  # fmt: skip
-    replaced = found.replacements or ()
-    if replaced:
-        yield Table(
-            "replacements", say("replacements.title"),
-            (
-                Column(say("word.pair"), [r.pair.name for r in replaced]),
-                Column(say("word.links"), [f"{r.pair.i} - {r.pair.j}" for r in replaced]),
-                Column(say("replacements.was"), [say(f"kind.{r.was}") for r in replaced]),
-                Column(say("replacements.kind"), [say(f"kind.{r.kind}") for r in replaced]),
-                Column(say("chain.freedoms"), [str(r.freedoms) for r in replaced]),
-            ),
-            notes=(say("replacements.note"),),
+    if found.replacements:
+        note = _(
+            "Pairs on the frame stay, they position shafts and guides. Out of the plane, the "
+            "conditions of these pairs are independent (checked by rank)."
+        )
+        yield table_of_words(
+            "replacements", _("Pairs that leave no redundant constraints"),
+            (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
+            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", KINDS[r.was], KINDS[r.kind], str(r.freedoms))
+             for r in found.replacements],
+            (note,),
         )  # fmt: skip
 
 
-def contour_table(found: tuple[Contour, ...]) -> Table:
+def contour_table(found: Iterable[Contour]) -> Table:
     """Independent contours by links and pairs."""
-    return Table(
-        "contours", say("contours.title"),
-        (
-            Column(say("contours.links"), [c.title for c in found]),
-            Column(say("contours.pairs"), [", ".join(c.pairs) for c in found]),
-        ),
+    return table_of_words(
+        "contours", _("Independent contours"), (_("contour"), _("pairs")),
+        [(contour.title, ", ".join(contour.pairs)) for contour in found],
     )  # fmt: skip
 
 
-def _signed(number: int) -> str:
-    return f"({number})" if number < 0 else str(number)
+def redundancy(wanted: int, local: int, mobility: int, redundant: int) -> str:
+    """Redundant constraints as they are counted."""
+    w = f"({mobility})" if mobility < 0 else str(mobility)
+    return f"{wanted} + {local} - {w} = {redundant}"

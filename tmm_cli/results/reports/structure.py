@@ -4,98 +4,109 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
-from tmm_cli.pipeline import Results
-from tmm_cli.results.table import Column, Table
+from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import ROMAN, Structure
 from tmm_cli.structure.contours import classification
-from tmm_cli.words import say
 
-
-def _passive(structure: Structure) -> Iterable[tuple[str, str]]:
-    """Passive constraints and the true mobility, where the count is not the truth."""
-    if structure.passive:
-        yield say("structure.true"), str(structure.mobility + structure.redundant)
-    for passive in structure.passive:
-        i, j = passive.links
-        yield (
-            say("structure.passive"),
-            say("structure.where", count=passive.constraints, pair=passive.pair, i=i, j=j,
-                among=", ".join(passive.among)),
-        )  # fmt: skip
+ROLES = {
+    "crank": _("crank"),
+    "rocker": _("rocker"),
+    "coupler": _("coupler"),
+    "slider": _("slider"),
+    "stone": _("stone"),
+    "slotted link": _("slotted link"),
+    "rod": _("rod"),
+    "rocking slider": _("rocking slider"),
+    "wheel": _("toothed wheel"),
+    "planet": _("planet"),
+    "carrier": _("carrier"),
+    "rack": _("rack"),
+    "cam": _("cam"),
+    "follower": _("follower"),
+    "cylinder": _("cylinder"),
+    "piston": _("piston"),
+}
+PAIRS = {
+    "R": _("turning (R)"),
+    "P": _("sliding (P)"),
+    "G": _("toothed wheels (G)"),
+    "K": _("wheel and rack (K)"),
+    "C": _("cam and follower (C)"),
+}
+CLASSES = {
+    "open": _("open"),
+    "closed": _("closed"),
+    "elementary": _("elementary: the driver alone"),
+    "simple": _("simple: the driver and one group"),
+    "complex": _("complex: the driver and several groups"),
+    "same type": _("of the same type"),
+    "several types": _("of several types"),
+}
 
 
 def tables(results: Results) -> Iterable[Table]:
     """Four small tables."""
     structure, linkage = results.structure, results.linkage
-    turning = sum(p.kind == "R" for p in structure.pairs)
-    lower = len(structure.pairs) - structure.higher
-    facts = (
-        (say("structure.n"), str(len(structure.links))),
-        (
-            say("structure.p1"),
-            say("structure.kinds", all=lower, r=turning, p=lower - turning),
-        ),
-        *_higher(structure),
-        (
-            say("structure.W2" if structure.higher else "structure.W"),
-            say(
-                "structure.chebyshev2" if structure.higher else "structure.chebyshev",
-                n=len(structure.links),
-                p=lower,
-                p2=structure.higher,
-                w=structure.mobility,
-            ),
-        ),
-        *_passive(structure),
-        (say("structure.K"), str(structure.contours)),
-        (say("structure.formula"), structure.formula),
-        (say("structure.chain"), ", ".join(say(f"class.{word}") for word in classification(structure))),
-        (say("structure.class"), ROMAN[min(structure.mechanism_class, 10)]),
-    )
-    yield Table(
-        "structure", say("structure.title"),
-        (Column(say("word.what"), [a for a, _ in facts]), Column(say("word.value"), [b for _, b in facts])),
-    )  # fmt: skip
+    yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(structure))
     links, roles = [linkage.links[name] for name in structure.links], results.roles
-    yield Table(
-        "links", say("links.title"),
-        (
-            Column(say("word.link"), [x.name for x in links]),
-            Column(say("links.role"), [say(f"role.{roles[x.name]}") for x in links]),
-            Column(say("links.label"), [x.label for x in links]),
-            Column(say("links.points"), [", ".join(x.points) for x in links]),
-        ),
-        notes=(say("links.turned"),) if results.motion is None and results.mechanism.turned else (),
+    note = _("A crank is told from a rocker by moving the linkage.")
+    yield table_of_words(
+        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points")),
+        [(x.name, ROLES[roles[x.name]], x.label, ", ".join(x.points)) for x in links],
+        (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
-    pairs = structure.pairs
-    yield Table(
-        "pairs", say("pairs.title"),
-        (
-            Column(say("word.pair"), [p.name for p in pairs]),
-            Column(say("word.links"), [f"{p.i} - {p.j}" for p in pairs]),
-            Column(say("pairs.kind"), [say(f"pairs.{p.kind}") for p in pairs]),
-            Column(say("pairs.place"), [say("pairs.frame" if FRAME in (p.i, p.j) else "pairs.moving") for p in pairs]),
-        ),
+    yield table_of_words(
+        "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("where")),
+        [(p.name, f"{p.i} - {p.j}", PAIRS[p.kind],
+          _("on the frame") if FRAME in (p.i, p.j) else _("between moving links")) for p in structure.pairs],
     )  # fmt: skip
-    groups = structure.groups
-    yield Table(
-        "groups", say("groups.title"),
-        (
-            Column(say("word.group"), [", ".join(g.links) for g in groups]),
-            Column(say("groups.class"), [ROMAN[min(g.grade, 10)] for g in groups]),
-            Column(say("groups.order"), [str(g.order) for g in groups]),
-            Column(say("groups.type"), [g.type for g in groups]),
-            Column(say("groups.inner"), [", ".join(p.name for p in g.inner) for g in groups]),
-            Column(say("groups.outer"), [", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer) for g in groups]),
-        ),
+    yield table_of_words(
+        "groups", _("Assur groups, in solving order"),
+        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs")),
+        [(", ".join(g.links), ROMAN[min(g.group_class, 10)], str(g.order), g.type, ", ".join(p.name for p in g.inner),
+          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer)) for g in structure.groups],
     )  # fmt: skip
 
 
-def _higher(structure: Structure) -> Iterable[tuple[str, str]]:
-    """How many higher pairs there are, and of which kind."""
-    if structure.higher:
-        kinds = (("G", "structure.wheels"), ("K", "structure.racks"), ("C", "structure.cams"))
-        counts = [(key, sum(p.kind == kind for p in structure.pairs)) for kind, key in kinds]
-        told = ", ".join(say(key, count=count) for key, count in counts if count)
-        yield say("structure.p2"), f"{structure.higher} ({told})"
+def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
+    n, higher, w = len(structure.links), structure.higher, structure.mobility
+    lower = len(structure.pairs) - higher
+    turning = sum(p.kind == "R" for p in structure.pairs)
+    yield _("moving links n"), str(n)
+    yield (
+        _("lower pairs p1"),
+        _("{all} ({r} turning, {p} sliding)").format(all=lower, r=turning, p=lower - turning),
+    )
+    if higher:
+        yield _("higher pairs p2"), f"{higher} ({', '.join(_higher(structure))})"
+        yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
+    else:
+        yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
+    if structure.passive:
+        yield _("W in truth, by rank"), str(w + structure.redundant)
+    for passive in structure.passive:
+        i, j = passive.links
+        told = _("{count} in pair {pair}, link {j} on link {i}; links {among} hold one another twice").format(
+            count=passive.constraints, pair=passive.pair, i=i, j=j, among=", ".join(passive.among)
+        )
+        yield _("passive constraint"), told
+    yield _("independent contours K = p - n"), str(structure.contours)
+    yield _("formula of structure"), structure.formula
+    yield _("chain, and kind of structure"), ", ".join(CLASSES[word] for word in classification(structure))
+    yield _("class of the mechanism"), ROMAN[min(structure.mechanism_class, 10)]
+
+
+def _higher(structure: Structure) -> Iterable[str]:
+    """How many higher pairs there are of each kind."""
+    kinds = (
+        ("G", _("{count} of toothed wheels")),
+        ("K", _("{count} of wheel and rack")),
+        ("C", _("{count} of cam and follower")),
+    )
+    for kind, text in kinds:
+        count = sum(p.kind == kind for p in structure.pairs)
+        if count:
+            yield text.format(count=count)

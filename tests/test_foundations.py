@@ -1,0 +1,57 @@
+"""What the stages lean on: one search for roots, one map over records, registers that know all that a file may ask."""
+
+from dataclasses import dataclass, field
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+from tmm_cli import load
+from tmm_cli.forces.loads import WHEN
+from tmm_cli.groups import CLOSED
+from tmm_cli.problem import schema
+from tmm_cli.roots import bisect, roots
+from tmm_cli.structure.assur import analyse
+from tmm_cli.vectors import leaves, mapped
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.longdouble])
+def test_roots_are_found_to_the_last_bit_of_their_own_precision(kind):
+    low, high = np.array([1, 0.5], kind), np.array([2, 3], kind)
+    found = roots(lambda x: x * x - 2, low, high)
+    assert found.dtype == kind
+    assert np.all(np.abs(found - np.sqrt(kind(2))) <= np.finfo(kind).eps)
+
+
+def test_bisection_ends_with_neighbours_of_which_the_condition_holds_at_one():
+    limits = np.array([0.3, 0.7])
+    inside, outside = bisect(lambda x: x < limits, np.zeros(2), np.ones(2))
+    assert np.all((inside < limits) & (outside >= limits))
+    assert np.all(outside - inside <= np.spacing(outside))
+
+
+@dataclass(frozen=True)
+class Part:
+    sizes: tuple[Any, ...]
+    named: dict[str, Any] = field(default_factory=dict)
+    kept: Any = 0.0
+
+
+def test_a_map_over_records_meets_every_leaf_at_its_path():
+    record = Part((1.0, Part((2.0,))), {"a": 3.0}, 4.0)
+    assert dict(leaves(record)) == {
+        "sizes[0]": 1.0, "sizes[1].sizes[0]": 2.0, "sizes[1].kept": 0.0, "named.a": 3.0, "kept": 4.0,
+    }  # fmt: skip
+    assert mapped(lambda path, value: value + 1, record, skip=("kept",)) == Part((2.0, Part((3.0,))), {"a": 4.0}, 4.0)
+    sums = mapped(lambda path, one, other: one + other, record, record)
+    assert dict(leaves(sums)) == {path: 2 * value for path, value in leaves(record)}
+
+
+def test_every_time_at_which_a_load_may_act_is_known_to_the_forces():
+    assert set(WHEN) == set(get_args(schema.Load.model_fields["when"].annotation))
+
+
+@pytest.mark.parametrize("name", ["shaper", "cylinder", "excavator", "press-class-iii"])
+def test_a_group_is_of_one_closed_type_at_most(name):
+    for group in analyse(load(f"problems/{name}.yaml").linkage).groups:
+        assert sum(kind.fits(group) for kind in CLOSED) <= 1

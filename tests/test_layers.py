@@ -1,0 +1,143 @@
+"""The house: which folder may know which. Imports run one way, and what computes knows nothing of files and screens.
+
+Imports under TYPE_CHECKING are apart: a type may be named from below, as nothing runs through it.
+"""
+
+import ast
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from fnmatch import fnmatch
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TOP = {
+    "__init__",
+    "__main__",
+    "linkage",
+    "vectors",
+    "roots",
+    "errors",
+    "tolerances",
+    "quantities",
+}
+NUMERIC = (  # from below; folders of one floor may know one another
+    ("structure",), ("pairs", "groups"), ("assembly",), ("kinematics",), ("forces", "plans"), ("dynamics",),
+    ("analysis",), ("tape", "variants"), ("schemes", "synthesis"), ("accuracy",),
+)  # fmt: skip
+FLOORS = (("top", "words"), *NUMERIC, ("results",), ("door",), ("draw", "note", "grading", "bench"), ("cli",))
+FLOOR = {folder: number for number, folders in enumerate(FLOORS) for folder in folders}
+# what turns a problem with a task into one with lengths, and what shows a problem
+KNOW_PROBLEMS = ("results", "door", "draw", "note", "grading", "bench", "cli")
+READS_A_TASK = (
+    "synthesis.reading",
+    "synthesis.blocks",
+    "synthesis.bounded",
+    "synthesis.refusals",
+    "synthesis.*.block*",
+)
+PROBLEM_LEANS_ON = ("structure", "pairs.cam_law")  # names of pairs, and the law that a cam has among its numbers
+FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
+MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
+
+
+def modules() -> dict[str, Path]:
+    """Files of the package by their dotted names; a folder's own file has the name of the folder."""
+    files = {path: ".".join(path.relative_to(ROOT / "tmm_cli").with_suffix("").parts)
+             for path in (ROOT / "tmm_cli").rglob("*.py")}  # fmt: skip
+    return {("door" if name == "__init__" else name.removesuffix(".__init__")): path for path, name in files.items()}
+
+
+def folder(name: str) -> str:
+    """The folder of a file, `top` for those beside the folders."""
+    if name == "__main__":
+        return "cli"
+    return name.partition(".")[0] if name == "door" or MODULES[name].parent != ROOT / "tmm_cli" else "top"
+
+
+def statements(tree: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
+    """Imports, inside functions too, without those that are for types alone."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            continue
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        else:
+            yield from statements(node)
+
+
+def imported(path: Path) -> set[str]:
+    """Names of what a file imports: our own files as in `modules`, the packages of others with their dots."""
+    found = set()
+    for node in statements(ast.parse(path.read_text(encoding="utf-8"))):
+        names = [alias.name for alias in node.names]
+        if isinstance(node, ast.ImportFrom):
+            inside = [f"{node.module}.{name}" for name in names]
+            names = [name if name.removeprefix("tmm_cli.") in MODULES else str(node.module) for name in inside]
+        found |= {"door" if name == "tmm_cli" else name.removeprefix("tmm_cli.") for name in names}
+    return found
+
+
+MODULES = modules()
+IMPORTS = {name: imported(path) for name, path in MODULES.items()}
+OURS = {name: {other for other in others if other in MODULES} for name, others in IMPORTS.items()}
+
+
+def allowed(name: str, other: str) -> bool:
+    """Whether a file may import another of the package."""
+    own, its = folder(name), folder(other)
+    if its == "problem":
+        return own == "problem" or own in KNOW_PROBLEMS or any(fnmatch(name, reader) for reader in READS_A_TASK)
+    if own == "problem":
+        return its in FLOORS[0] or other.startswith(PROBLEM_LEANS_ON)
+    return own == its or FLOOR[its] <= FLOOR[own]
+
+
+def test_every_folder_has_a_floor():
+    assert {folder(name) for name in MODULES} <= {*FLOOR, "problem"}
+
+
+def test_only_what_everything_leans_on_stands_beside_the_folders():
+    assert {path.stem for path in (ROOT / "tmm_cli").glob("*.py")} <= TOP
+
+
+@pytest.mark.parametrize("own", sorted({folder(name) for name in MODULES}))
+def test_imports_run_one_way(own):
+    upward = [
+        f"{name} imports {other}" for name in MODULES if folder(name) == own for other in sorted(OURS[name])
+        if not allowed(name, other)
+    ]  # fmt: skip
+    assert not upward
+
+
+def test_no_files_import_one_another_in_a_circle():
+    TopologicalSorter(OURS).prepare()  # raises CycleError, which names the circle
+
+
+def test_what_computes_knows_nothing_of_files_and_screens():
+    numeric = {one for floor in NUMERIC for one in floor} | {"top"}
+    talking = [
+        f"{name} imports {other}" for name in MODULES if folder(name) in numeric for other in IMPORTS[name]
+        if other.partition(".")[0] in FILES_AND_SCREENS and not any(fnmatch(name, r) for r in READS_A_TASK)
+    ]  # fmt: skip
+    assert not talking
+
+
+def test_scipy_is_for_optimisation_and_integration_alone():
+    users = {folder(name) for name in MODULES if any(other.partition(".")[0] == "scipy" for other in IMPORTS[name])}
+    assert users <= MAY_IMPORT_SCIPY
+
+
+def test_structure_alone_loads_no_drawing_and_no_optimisation():
+    told = (
+        "import sys; from tmm_cli.cli.app import main\n"
+        "sys.argv = ['tmm', 'structure', 'problems/shaper.yaml']\n"
+        "try: main()\nfinally: print('loaded:', *sorted({'matplotlib', 'scipy'} & set(sys.modules)))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "loaded:"

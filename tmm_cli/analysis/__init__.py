@@ -1,0 +1,1 @@
+"""Which stage needs which, and what they found."""

@@ -1,0 +1,175 @@
+"""What is true of a linkage whatever positions are computed: assembly, range, strokes, dead positions, names of links.
+
+A Mechanism finds each of them when it is first asked for, so the structure alone moves nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from tmm_cli.analysis.inputs import Inputs
+from tmm_cli.errors import LinkageError
+from tmm_cli.linkage import Linkage
+from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.naming import roles
+
+if TYPE_CHECKING:  # what moves the linkage is imported when it is moved
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
+    from tmm_cli.kinematics.pressure import Pressure
+    from tmm_cli.kinematics.strokes import Strokes, Travel
+    from tmm_cli.vectors import Real
+
+
+PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """A linkage with its structure.
+
+    What needs the assembly raises AssemblyError, AmbiguousSketchError, SketchMismatchError, GroupTooLargeError.
+    """
+
+    inputs: Inputs
+    structure: Structure
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.inputs.linkage
+
+    def known(self, **parts: Any) -> Mechanism:
+        """A mechanism of which these parts are known; it finds the others itself."""
+        other = Mechanism(self.inputs, self.structure)
+        other.__dict__.update(parts)
+        return other
+
+    def changed(self, **parts: Any) -> Mechanism:
+        """The mechanism with other parts; those that are not given are as they were found."""
+        return self.known(**{name: getattr(self, name) for name in PARTS} | parts)
+
+    @cached_property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """The groups in the assemblies of the sketch, in solving order."""
+        from tmm_cli.assembly.choose import assemble
+
+        return assemble(self.linkage, self.structure)
+
+    @cached_property
+    def assembles(self) -> bool:
+        """Whether there is such an assembly; there is none while lengths are still to be found."""
+        if not self.inputs.sized:
+            return False
+        try:
+            return bool(self.kernels) or True
+        except LinkageError:
+            return False
+
+    @cached_property
+    def driver_range(self) -> DriverRange:
+        """How far the driver can go."""
+        from tmm_cli.kinematics.driver_range import find_range
+
+        return find_range(self.linkage, self.kernels)
+
+    @cached_property
+    def dead(self) -> tuple[DeadPosition, ...]:
+        """Dead positions inside that range."""
+        from tmm_cli.kinematics.driver_range import find_dead
+
+        return find_dead(self.linkage, self.kernels, self.driver_range)
+
+    @cached_property
+    def output(self) -> str | None:
+        """The main output link."""
+        from tmm_cli.structure.naming import output_link
+
+        return output_link(self.linkage, self.structure.groups)
+
+    @cached_property
+    def outputs(self) -> tuple[str, ...]:
+        """All output links."""
+        return tuple(o.link for o in self.linkage.outputs) or tuple(x for x in (self.output,) if x)
+
+    @cached_property
+    def strokes(self) -> Strokes | None:
+        """Strokes of the main output."""
+        from tmm_cli.kinematics.strokes import find_strokes, resisted
+
+        return find_strokes(self.linkage, self.kernels, self.driver_range, resisted(self.linkage, self.output))
+
+    @cached_property
+    def further(self) -> tuple[Strokes, ...]:
+        """Strokes of the other outputs."""
+        from tmm_cli.kinematics.strokes import find_strokes
+
+        if not self.driver_range.full:
+            return ()
+        found = [find_strokes(self.linkage, self.kernels, self.driver_range, link=link) for link in self.outputs[1:]]
+        return tuple(s for s in found if s is not None)
+
+    @cached_property
+    def asked(self) -> Real:
+        """The driver's places of all positions that are asked for, whether they are computed or not (rad or m)."""
+        from tmm_cli.kinematics.strokes import places
+
+        request = self.inputs.request
+        strokes = self.strokes if request.start == "working stroke" else None
+        return places(request, self.driver_range, strokes, self.linkage.driver.sense)
+
+    @cached_property
+    def travels(self) -> tuple[Travel, ...]:
+        """How far the outputs go between the ends of what is asked for, where the driver does not turn fully."""
+        from tmm_cli.kinematics.strokes import find_travel
+
+        if self.driver_range.full:
+            return ()
+        found = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
+        return tuple(t for t in found if t is not None)
+
+    @cached_property
+    def pressure(self) -> tuple[Pressure, ...]:
+        """Largest pressure angles of the driven links."""
+        from tmm_cli.kinematics.pressure import find_pressure
+
+        return find_pressure(self.linkage, self.kernels, self.driver_range, self.inputs.pressure_limits)
+
+    @cached_property
+    def roles(self) -> dict[str, str]:
+        """What each link is called. A crank differs from a rocker by a full turn: where a name hangs on that the
+        linkage is moved, and where it cannot be assembled yet names come from the pairs alone."""
+
+        def turns(link: str) -> bool:
+            if not self.assembles:
+                return link == self.linkage.driver.link and self.linkage.driver.kind == "turn"
+            return self._turning.get(link, False)
+
+        return roles(self.linkage, turns)
+
+    @property
+    def turned(self) -> bool:
+        """Whether the names took a turn of the linkage."""
+        return bool(self.roles) and "_turning" in vars(self)
+
+    @cached_property
+    def _turning(self) -> dict[str, bool]:
+        """Which links turn through 360 degrees while the driver goes its way."""
+        import numpy as np
+
+        from tmm_cli.groups.sequence import DriverMotion, towards
+        from tmm_cli.kinematics.motion import move
+
+        linkage, driver_range = self.linkage, self.driver_range
+        turned = {d.link: driver_range.full and d.kind == "turn" for d in linkage.cranks}
+        groups = [k.group for k in self.kernels]
+        hung = [g for g in groups if any(linkage.hinged_to_frame(link) for link in g.links)]
+        if hung and driver_range.full:
+            q = np.linspace(driver_range.start, driver_range.end, 720 * driver_range.turns + 1)
+            kernels = towards(self.kernels, [link for group in hung for link in group.links])
+            motion = move(linkage, kernels, q, DriverMotion(driver_range.start, 1.0, 0.0, 1), 0)
+            for link in (link for group in hung for link in group.links):
+                angle = np.unwrap(np.angle(motion.poses[link].z))
+                turned[link] = bool(abs(angle[-1] - angle[0]) > np.pi)
+        return turned

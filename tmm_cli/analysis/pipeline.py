@@ -1,0 +1,261 @@
+"""Which stage needs which: structure -> assembly -> range and strokes -> motion -> forces -> lever.
+
+Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from tmm_cli.analysis.inputs import Inputs
+from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.selection import carriers, check
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import MissingStrokesError, UnknownPositionError
+from tmm_cli.groups.sequence import DriverMotion, towards
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.linkage import Linkage
+from tmm_cli.structure.assur import Structure
+from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+    from tmm_cli.assembly.enumerate import Assemblies
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.forces.energy import Energy
+    from tmm_cli.forces.friction import FrictionSolution, Losses
+    from tmm_cli.forces.lever import Lever
+    from tmm_cli.forces.plan import Reactions
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
+    from tmm_cli.kinematics.pressure import Pressure
+    from tmm_cli.kinematics.strokes import Strokes, Travel
+
+CYCLE = 720  # places over which losses are summed up
+
+Stage = Literal["structure", "kinematics", "forces"]
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
+
+    of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
+    on the positions is found when it is asked for. problem: whatever the caller wants to find here again.
+    """
+
+    inputs: Inputs
+    structure: Structure
+    mechanism: Mechanism
+    numbers: tuple[int, ...] = ()
+    motion: Motion | None = None
+    loads: tuple[Applied, ...] = ()
+    reactions: Reactions | None = None
+    lever: Lever | None = None
+    friction: FrictionSolution | None = None
+    losses: Losses | None = None
+    energy: Energy | None = None
+    assemblies: tuple[Assemblies, ...] | None = None
+    of: tuple[str, ...] = ()
+    problem: Any = None
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.inputs.linkage
+
+    @property
+    def roles(self) -> dict[str, str]:
+        return self.mechanism.roles
+
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """All groups in solving order; none where the sketch cannot be assembled."""
+        return self.mechanism.kernels if self.mechanism.assembles else ()
+
+    @property
+    def driver_range(self) -> DriverRange | None:
+        return self.mechanism.driver_range if self.mechanism.assembles else None
+
+    @property
+    def strokes(self) -> Strokes | None:
+        return self.mechanism.strokes
+
+    @property
+    def dead(self) -> tuple[DeadPosition, ...]:
+        return () if self.of else self.mechanism.dead
+
+    @property
+    def further(self) -> tuple[Strokes, ...]:
+        return () if self.of else self.mechanism.further
+
+    @property
+    def travels(self) -> tuple[Travel, ...]:
+        return () if self.of else self.mechanism.travels
+
+    @cached_property
+    def pressure(self) -> tuple[Pressure, ...]:
+        """Pressure angles of the driven links: the largest, and those at the positions."""
+        from tmm_cli.kinematics.pressure import pressure_at
+
+        if self.of or self.motion is None:
+            return ()
+        return tuple(replace(p, angles=pressure_at(self.motion, p.group, p.link)) for p in self.mechanism.pressure)
+
+    @property
+    def asked(self) -> Real:
+        """The driver's places of all positions that are asked for, whether they were computed or not (rad or m)."""
+        return self.mechanism.asked
+
+    @property
+    def start(self) -> float:
+        """The driver's place at position 0."""
+        return float(self.asked[0])
+
+    def closely(self, count: int) -> Real:
+        """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
+        driver = self.linkage.driver
+        if self.mechanism.driver_range.full and driver.kind == "turn":
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.mechanism.driver_range.turns, count)
+        asked = self.asked
+        return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
+
+    @property
+    def locked(self) -> Real:
+        """Positions where friction locks the mechanism."""
+        assert self.motion is not None
+        return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
+
+    @property
+    def lever_holds(self) -> bool:
+        """Whether the lever agrees with the force plan within the limit, wherever it could be computed."""
+        if self.lever is None or self.motion is None:
+            return True
+        difference = self.lever.difference[self.motion.moving & ~self.locked]
+        return bool(np.all(difference <= self.inputs.lever_limit))
+
+
+def solve(
+    inputs: Inputs, stage: Stage = "forces", positions: Sequence[int] | None = None, of: Sequence[str] = (),
+    problem: Any = None,
+) -> Results:  # fmt: skip
+    """Run the stages up to the one asked for, at all positions of the inputs or at those numbered.
+
+    of: points, links, centres of mass; then kinematics solves the groups on the way to them only. problem: see Results.
+    Raises LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and what assembly
+    raises.
+    """
+    structure = mobile(inputs.linkage)
+    results = Results(inputs, structure, Mechanism(inputs, structure), of=tuple(of), problem=problem)
+    if stage == "structure":
+        return results
+    kernels = results.mechanism.kernels
+    if of:
+        check(inputs.linkage, of)
+        kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
+    _need_strokes(results)
+    numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
+    for number in numbers:
+        if not 0 <= number < len(results.asked):
+            raise UnknownPositionError(number, len(results.asked))
+    results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
+    return results if stage == "kinematics" else with_forces(results)
+
+
+def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
+    """The motion, its positions near dead ones in extended precision where the machine has it."""
+    from tmm_cli.analysis.extended import WIDER, near_dead, refined
+
+    law = driver_motion(results.linkage, results.start)
+    motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
+    where = near_dead(motion)
+    if not WIDER or results.inputs.extended is None or not np.any(where):
+        return motion
+    exact = results.inputs.extended()
+    asked = np.array(exact.request.places) if exact.request.places else results.asked.astype(np.longdouble)
+    return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
+
+
+def with_forces(results: Results, *, cycle: bool = True) -> Results:
+    """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
+    from tmm_cli.forces.energy import energy
+    from tmm_cli.forces.lever import lever
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import power, react
+
+    motion = results.motion
+    assert motion is not None
+    strokes = results.strokes if any(x.working_stroke_only or x.table for x in results.linkage.loads) else None
+    loads = applied(motion, strokes)
+    reactions = react(motion, results.structure, loads)
+    if motion.finer is not None and motion.where is not None:
+        from tmm_cli.kinematics.motion import spliced
+
+        exact = applied(motion.finer, strokes)
+        structure = results.structure.rebind(motion.finer.linkage)
+        loads = spliced(loads, exact, motion.where)
+        reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
+    rubbed, lost = None, None
+    if results.linkage.friction:
+        from tmm_cli.forces.friction import solve_friction
+
+        rubbed = solve_friction(motion, results.structure, loads, reactions)
+        loads, reactions = rubbed.loads, rubbed.reactions
+        if cycle:
+            lost = cycle_losses(results)
+    drivers = power(motion, reactions)
+    return replace(
+        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
+        energy=energy(motion, loads, drivers),
+    )  # fmt: skip
+
+
+def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
+    """What friction takes over the cycle, summed up over so many places."""
+    from tmm_cli.forces.friction import losses, solve_friction
+    from tmm_cli.forces.loads import applied
+    from tmm_cli.forces.plan import react
+
+    whole = at_positions(results, results.closely(places + 1))
+    acting = applied(whole, results.strokes)
+    return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
+
+
+def driver_motion(linkage: Linkage, start: float) -> DriverMotion:
+    """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
+    driver = linkage.driver
+    at = linkage.sketch.at if linkage.others else start
+    return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
+
+
+def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
+    """The same motion at other places of the driver (trajectories)."""
+    return move(results.linkage, results.kernels, q, driver_motion(results.linkage, results.start), order)
+
+
+def at_places(results: Results, q: Real) -> Results:
+    """The same results at other places of the driver (diagrams); with forces if they have them."""
+    moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
+    return moved if results.reactions is None else with_forces(moved, cycle=False)
+
+
+def _need_strokes(results: Results) -> None:
+    """Refuse what rests on strokes that are not there, rather than quietly doing without."""
+    request, driver_range = results.inputs.request, results.mechanism.driver_range
+    loads = [x for x in results.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
+    if request.start != "working stroke" and not loads:
+        return
+    strokes = results.strokes
+    if strokes is not None and strokes.strokes:
+        return
+    link = strokes.link if strokes else None
+    if request.start == "working stroke" and driver_range.full:
+        raise MissingStrokesError(link, ("positions", "from"))
+    for load in loads:
+        if load.working_stroke_only and driver_range.full:
+            raise MissingStrokesError(link, ("loads", load.name, "when"))
+        if load.table is not None and load.table.against == "stroke":
+            raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))

@@ -1,0 +1,1 @@
+"""Choosing the assembly of a sketch, following it, and finding all of them."""

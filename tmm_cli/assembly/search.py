@@ -1,0 +1,191 @@
+"""Assemblies of groups of class III and higher: from the sketch where it shows them, else all there are.
+
+For given angles the places of the links follow from linear equations; so starts for Newton's method are made from
+angles, those of the sketch or many others, the same ones in every run. A triad of turning pairs has up to six
+assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech. Design
+(1992-1995).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from tmm_cli.assembly.continuation import Walker
+from tmm_cli.assembly.sketch import nearest_to_sketch, sketch_distance, sketchable
+from tmm_cli.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError
+from tmm_cli.groups.base import Kernel, reach
+from tmm_cli.groups.branch_trace import BranchTrace
+from tmm_cli.groups.linear import least_over_largest, solve
+from tmm_cli.groups.newton import Newton
+from tmm_cli.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.groups.state import Drives, Placement, Pose, State
+from tmm_cli.linkage import Linkage
+from tmm_cli.structure.assur import Group
+from tmm_cli.structure.cycle import turns_of_cycle
+from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, SAME_POSE
+from tmm_cli.vectors import Real, unit
+
+STARTS = 400  # in one round of looking for all assemblies
+MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
+QUIET = 3  # rounds without a new assembly that end the search
+MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
+ROUNDS = 60  # of damped steps from a start that may be anywhere
+STRIDE = 0.5  # rad, or of the group's size: the longest step then
+CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
+
+
+def assembled(
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
+) -> tuple[Newton, Placement]:
+    """The group in the assembly that the sketch shows, followed along the driver's way.
+
+    Raises GroupTooLargeError, AssemblyError, AmbiguousSketchError.
+    """
+    if len(group.links) > MOST_LINKS:
+        raise GroupTooLargeError(group, MOST_LINKS)
+    kernel = Newton.of(group, linkage)
+    q = np.array([linkage.sketch.at])
+    state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
+    here = {**poses, **kernel.poses_of(state)}
+    if float(least_over_largest(kernel.matrix(here))[0]) < DEAD_SKETCH:
+        raise AmbiguousSketchError(group, {})
+    kernel = replace(kernel, start=state)
+    if not kernel.by_angle:
+        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state))
+    return kernel, kernel.place(poses, q, drives)
+
+
+def _traced(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State) -> BranchTrace | None:
+    before = towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
+
+    def source(q: Real, order: int) -> LinkStates:
+        return link_states(linkage, before, q, order)
+
+    turns = linkage.driver.kind == "turn"
+    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
+    trace = Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    return trace if trace is None or turns else replace(trace, unit=kernel.size)
+
+
+def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, unwrapped: Real) -> State:
+    """Origins for given angles (..., links), as near to closing as they can come."""
+    shape, links = unwrapped.shape[:-1], len(kernel.group.links)
+    still = State(np.zeros((*shape, links), complex), unwrapped)
+    known = {name: pose.spread(shape) for name, pose in poses.items()}
+    everything = {**known, **kernel.poses_of(still)}
+    places = [3 * k + part for k in range(links) for part in (0, 1)]
+    matrix = kernel.matrix(everything)[..., places]
+    found = solve(matrix, -kernel.residuals(everything, drives))
+    return State(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
+
+
+def close_from_afar(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, state: State
+) -> tuple[State, Real]:  # fmt: skip
+    """Damped steps, then Newton's method; the states and whether each has closed."""
+    known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
+    with np.errstate(all="ignore"):
+        for _ in range(ROUNDS):
+            everything = {**known, **kernel.poses_of(state)}
+            step = solve(kernel.matrix(everything), -kernel.residuals(everything, drives))
+            size = np.max(np.abs(step), axis=-1, keepdims=True)
+            step = step * np.minimum(1.0, STRIDE / size)
+            state = state.moved(step, kernel.size)
+            if bool(np.all((size < 1e-12) | ~np.isfinite(size))):
+                break
+        state, last = kernel.close(state, known, drives)
+        everything = {**known, **kernel.poses_of(state)}
+        residual = np.max(np.abs(kernel.residuals(everything, drives)), axis=-1)
+    return state, (last < CONVERGED) & (residual < CONVERGED)
+
+
+def all_assemblies(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
+) -> list[State]:
+    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
+
+    Of a group that moves by itself at this place, some of them.
+    """
+    random = np.random.default_rng(seed)
+    found: list[State] = []
+    quiet = 0
+    links = len(kernel.group.links)
+    while quiet < QUIET and len(found) < MOST:
+        unwrapped = random.uniform(-np.pi, np.pi, (starts, links))
+        start = placed_by_angles(kernel, poses, drives, unwrapped)
+        states, closed = close_from_afar(kernel, poses, drives, start)
+        new = False
+        for k in np.flatnonzero(closed):
+            if len(found) == MOST:
+                break
+            state = State(states.x[k : k + 1], np.angle(unit(states.unwrapped[k : k + 1])))
+            if not any(_alike(kernel, state, other) for other in found):
+                found.append(state)
+                new = True
+        quiet = 0 if new else quiet + 1
+        if kernel.by_angle and found:
+            break
+    return sorted(found, key=lambda s: tuple(np.round(s.unwrapped[0], 9)))
+
+
+def _alike(kernel: Newton, one: State, other: State) -> bool:
+    turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
+    return bool(np.max(turned) < SAME_POSE and np.max(np.abs(one.x - other.x)) < SAME_POSE * kernel.size)
+
+
+def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:
+    """The assembly that a full sketch leads to, when it stays near to it."""
+    unwrapped = sketched_angles(kernel, linkage, poses, drives)
+    if unwrapped is None:
+        return None
+    start = placed_by_angles(kernel, poses, drives, unwrapped[None, :])
+    state, closed = close_from_afar(kernel, poses, drives, start)
+    if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > CLOSE:
+        return None
+    found = sketchable(linkage, kernel.poses_of(state))
+    sketched = {**linkage.sketch.points, **linkage.sketch.angles}
+    given = {name: value for name, value in sketched.items() if name in found}
+    return state if sketch_distance(given, found, kernel.size) < CLOSE else None
+
+
+def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
+    """Angles of the group's links read off the sketch; None when it does not show all of them."""
+    angles = {name: float(np.angle(pose.z)[0]) for name, pose in poses.items()}
+    angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
+    for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
+        if driver.kind == "turn" and driver.base in angles:
+            angles[driver.link] = angles[driver.base] + float(drives[driver.link].value[0])
+    points = {p: complex(pose.at(at)[0]) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
+    points = {**linkage.sketch.points, **points}
+    for link in kernel.group.links:
+        shown = [(local, points[p]) for p, local in linkage.links[link].points.items() if p in points]
+        if link in angles or len(shown) < 2:
+            continue
+        middle = sum(local for local, _ in shown) / len(shown)
+        centre = sum(place for _, place in shown) / len(shown)
+        turned = sum((place - centre) * (local - middle).conjugate() for local, place in shown)
+        if abs(turned) > 0:
+            angles[link] = float(np.angle(turned))
+    for _ in kernel.group.links:
+        for slide in linkage.slides:
+            if slide.carrier in angles and slide.runner not in angles:
+                angles[slide.runner] = angles[slide.carrier] + slide.turned
+            elif slide.runner in angles and slide.carrier not in angles:
+                angles[slide.carrier] = angles[slide.runner] - slide.turned
+    if kernel.by_angle:
+        angles = dict.fromkeys(kernel.group.links, 0.0) | angles
+    if any(link not in angles for link in kernel.group.links):
+        return None
+    return np.array([angles[link] for link in kernel.group.links])
+
+
+def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State:
+    states = all_assemblies(kernel, poses, drives)
+    if not states:
+        raise AssemblyError(kernel.group)
+    if len(states) == MOST:  # places of one motion of a group that moves by itself
+        raise AmbiguousSketchError(kernel.group, {})
+    return states[nearest_to_sketch(kernel, linkage, [kernel.poses_of(state) for state in states])]

@@ -1,0 +1,1 @@
+"""Rival methods, measured against the product."""

@@ -1,0 +1,243 @@
+"""The drawing board: what a student finds with ruler and compasses, every constructed point read to a grid on paper.
+
+Scales are those of the product's own sheets, position by position. Group by group, in the order in which they are
+drawn: points of the mechanism, ends of the velocity plan, of the acceleration plan; then the force polygons, last group
+first. A construction starts from what was drawn before it, so errors of paper go on as they do there: directions come
+from drawn links, normal accelerations from measured velocities, arms of moments from the drawing. Pivots on the frame
+and lengths of links are laid off true. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 4, 5 and 13.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.bench.methods.wrapped import Wrapped
+from tmm_cli.forces.plan import Reactions, react
+from tmm_cli.groups.sequence import driven_state, drives_at, frame_state
+from tmm_cli.groups.state import Accel, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.linkage import FRAME
+from tmm_cli.plans.acceleration import acceleration_plan
+from tmm_cli.plans.forces import force_plans
+from tmm_cli.plans.record import Plan, sheet_scale
+from tmm_cli.plans.velocity import velocity_plan
+from tmm_cli.vectors import Real, Vector, cross, unit
+
+
+def snapped(value: Vector, grid: Real) -> Vector:
+    """Vectors read to a grid."""
+    return grid * (np.round(value.real / grid) + 1j * np.round(value.imag / grid))
+
+
+@dataclass(frozen=True)
+class Scales:
+    """SI a millimetre at every position: of the mechanism (m), the velocity, acceleration and force plans."""
+
+    x: Real
+    v: Real
+    a: Real
+    forces: Mapping[tuple[str, ...], Real]  # by the links of the polygon
+
+    @classmethod
+    def of(cls, case: Case, motion: Motion, reactions: Reactions) -> Scales:
+        """Those that the product's sheets would have."""
+        count = range(len(motion.q))
+        fixed = [case.linkage.local(FRAME, h.point) for h in case.linkage.hinges if FRAME in h.links]
+        moving = [motion.named(point).x for point in case.points]
+        x = [sheet_scale([*fixed, *(complex(at[k]) for at in moving)], pad=30.0)[1] for k in count]
+        v = [_scale(velocity_plan(motion, k)) for k in count]
+        a = [_scale(acceleration_plan(motion, k)) for k in count]
+        forces: dict[tuple[str, ...], list[float]] = {}
+        for k in count:
+            for polygon in force_plans(reactions, k):
+                forces.setdefault(polygon.links, []).append(_scale(polygon.plan))
+        return cls(np.array(x), np.array(v), np.array(a), {links: np.array(mu) for links, mu in forces.items()})
+
+
+def _scale(plan: Plan) -> float:
+    points = [*plan.ends.values(), *(end for vector in plan.vectors for end in (vector.start, vector.end))]
+    return sheet_scale(points)[1]
+
+
+@dataclass(frozen=True)
+class Polygon(Wrapped):
+    """A group whose forces are read off its polygon; grid in N."""
+
+    grid: Real
+
+    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> GroupReactions:
+        laid_off = tuple(Wrench(snapped(wrench.force, self.grid), wrench.moment) for wrench in on)
+        found = self.inner.reactions(at, poses, laid_off)
+        return replace(found, outer=tuple(map(self._read, found.outer)), inner=tuple(map(self._read, found.inner)))
+
+    def _read(self, reaction: PairReaction) -> PairReaction:
+        return replace(reaction, force=snapped(reaction.force, self.grid))
+
+
+@dataclass(frozen=True)
+class Board:
+    """A drawing of all positions; grids: of x (m), and of v and a a unit of the driver's speed and its square."""
+
+    case: Case
+    x: Real
+    v: Real
+    a: Real
+
+    def _ends(self, link: str) -> tuple[str, str] | None:
+        """The two points that are farthest apart on a link: the drawing shows its direction by them."""
+        points = self.case.linkage.links[link].points
+        fixed = self.case.linkage.links[FRAME].points
+        pairs = [(one, other) for one in points for other in points if one != other and points[one] != points[other]]
+        # from a pivot on the frame where there is one
+        return max(pairs, key=lambda p: (p[0] in fixed, abs(points[p[0]] - points[p[1]])), default=None)
+
+    def _partner(self, link: str, known: Mapping[str, object]) -> tuple[str, float] | None:
+        """A link on which this one slides, and its angle from it (rad)."""
+        for slide in self.case.linkage.slides:
+            if slide.runner == link and slide.carrier in known:
+                return slide.carrier, slide.turned
+            if slide.carrier == link and slide.runner in known:
+                return slide.runner, -slide.turned
+        return None
+
+    def _order(self, links: tuple[str, ...]) -> list[str]:
+        """Links that show their own direction first."""
+        return sorted(links, key=lambda link: self._ends(link) is None)
+
+    def _fixed(self, point: str) -> bool:
+        return point in self.case.linkage.links[FRAME].points
+
+    def _point(self, link: str) -> complex:
+        """A point of a link that is drawn, in its axes."""
+        return next(iter(self.case.linkage.links[link].points.values()), 0j)
+
+    def draw(self, links: tuple[str, ...], found: Mapping[str, Pose], known: Mapping[str, Pose]) -> dict[str, Pose]:
+        """Poses as the drawing shows them."""
+        drawn = dict(known)
+        for link in self._order(links):
+            pose, ends = found[link], self._ends(link)
+            if ends is None:
+                partner = self._partner(link, drawn)
+                z = pose.z if partner is None else drawn[partner[0]].z * unit(partner[1])
+                at = self._point(link)
+                drawn[link] = Pose(snapped(pose.at(at), self.x) - at * z, z)
+                continue
+            one, other = (self.case.linkage.local(link, point) for point in ends)
+            start = pose.at(one) if self._fixed(ends[0]) else snapped(pose.at(one), self.x)
+            along = (snapped(pose.at(other), self.x) - start) / (other - one)
+            z = along / np.abs(along)
+            drawn[link] = Pose(start - one * z, z)
+        return drawn
+
+    def lay_off(
+        self, links: tuple[str, ...], found: Mapping[str, Rate], poses: Mapping[str, Pose], known: Mapping[str, Rate]
+    ) -> dict[str, Rate]:
+        """Rates as the velocity plan shows them."""
+        drawn = dict(known)
+        for link in self._order(links):
+            rate, pose, ends = found[link], poses[link], self._ends(link)
+            if ends is None:
+                partner = self._partner(link, drawn)
+                w = rate.w if partner is None else drawn[partner[0]].w
+                arm = self._point(link) * pose.z
+                drawn[link] = Rate.through(snapped(rate.at(arm), self.v), w, arm)
+                continue
+            one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
+            v, u = snapped(rate.at(one), self.v), snapped(rate.at(other), self.v)
+            drawn[link] = Rate.through(v, cross(other - one, u - v) / np.abs(other - one) ** 2, one)
+        return drawn
+
+    def normals(self, links: tuple[str, ...], poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> dict[str, Rate]:
+        """Rates whose normal accelerations w^2 l are vectors of the grid."""
+        laid = dict(rates)
+        for link in links:
+            ends = self._ends(link)
+            if ends is not None:
+                one, other = (self.case.linkage.local(link, point) * poses[link].z for point in ends)
+                length, rate = np.abs(other - one), rates[link]
+                normal = self.a * np.round(rate.w**2 * length / self.a)
+                laid[link] = Rate.through(rate.at(one), np.sign(rate.w) * np.sqrt(normal / length), one)
+        return laid
+
+    def accelerate(
+        self,
+        links: tuple[str, ...],
+        found: Mapping[str, Accel],
+        poses: Mapping[str, Pose],
+        rates: Mapping[str, Rate],
+        known: Mapping[str, Accel],
+    ) -> dict[str, Accel]:
+        """Accelerations as their plan shows them."""
+        drawn = dict(known)
+        for link in self._order(links):
+            accel, pose, w, ends = found[link], poses[link], rates[link].w, self._ends(link)
+            if ends is None:
+                partner = self._partner(link, drawn)
+                e = accel.e if partner is None else drawn[partner[0]].e
+                arm = self._point(link) * pose.z
+                drawn[link] = Accel.through(snapped(accel.at(arm, w), self.a), e, w, arm)
+                continue
+            one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
+            b, c = snapped(accel.at(one, w), self.a), snapped(accel.at(other, w), self.a)
+            e = cross(other - one, c - b) / np.abs(other - one) ** 2
+            drawn[link] = Accel.through(b, e, w, one)
+        return drawn
+
+    def motion(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
+        """All positions drawn."""
+        linkage = self.case.linkage
+        drives = drives_at(linkage, q)
+        frame = frame_state(q)
+        poses, first, second = {FRAME: frame[0]}, {FRAME: frame[1]}, {FRAME: frame[2]}
+        for driver in linkage.cranks:
+            pose, rate, accel = driven_state(linkage, driver, drives[driver.link])
+            one = (driver.link,)
+            poses = self.draw(one, {driver.link: pose}, poses)
+            first = self.lay_off(one, {driver.link: rate}, poses, first)
+            second = self.accelerate(one, {driver.link: accel}, poses, first, second)
+        placements = []
+        for kernel in self.case.kernels:
+            links = kernel.group.links
+            at = kernel.place(poses, q, drives)
+            poses = self.draw(links, dict(zip(links, at.poses, strict=True)), poses)
+            at = replace(at, poses=tuple(poses[link] for link in links))
+            rates = kernel.rates(at, poses, first, drives)
+            first = self.lay_off(links, dict(zip(links, rates, strict=True)), poses, first)
+            normal = self.normals(links, poses, first)
+            accels = kernel.accelerations(at, poses, normal, second, drives)
+            second = self.accelerate(links, dict(zip(links, accels, strict=True)), poses, first, second)
+            placements.append(at)
+        return self.case.motion(q, poses, first, second), tuple(placements)
+
+
+def prepare(millimetres: float) -> Callable[[Case], Callable[[Real], Answers]]:
+    """The board on which points are read to so many millimetres."""
+
+    def of(case: Case) -> Callable[[Real], Answers]:
+        def at(q: Real) -> Answers:
+            exact = move(case.linkage, case.kernels, q, case.law)
+            scales = Scales.of(case, exact, react(exact, case.structure, case.loads(exact)))
+            x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
+            speed = np.abs(exact.rate)
+            motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
+            forces = {links: millimetres * scale for links, scale in scales.forces.items()}
+            polygons = tuple(Polygon(k.group, k.size, k, forces[k.group.links]) for k in case.kernels)
+            motion = replace(motion, kernels=polygons, placements=placements)
+            plan = react(motion, case.structure, case.loads(motion))
+            frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)
+            found = from_plan(case, motion, replace(plan, frames=frames))
+            assert found.positions and found.velocities and found.accelerations
+            return replace(
+                found,
+                positions={name: snapped(value, x) for name, value in found.positions.items()},
+                velocities={name: snapped(value, v) for name, value in found.velocities.items()},
+                accelerations={name: snapped(value, a) for name, value in found.accelerations.items()},
+            )
+
+        return at
+
+    return of

@@ -1,0 +1,45 @@
+"""Velocities and accelerations by central differences of positions; positions are the closed form's.
+
+f' = (f(q + h) - f(q - h)) / 2h with the error h^2 f'''/6, f'' = (f(q + h) - 2 f(q) + f(q - h)) / h^2 with h^2 f''''/12;
+rounding adds its unit over h and over h^2. Forces are found from what the differences give.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.forces.plan import react
+from tmm_cli.groups.state import Accel, Rate
+from tmm_cli.kinematics.motion import move
+from tmm_cli.vectors import Real
+
+
+def prepare(step: float) -> Callable[[Case], Callable[[Real], Answers]]:
+    """The method with one step of the driver (rad, or the linkage's size for a driver that slides)."""
+
+    def of(case: Case) -> Callable[[Real], Answers]:
+        h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
+
+        def answer(q: Real) -> Answers:
+            back, on = q - h, q + h
+            here, less, more = (move(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on))
+            half = (on - back) / 2  # as it was rounded
+            first, second = {}, {}
+            for name, pose in here.poses.items():
+                behind, ahead = less.poses[name], more.poses[name]
+                # angles against the middle one, so that a full turn between them does no harm
+                a, b = np.angle(behind.z * np.conj(pose.z)), np.angle(ahead.z * np.conj(pose.z))
+                first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
+                second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
+            motion = replace(
+                case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements
+            )
+            return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
+
+        return answer
+
+    return of

@@ -1,0 +1,87 @@
+"""The product's own way, closed-form groups with forces walked backward through them: in float64, and other numbers.
+
+The others are float32, and longdouble (64 bits of mantissa on x86).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.bench.methods.wrapped import Wrapped
+from tmm_cli.forces.plan import react
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.newton import Newton
+from tmm_cli.kinematics.motion import move
+from tmm_cli.structure.assur import Group, Pair
+from tmm_cli.vectors import Real
+
+
+def recast(value: Any, real: type) -> Any:
+    """All numbers in records, tuples and arrays as `real` or its complex counterpart; widening is exact."""
+    if isinstance(value, (bool, int, str, Group, Pair)) or value is None:
+        return value
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fc":
+            return value
+        return value.astype(np.result_type(real, np.complex64) if value.dtype.kind == "c" else real)
+    if isinstance(value, (float, np.floating)):
+        return real(value)
+    if isinstance(value, (complex, np.complexfloating)):
+        return np.result_type(real, np.complex64).type(value)
+    if isinstance(value, Mapping):
+        return {key: recast(part, real) for key, part in value.items()}
+    if isinstance(value, tuple):
+        return tuple(recast(part, real) for part in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        names = [field.name for field in fields(value) if field.init]
+        return replace(value, **{name: recast(getattr(value, name), real) for name in names})
+    return value
+
+
+@dataclass(frozen=True)
+class Recast(Wrapped):
+    """A group whose work is done in another precision, whatever it is given."""
+
+    real: type
+
+    def passed(self, work: Callable[..., Any], *given: Any) -> Any:
+        return recast(work(*(recast(part, self.real) for part in given)), self.real)
+
+
+def double(case: Case) -> Callable[[Real], Answers]:
+    """Groups of class II are closed, those of higher classes are found by Newton's method from a track of theirs."""
+    return _at(case, np.float64)
+
+
+def single(case: Case) -> Callable[[Real], Answers]:
+    """Data, groups and forces in float32; only sums of loads and the last products with the speed are in float64."""
+    linkage = recast(case.linkage, np.float32)
+    kernels = tuple(Recast(k.group, k.size, _started(k.rebind(linkage)), np.float32) for k in case.kernels)
+    return _at(replace(case, linkage=linkage, kernels=kernels), np.float32)
+
+
+def _started(kernel: Kernel) -> Kernel:
+    """A group of a higher class starts from rounded places too."""
+    if isinstance(kernel, Newton):
+        return replace(kernel, start=recast(kernel.start, np.float32), trace=recast(kernel.trace, np.float32))
+    return kernel
+
+
+def extended(case: Case) -> Callable[[Real], Answers]:
+    """Everything in longdouble, from the same numbers."""
+    linkage = recast(case.linkage, np.longdouble)
+    return _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), np.longdouble)
+
+
+def _at(case: Case, real: type) -> Callable[[Real], Answers]:
+    def at(q: Real) -> Answers:
+        motion = move(case.linkage, case.kernels, q.astype(real), case.law)
+        motion = replace(motion, rate=motion.rate.astype(real))  # else its square is rounded to float64
+        return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
+
+    return at

@@ -1,0 +1,157 @@
+"""Formulas of the textbooks for one mechanism, as students type them in: a four-bar or a central crank-slider.
+
+The law of cosines (two inverse cosines for the angles of the diagonal), and the tangent of half the angle from
+Freudenstein's equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F. Freudenstein, Trans.
+ASME 77 (1955). Kinematics only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.bench.methods.case import Answers, Case, Unable
+from tmm_cli.linkage import FRAME
+from tmm_cli.vectors import Real, cross, dot, unit
+
+Angles = Callable[[Real, int], tuple[Real, Real]]
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """Pivots O and D, lengths a, b, c of crank OA, coupler AB, rocker DB, and how fast the crank turns (rad/s)."""
+
+    O: complex  # noqa: E741
+    D: complex
+    a: float
+    b: float
+    c: float
+    w: float
+
+    def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
+        """Directions of coupler and rocker (rad), B on the left of AD for sign 1."""
+        base = self.D - self.O - self.a * unit(q)
+        f = np.abs(base)
+        at_a = np.arccos((self.b**2 + f**2 - self.c**2) / (2 * self.b * f))
+        at_d = np.arccos((self.c**2 + f**2 - self.b**2) / (2 * self.c * f))
+        along = np.angle(base)
+        return along + sign * at_a, along + np.pi - sign * at_d
+
+    def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
+        """The same by K1 to K5 and the roots of two quadratic equations in the tangents of half the angles."""
+        d, along = abs(self.D - self.O), np.angle(self.D - self.O)
+        a, b, c, t = self.a, self.b, self.c, np.cos(q - along)
+        k1, k2, k3 = d / a, d / c, (a * a - b * b + c * c + d * d) / (2 * a * c)
+        k4, k5 = d / b, (c * c - d * d - a * a - b * b) / (2 * a * b)
+        middle = -2 * np.sin(q - along)
+        rocker = _half_angle(t - k1 - k2 * t + k3, middle, k1 - (k2 + 1) * t + k3, -sign)
+        coupler = _half_angle(t - k1 + k4 * t + k5, middle, k1 + (k4 - 1) * t + k5, -sign)
+        return along + coupler, along + rocker
+
+    def solved(self, q: Real, angles: tuple[Real, Real]) -> Answers:
+        """Points A and B from the angles of the links, B on the rocker."""
+        a, b, c, w = self.a, self.b, self.c, self.w
+        three, four = angles
+        w3 = a * w * np.sin(four - q) / (b * np.sin(three - four))
+        w4 = a * w * np.sin(q - three) / (c * np.sin(four - three))
+        A, B, E, F = c * np.sin(four), b * np.sin(three), b * np.cos(three), c * np.cos(four)
+        C = a * w**2 * np.cos(q) + w3**2 * E - w4**2 * F
+        G = -a * w**2 * np.sin(q) - w3**2 * B + w4**2 * A
+        e4 = (C * E - B * G) / (A * E - B * F)
+        crank, rocker = a * unit(q), c * unit(four)
+        return Answers(
+            {"A": self.O + crank, "B": self.D + rocker},
+            {"A": 1j * w * crank, "B": 1j * w4 * rocker},
+            {"A": -(w**2) * crank, "B": (1j * e4 - w4**2) * rocker},
+        )
+
+
+@dataclass(frozen=True)
+class Slider:
+    """Crank OA = a and rod AB = b, the guide through O in the direction `along` (rad)."""
+
+    O: complex  # noqa: E741
+    a: float
+    b: float
+    along: float
+    w: float
+
+    def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
+        """The rod's direction (rad) by an inverse sine; it is given twice as a four-bar's two links are."""
+        lean = np.arcsin(-self.a * np.sin(q - self.along) / self.b)
+        rod = self.along + (lean if sign > 0 else np.pi - lean)
+        return rod, rod
+
+    def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
+        """By the tangent of half the angle: s t^2 - 2 t + s = 0 with s its sine."""
+        s = -self.a * np.sin(q - self.along) / self.b
+        rod = self.along + _half_angle(s, -2 + 0 * s, s, -sign)
+        return rod, rod
+
+    def solved(self, q: Real, angles: tuple[Real, Real]) -> Answers:
+        """Points A and B from the rod's angle."""
+        a, b, w = self.a, self.b, self.w
+        crank, rod = a * unit(q), b * unit(angles[0])
+        unwrapped, lean = q - self.along, angles[0] - self.along
+        w3 = -a * w * np.cos(unwrapped) / (b * np.cos(lean))
+        e3 = (a * w**2 * np.sin(unwrapped) + b * w3**2 * np.sin(lean)) / (b * np.cos(lean))
+        return Answers(
+            {"A": self.O + crank, "B": self.O + crank + rod},
+            {"A": 1j * w * crank, "B": 1j * w * crank + 1j * w3 * rod},
+            {"A": -(w**2) * crank, "B": -(w**2) * crank + (1j * e3 - w3**2) * rod},
+        )
+
+
+def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
+    """2 arctan of a root of a t^2 + b t + c = 0."""
+    angle: Real = 2 * np.arctan((-b + sign * np.sqrt(b * b - 4 * a * c)) / (2 * a))
+    return angle
+
+
+def recognised(case: Case) -> FourBar | Slider:
+    """The mechanism; Unable where there is no formula for it in the book."""
+    linkage = case.linkage
+    driver, types = linkage.driver, [group.type for group in case.structure.groups]
+    w = driver.sense * driver.rate
+    if driver.kind == "turn" and types in (["RRR"], ["RRP"]) and not driver.acceleration and not linkage.meshes:
+        local = linkage.local
+        first = next(h.point for h in linkage.hinges if driver.link in h.links and FRAME not in h.links)
+        a, b = case.structure.groups[0].links
+        last = linkage.shared(a, b)
+        pivot = local(FRAME, driver.joint)
+        if last == "B" and first == "A" and local(driver.link, driver.joint) == 0:
+            crank, rod = abs(local(driver.link, first)), abs(local(a, last) - local(a, first))
+            if types == ["RRP"]:
+                slide = linkage.slides[0]
+                if slide.carrier == FRAME and slide.through == pivot and slide.at == local(b, last):
+                    return Slider(pivot, crank, rod, slide.direction, w)
+            else:
+                D = next(h.point for h in linkage.hinges if {FRAME, b} <= set(h.links))
+                return FourBar(pivot, local(FRAME, D), crank, rod, abs(local(b, last) - local(b, D)), w)
+    raise Unable("the textbook has formulas for a four-bar and a central crank-slider only")
+
+
+def _prepare(case: Case, which: Callable[[FourBar | Slider], Angles]) -> Callable[[Real], Answers]:
+    mechanism = recognised(case)
+    angles, sign = which(mechanism), _side(mechanism, case.linkage.sketch.points)
+    return lambda q: mechanism.solved(q, angles(q, sign))
+
+
+def _side(mechanism: FourBar | Slider, points: Mapping[str, complex]) -> int:
+    """The assembly of the sketch: 1 with B on the left of AD, of a slider with B before A along the guide."""
+    rod = points["B"] - points["A"]
+    if isinstance(mechanism, Slider):
+        return 1 if dot(rod, unit(mechanism.along)) > 0 else -1
+    return 1 if cross(mechanism.D - points["A"], rod) > 0 else -1
+
+
+def cosines(case: Case) -> Callable[[Real], Answers]:
+    """By the law of cosines."""
+    return _prepare(case, lambda mechanism: mechanism.cosines)
+
+
+def freudenstein(case: Case) -> Callable[[Real], Answers]:
+    """By Freudenstein's equation."""
+    return _prepare(case, lambda mechanism: mechanism.freudenstein)

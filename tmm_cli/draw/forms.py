@@ -1,0 +1,210 @@
+"""The form in which a link is drawn: from what it is joined by, or from its points.
+
+By its pairs: a bar between two of them, a plate between three and more, a bar along every guide that it carries;
+nothing of it is to be measured. By its points: a bar or a plate between its named points, to scale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_cli.draw.actuators import cylinders
+from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
+from tmm_cli.draw.sheet import Sheet
+from tmm_cli.linkage import FRAME
+from tmm_cli.vectors import cross, dot
+
+NARROW = 1.87  # mm: a plate that is nowhere wider is drawn as a bar
+GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it
+
+
+@dataclass
+class Bar:
+    """A straight bar along a guide, from low to high (mm) of its base; `holds` are the link's pairs on it."""
+
+    base: complex
+    along: complex
+    low: float
+    high: float
+    holds: list[complex] = field(default_factory=list)
+
+    def meets(self, place: complex) -> bool:
+        return bool(abs(cross(self.along, place - self.base)) < ON_LINE)
+
+    def take(self, place: complex) -> None:
+        """Reach as far as a place on the line."""
+        run = float(dot(self.along, place - self.base))
+        self.low, self.high = min(self.low, run), max(self.high, run)
+
+    def foot(self, place: complex) -> complex:
+        return self.base + self.along * float(dot(self.along, place - self.base))
+
+    @property
+    def tips(self) -> tuple[complex, complex]:
+        return self.base + self.low * self.along, self.base + self.high * self.along
+
+
+@dataclass(frozen=True)
+class Form:
+    """A link on paper: corners of its plate (or the two ends of its bar), bars, struts with rigid corners.
+
+    joints are its pairs but for the stones on its bars; boxes are those of them where it is the stone itself.
+    """
+
+    joints: tuple[complex, ...]
+    boxes: tuple[complex, ...]
+    hull: tuple[complex, ...]
+    bars: tuple[Bar, ...]
+    struts: tuple[tuple[complex, complex], ...]
+    welds: tuple[tuple[complex, complex, complex], ...]
+
+    @property
+    def lines(self) -> list[tuple[complex, complex]]:
+        """Its straight parts."""
+        lines = [bar.tips for bar in self.bars] + list(self.struts)
+        if len(self.hull) == 2:
+            lines.append((self.hull[0], self.hull[1]))
+        return lines
+
+    @property
+    def middle(self) -> complex:
+        """Where its number goes: the middle of its plate or of the longest free part of its longest line."""
+        if len(self.hull) > 2:
+            return sum(self.hull) / len(self.hull)
+        if not self.lines:
+            return self.joints[0] if self.joints else complex(np.nan, np.nan)
+        start, end = max(self.lines, key=lambda line: abs(line[1] - line[0]))
+        if abs(end - start) < ON_LINE:
+            return start
+        along = (end - start) / abs(end - start)
+        joined = (*self.joints, *(bar.base for bar in self.bars))
+        runs = sorted({0.0, abs(end - start), *(float(dot(along, j - start)) for j in joined)})
+        runs = [r for r in runs if 0 <= r <= abs(end - start)]
+        gap = max(range(len(runs) - 1), key=lambda n: runs[n + 1] - runs[n])
+        return start + along * (runs[gap] + runs[gap + 1]) / 2
+
+    def through(self, place: complex) -> complex | None:
+        """The direction of a bar that goes on beyond a hinge on both sides, if there is one."""
+        for start, end in self.lines:
+            length = abs(end - start)
+            if length < 2:
+                continue
+            along = (end - start) / length
+            inside = 1.0 < dot(along, place - start) < length - 1.0
+            if inside and abs(cross(along, place - start)) < ON_LINE:
+                return along
+        return None
+
+
+def by_points(sheet: Sheet, scene: Scene, link: str) -> Form:
+    """The form of a link from its named points and the stones that run on it, to scale."""
+    linkage = scene.linkage
+    places = [scene.place(link, local) for local in linkage.links[link].points.values()]
+    for slide in linkage.slides:
+        if slide.carrier == link and slide.runner != FRAME and slide.name not in cylinders(linkage):
+            foot = scene.place(link, slide.through)
+            places += [foot, foot + scene.run(slide) * scene.along(slide)]
+    hull = outline([sheet.on(p) for p in places])
+    return Form(tuple(hull[:1]) if len(hull) == 1 else (), (), tuple(hull) if len(hull) > 1 else (), (), (), ())
+
+
+def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
+    """The form of a link from its pairs, on paper."""
+    joints = apart(sheet.on(p) for p in scene.joints(link))
+    bars: list[Bar] = []
+    for stone, along in scene.guides(link):
+        at = sheet.on(stone)
+        same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
+        if same is None:
+            same = Bar(at, along, -GUIDE, GUIDE)
+            bars.append(same)
+        same.take(at - GUIDE * along)
+        same.take(at + GUIDE * along)
+    for bar in bars:
+        bar.holds += [j for j in joints if bar.meets(j)]
+        for place in [*bar.holds, *(sheet.on(e) for e in scene.ends(link))]:
+            if bar.meets(place):
+                bar.take(place)
+    struts: list[tuple[complex, complex]] = []
+    welds: list[tuple[complex, complex, complex]] = []
+    for number, bar in enumerate(bars[1:], 1):
+        _join(bars[:number], bar, struts, welds)
+    loose = [j for j in joints if not any(bar.meets(j) for bar in bars)]
+    if loose and bars:
+        bar, near, foot = _nearest(bars, loose)
+        bar.take(foot)
+        if len(loose) > 1 and bar.holds:
+            loose.append(foot)
+        else:
+            struts.append((near, foot))
+            welds.append((foot, near - foot, _longer(bar, foot)))
+            # at a hinge, bars of one link would look like two links without a mark
+            welds += [(near, foot - near, other - near) for other in loose if other != near]
+    hull = tuple(_flat(outline(loose))) if len(loose) > 1 else ()
+    boxes = tuple(sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link)
+    return Form(tuple(joints), boxes, hull, tuple(bars), tuple(struts), tuple(welds))
+
+
+def _flat(hull: Sequence[complex]) -> Sequence[complex]:
+    """Corners of a plate; the two ends of a plate that is hardly wider than a bar."""
+    if len(hull) < 3:
+        return hull
+    start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
+    along = (end - start) / abs(end - start)
+    return hull if max(abs(cross(along, p - start)) for p in hull) > NARROW else (start, end)
+
+
+def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
+    """Where pairs beside the bars are joined to them: at a pair on a bar, or at the foot of the perpendicular."""
+    ways = []
+    for bar in bars:
+        for place in loose:
+            foot = min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
+            ways.append((abs(place - foot), bar, place, foot))
+    _, bar, place, foot = min(ways, key=lambda one: one[0])
+    return bar, place, foot
+
+
+def _longer(bar: Bar, foot: complex) -> complex:
+    return max((tip - foot for tip in bar.tips), key=abs)
+
+
+def _join(
+    others: Sequence[Bar],
+    bar: Bar,
+    struts: list[tuple[complex, complex]],
+    welds: list[tuple[complex, complex, complex]],
+) -> None:
+    """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
+    for other in others:
+        turn = float(cross(other.along, bar.along))
+        if abs(turn) > 0.05:
+            meet = other.base + other.along * float(cross(bar.base - other.base, bar.along)) / turn
+            if abs(meet - bar.base) < 150 and abs(meet - other.base) < 150:
+                bar.take(meet)
+                other.take(meet)
+                welds.append((meet, _longer(bar, meet), _longer(other, meet)))
+                return
+    start, end = min(((p, q) for p in bar.tips for other in others for q in other.tips), key=lambda w: abs(w[1] - w[0]))
+    struts.append((start, end))
+
+
+def outline(places: list[complex]) -> list[complex]:
+    """The convex hull; the two ends when all lie on a line."""
+    places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
+    if len(places) < 3:
+        return places or [complex(np.nan, np.nan)]
+    ordered = sorted(places, key=lambda p: (p.real, p.imag))
+
+    def half(points: list[complex]) -> list[complex]:
+        chain: list[complex] = []
+        for p in points:
+            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (p - chain[-1])).imag <= 1e-3:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return half(ordered) + half(ordered[::-1])

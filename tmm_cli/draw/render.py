@@ -1,0 +1,193 @@
+"""A mechanism on a sheet: its guides, wheels and cams, links, sliders, springs, hinges and supports, in that order.
+
+Measured drawings and structural schemes are drawn alike, in two looks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_cli.draw.actuators import cylinder, cylinders, driver_name, springs
+from tmm_cli.draw.forms import Form, by_pairs, by_points
+from tmm_cli.draw.labels import gathered
+from tmm_cli.draw.scene import BEYOND, Scene
+from tmm_cli.draw.sheet import DARK, Sheet, border, hatch
+from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, quiet, rails, sliding_arrow, support, turning_arrow
+from tmm_cli.draw.wheels import CamShape, contact
+from tmm_cli.draw.wheels import draw as draw_wheels
+from tmm_cli.errors import _
+from tmm_cli.linkage import FRAME, Slide
+from tmm_cli.structure.assur import Pair
+
+OVER, OVER_SLOT = 10.0, 7.0  # mm: how far a measured guide, and a slot, goes on beyond the way of its stone
+GREY = "#404040"
+
+
+@dataclass
+class Rendered:
+    """What was drawn of the links, and the cylinders by their sliding pair: the middle (mm) and the direction."""
+
+    forms: Mapping[str, Form]
+    cylinders: dict[str, tuple[complex, complex]] = field(default_factory=dict)
+
+
+def render(
+    sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
+    leads: Sequence[Pair] = (),
+) -> Rendered:  # fmt: skip
+    """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
+    forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
+    drawn = Rendered(forms)
+    driven = cylinders(scene.linkage) if look.measured else {}
+    for pair in pairs:
+        if pair.slide is not None and look.measured and pair.name not in driven:
+            _way(sheet, scene, pair.slide, look)
+        elif pair.slide is not None and not look.measured and pair.slide.carrier == FRAME:
+            _guide(sheet, scene, pair, look)
+    for pair in pairs:
+        if not pair.lower:
+            _higher(sheet, scene, pair, look, hue)
+    for link, form in forms.items():
+        body(sheet, form, hue[link], look)
+    for pair in pairs:
+        if pair.slide is None:
+            continue
+        if pair.name in driven:
+            way = scene.way(pair.slide)
+            drawn.cylinders[pair.name] = cylinder(sheet, scene.linkage, pair.slide, scene.place, way)
+        else:
+            slider(sheet, scene, pair, look, hue[pair.slide.runner])
+    if look.measured:
+        springs(sheet, scene.linkage, scene.place)
+    hinges = gathered((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
+    for at, here in hinges:
+        _hinge(sheet, at, here, forms, look, hue)
+    for at, here in hinges:
+        joined = {link for pair in here if pair in pairs for link in (pair.i, pair.j)}
+        if FRAME not in joined:
+            continue
+        if look.measured:
+            support(sheet, at, _hanging(at, [forms[link] for link in joined if link != FRAME], look), look)
+        else:
+            end = support(sheet, at, quiet(sheet, at, -1j, 9.0, (-1j, 1j, -1, 1), from_=2.2), look)
+            sheet.label(FRAME, end, 9, DARK, "italic")
+    return drawn
+
+
+def _way(sheet: Sheet, scene: Scene, slide: Slide, look: Look) -> None:
+    """The hatched rails of a guide along the whole way on it; the slot of a link that has no bar along its guide."""
+    fixed = FRAME in (slide.carrier, slide.runner)
+    if not fixed and len(scene.linkage.links[slide.carrier].points) > 1:
+        return
+    along, (low, high), here = scene.along(slide), scene.way(slide), scene.run(slide)
+    if slide.runner == FRAME:  # the guide moves, the stone does not
+        low = high = here
+    stone, over = sheet.on(scene.place(slide.runner, slide.at)), OVER if fixed else OVER_SLOT
+    start = border(stone, stone + ((low - here) / sheet.mu - over) * along, *sheet.field)
+    end = border(stone, stone + ((high - here) / sheet.mu + over) * along, *sheet.field)
+    rails(sheet, start, end, (look.box if fixed else look.stone)[1], fixed=fixed)
+
+
+def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look) -> None:
+    """A guide on the frame: a piece of hatched rails about its box, with the frame's number."""
+    assert pair.slide is not None
+    at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
+    reach = (look.box[0] / 2 + BEYOND) * along
+    rails(sheet, at - reach, at + reach, look.box[1], fixed=True)
+    low = -1j * along if (1j * along).imag > 0 else 1j * along
+    sheet.label(FRAME, at + low * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
+
+
+def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str, str]) -> None:
+    """Toothed wheels, or a cam with its follower; of a measured rack all that ever comes into mesh."""
+    found, span = scene.higher(pair), None
+    if look.measured and found.mesh.slide:
+        slide = scene.linkage.slide(found.mesh.slide)
+        (low, high), here = scene.way(slide), scene.run(slide)
+        span = here - high, here - low
+    draw_wheels(sheet, found, hue, span)
+    if look.measured:
+        sheet.label(found.mesh.name, sheet.on(contact(found)), 9, GREY)
+        if isinstance(found, CamShape) and not found.true:
+            sheet.note(_("disk of cam {link}: not to scale, its law alone is given").format(link=found.mesh.i))
+
+
+def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str) -> None:
+    """The box of a sliding pair, hatched in a scheme where it is the frame."""
+    slide = pair.slide
+    assert slide is not None
+    at, along = sheet.on(scene.at(pair)), scene.along(slide)
+    if not np.isfinite(at):
+        return
+    size = look.box if FRAME in (slide.carrier, slide.runner) else look.stone
+    box(sheet, at, along, colour, size, look)
+    if slide.runner == FRAME and not look.measured:
+        for side in (1j * along, -1j * along):
+            edge, half = at + side * size[1] / 2, along * size[0] / 2
+            hatch(sheet, edge - half, edge + half, side)
+        sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
+
+
+def _hinge(
+    sheet: Sheet, at: complex, here: Sequence[Pair], forms: Mapping[str, Form], look: Look, hue: Mapping[str, str]
+) -> None:
+    """The turning pairs of one place, in a scheme a circle each; bars that go on beyond it cross it there."""
+    if look.measured:
+        sheet.circle(at, look.hinge)
+        if len(here) > 1:
+            sheet.circle(at, look.hinge / 2.5, face=DARK, z=6.5)
+        return
+    order = {link: number for number, link in enumerate((FRAME, *hue))}
+    step = 0.95 * look.hinge / STRUCTURAL.hinge
+    for number, pair in reversed(list(enumerate(here))):
+        later = max((pair.i, pair.j), key=lambda link: order.get(link, 0))
+        sheet.circle(at, look.hinge + step * number, "white", hue[later], 1.2, 6 - 0.01 * number)
+    for link in dict.fromkeys(link for pair in here for link in (pair.i, pair.j)):
+        along = forms[link].through(at) if link in forms else None
+        if along is not None:
+            sheet.line([at - look.hinge * along, at + look.hinge * along], hue[link], 0.8 * look.bar, z=6.2)
+
+
+def _hanging(at: complex, links: Iterable[Form], look: Look) -> complex:
+    """The side of a fixed hinge on which its support is: below, or above where its links hang down from it."""
+    arms = [place - at for form in links for place in (*form.hull, *form.joints)]
+    low = sum(arm.imag / abs(arm) for arm in arms if abs(arm) > look.hinge)
+    return 1j if low < -0.8 else -1j
+
+
+def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:
+    """Names beside their places with colours; those of one place share a label."""
+    for at, here in gathered((at, (name, colour)) for at, name, colour in named):
+        sheet.label(", ".join(dict.fromkeys(name for name, __ in here)), at, 10, here[0][1])
+
+
+def spot(sheet: Sheet, scene: Scene, pair: Pair, look: Look) -> complex:
+    """Where the name of a pair belongs: its hinge, the end of its box, or that of its guide on the frame."""
+    at = sheet.on(scene.at(pair))
+    if pair.slide is None:
+        return at
+    beyond = BEYOND if pair.slide.carrier == FRAME else 0.0
+    return at - scene.along(pair.slide) * (look.box[0] / 2 + beyond)
+
+
+def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping[str, str]) -> None:
+    """How the drivers of these links go."""
+    for driver in scene.linkage.drivers:
+        if driver.link not in drawn.forms:
+            continue
+        pair = scene.structure.driving_pair(driver)
+        at = sheet.on(scene.at(pair))
+        if pair.slide is not None:
+            along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
+            if pair.name in drawn.cylinders:
+                at = drawn.cylinders[pair.name][0]
+            sliding_arrow(sheet, at, along, look.box[1], driver_name(driver, "v"), hue[driver.link])
+        else:
+            ends = [end - at for line in drawn.forms[driver.link].lines for end in line]
+            if look.measured:
+                ends = [end - at for end in drawn.forms[driver.link].hull]
+            arm = max(ends, key=abs, default=1 + 0j)
+            turning_arrow(sheet, at, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), hue[driver.link])

@@ -1,0 +1,101 @@
+"""What a stage may refuse, and the mark of sentences for people.
+
+A stage says what is wrong in numbers and names; the words are put where files are known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from gettext import NullTranslations
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tmm_cli.structure.assur import Group, Structure
+
+# Sentences are marked for gettext. There are no catalogues yet; gettext() would look for them on the disk every time.
+_ = NullTranslations().gettext
+
+
+class LinkageError(Exception):
+    """A linkage or a request for which a stage has no answer."""
+
+
+class MobilityError(LinkageError):
+    """The linkage and its drivers do not fit: mobility is not their number, or they cannot move it."""
+
+    def __init__(self, structure: Structure) -> None:
+        super().__init__(f"W = {structure.mobility}")
+        self.structure = structure
+
+
+class AssemblyError(LinkageError):
+    """The sketch cannot be assembled.
+
+    residual: how much (m) a group in closed form is short of closing at the sketch's place; others only fail to.
+    """
+
+    def __init__(self, group: Group, residual: float | None = None) -> None:
+        super().__init__(group.title)
+        self.group, self.residual = group, residual
+
+
+class AmbiguousSketchError(LinkageError):
+    """The sketch does not tell two assemblies apart.
+
+    choices: for points (m) and links (rad) that would tell, the values in the two assemblies that are nearest to the
+    sketch; none in a dead position. count: how many assemblies there are.
+    """
+
+    def __init__(
+        self, group: Group, choices: Mapping[str, tuple[complex | float, complex | float]], count: int = 2
+    ) -> None:
+        super().__init__(group.title)
+        self.group, self.choices, self.count = group, choices, count
+
+
+class SketchMismatchError(LinkageError):
+    """A sketched point (m) or angle (rad) is far from where it comes to lie in the nearest assembly."""
+
+    def __init__(self, name: str, sketched: complex | float, found: complex | float) -> None:
+        super().__init__(name)
+        self.name, self.sketched, self.found = name, sketched, found
+
+
+class GroupTooLargeError(LinkageError):
+    """A group of more links than iteration is tried on; most: how many it may have."""
+
+    def __init__(self, group: Group, most: int) -> None:
+        super().__init__(group.title)
+        self.group, self.most = group, most
+
+
+class UnknownPositionError(LinkageError):
+    """A position number beyond those of the file."""
+
+    def __init__(self, number: int, count: int) -> None:
+        super().__init__(str(number))
+        self.number, self.count = number, count
+
+
+class UnknownNameError(LinkageError):
+    """Something is asked for by a name that nothing has; allowed: those that are."""
+
+    def __init__(self, name: str, allowed: tuple[str, ...]) -> None:
+        super().__init__(name)
+        self.name, self.allowed = name, allowed
+
+
+class MissingStrokesError(LinkageError):
+    """Strokes of the output are needed, by the key at `path` of the file, but it has none."""
+
+    def __init__(self, link: str | None, path: tuple[str, ...]) -> None:
+        super().__init__(".".join(path))
+        self.link, self.path = link, path
+
+
+class NotOnFrameError(LinkageError):
+    """A link that cannot drive from the frame; allowed: those that can."""
+
+    def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
+        super().__init__(link)
+        self.link, self.allowed = link, allowed

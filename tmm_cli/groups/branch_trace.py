@@ -1,0 +1,118 @@
+"""Where a group's links are along the driver's range: nodes from which Newton's method starts at any place alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from tmm_cli.groups.state import State
+from tmm_cli.vectors import Real, Vector
+
+
+@dataclass(frozen=True)
+class BranchTrace:
+    """States at growing places q of the driver with their first and second derivatives by q.
+
+    closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the trace
+    ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
+    first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the trace
+    ends there for another reason: the links it hangs on go no further, or links of its own go to infinity. unit: what
+    residuals are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides. dead: places of
+    nodes in dead positions that are passed smoothly; flips: whether the determinant changes its sign there.
+    """
+
+    q: Real
+    states: State
+    first: State
+    second: State
+    closed: bool
+    open_ends: tuple[bool, bool] = (False, False)
+    limits: tuple[bool, bool] = (False, False)
+    lost: tuple[bool, bool] = (False, False)
+    unit: float = 1.0
+    dead: Real = field(default_factory=lambda: np.zeros(0))
+    flips: Real = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    @cached_property
+    def _bend(self) -> Real:
+        """Size of the second derivative at each node."""
+        bend: Real = np.max(np.abs(self.second.x), axis=-1) + np.max(np.abs(self.second.unwrapped), axis=-1)
+        return bend
+
+    def within(self, q: Real) -> Real:
+        """Places q of a closed trace in its own cycle."""
+        cycle = self.q[-1] - self.q[0]
+        found: Real = q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
+        return found
+
+    def in_dead(self, q: Real, rounding: float) -> Real:
+        """Whether places cannot be told from a dead position that is passed, for relative errors of the data.
+
+        At a distance h they move the group by their h-th part, the h^2-th where the determinant only touches zero, and
+        that has to be less than h.
+        """
+        if not self.dead.size:
+            return np.zeros(np.shape(q), dtype=bool)
+        width = np.where(self.flips, rounding ** (1 / 2), rounding ** (1 / 3)) * self.unit
+        found: Real = np.any(np.abs(self.within(q)[..., None] - self.dead) < width, axis=-1)
+        return found
+
+    def side(self, q: Real) -> Real:
+        """1, or -1 where the determinant has another sign than at the trace's beginning."""
+        passed = np.searchsorted(self.dead[self.flips], self.within(q))
+        found: Real = 1.0 - 2.0 * (passed % 2)
+        return found
+
+    def dead_within(self, low: float, high: float) -> Real:
+        """Dead positions that are passed between two places, in growing order."""
+        cycle = self.q[-1] - self.q[0]
+        turns = np.arange(np.floor((low - self.q[-1]) / cycle), np.ceil((high - self.q[0]) / cycle) + 1)
+        found = (self.dead[:, None] + cycle * (turns if self.closed else np.zeros(1))).ravel()
+        return np.sort(found[(found >= low) & (found < high)])
+
+    def start(self, q: Real) -> tuple[State, Real]:
+        """A state near that at each place q, from the nearest node, and the residual: how far q is beyond the trace's
+        ends, in its units. Negative inside, by the distance to the nearer end; -1 on a closed trace.
+        """
+        low, high = self.q[0], self.q[-1]
+        cycle = high - low
+        whole = np.floor((q - low) / cycle) if self.closed else np.zeros(np.shape(q))
+        within = np.clip(q - whole * cycle, low, high)
+        right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
+        left = right - 1
+        # the node from which the second derivative carries least far: near a limit that is the one farther from it
+        bend = self._bend
+        from_left = bend[left] * (within - self.q[left]) ** 2 <= bend[right] * (within - self.q[right]) ** 2
+        node = np.where(from_left, left, right)
+        step = (within - self.q[node])[..., None]
+        turns = (
+            self.states.unwrapped[-1] - self.states.unwrapped[0]
+            if self.closed
+            else np.zeros(self.states.unwrapped.shape[-1])
+        )
+        near_limit = (self.limits[0] & (left == 0)) | (self.limits[1] & (right == len(self.q) - 1))
+        limit = np.where(left == 0, 0, len(self.q) - 1)
+        inner = np.where(left == 0, right, left)
+        way = np.abs(self.q[limit] - self.q[inner])
+        share = np.sqrt(np.abs(self.q[limit] - within) / np.where(way > 0, way, 1.0))[..., None]
+
+        def at(value: Vector, first: Vector, second: Vector) -> Vector:
+            taylor = value[node] + step * (first[node] + step / 2 * second[node])
+            # at a limit the group moves as the root of the way that is left to the driver
+            root = value[limit] + (value[inner] - value[limit]) * share
+            here: Vector = np.where(near_limit[..., None], root, taylor)
+            return here
+
+        state = State(
+            at(self.states.x, self.first.x, self.second.x),
+            at(self.states.unwrapped, self.first.unwrapped, self.second.unwrapped) + whole[..., None] * turns,
+        )
+        if self.closed:
+            return state, np.full(np.shape(q), -1.0)
+        under, over = (low - q) / self.unit, (q - high) / self.unit
+        below = np.where(self.open_ends[0], -np.inf, under)
+        above = np.where(self.open_ends[1], -np.inf, over)
+        residual = np.maximum(np.maximum(below, above), -1.0)
+        return state, np.where((q < low) | (q > high), np.maximum(np.maximum(under, over), 1e-12), residual)

@@ -1,0 +1,1 @@
+"""Motion, range of the driver, strokes, pressure angles."""

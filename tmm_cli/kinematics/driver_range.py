@@ -1,0 +1,322 @@
+"""Stage: how far the driver can go, and the dead positions on its way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.groups.base import Closed, Kernel, reach
+from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states, towards
+from tmm_cli.groups.unwrapped_angles import Winding
+from tmm_cli.linkage import Linkage
+from tmm_cli.roots import least, roots
+from tmm_cli.structure.cycle import MOST, turns_of_cycle
+from tmm_cli.tolerances import CAME_BACK, DEAD
+from tmm_cli.vectors import Real
+
+SCAN = 1440  # places looked at in a first round; what lies between is refined
+PARTS = 64  # into which an interval is cut at once
+ALMOST = 1e-5  # of its way: so near to infinity a group is not found
+
+
+@dataclass(frozen=True)
+class DriverLimit:
+    """An end of the driver's range: its place, the group that stops it, or `driver` where the first one itself stops.
+
+    The latter only with several drivers, whose places follow from the time.
+    """
+
+    place: float
+    group: str
+    driver: str = ""
+
+
+@dataclass(frozen=True)
+class DriverRange:
+    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
+
+    turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
+    False when no such number was found. inclusive: both ends are those of the driver's stroke, and no dead positions.
+    """
+
+    start: float
+    end: float
+    full: bool
+    limits: tuple[DriverLimit, ...] = ()
+    turns: int = 1
+    repeats: bool = True
+    inclusive: bool = False
+
+
+@dataclass(frozen=True)
+class DeadPosition:
+    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there.
+
+    passed: the group was followed through it on a smooth way, on which its determinant may change sign.
+    """
+
+    place: float
+    group: str
+    margin: float
+    passed: bool = False
+
+
+def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+    """The driver's range about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
+    driver_range = _reach(linkage, kernels)
+    stroke = linkage.driver.stroke
+    if stroke is None:
+        return driver_range
+    low, high = (
+        (stroke[0], stroke[1])
+        if driver_range.full
+        else (max(driver_range.start, stroke[0]), min(driver_range.end, stroke[1]))
+    )
+    kept = tuple(limit for limit in driver_range.limits if low <= limit.place <= high)
+    return DriverRange(low, high, False, kept, inclusive=(low, high) == stroke)
+
+
+def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+    at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
+    cycle = cycle_of(linkage, kernels) if turns else 1
+    number = cycle or 1
+    half = np.pi * number if turns else reach(linkage)
+    low, high = _looked_at(kernels, at, half)
+    steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
+    # np.unique would import masked arrays, which costs more than all the rest of this stage
+    steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
+    side = [np.sign(p.det[0]) for p in link_states(linkage, kernels, np.array([at]), 0).placements]
+    scan = link_states(linkage, kernels, at + steps, 0)
+    steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
+    lost = _lost(link_states(linkage, kernels, at + steps, 0), side)
+    stopped = _stopped(linkage, at + steps)
+    if not bool(np.any(lost)) and not bool(np.any(stopped)):
+        back = cycle is not None and (not turns or _returned(linkage, kernels, at, half))
+        return DriverRange(at - half, at + half, turns, turns=number, repeats=back)
+    blocked = np.flatnonzero(np.any(lost, axis=0) | stopped)
+    middle = int(np.argmin(np.abs(steps)))
+
+    def limit(index: int, towards: int) -> DriverLimit:
+        good, bad = at + steps[index - towards], at + steps[index]
+        first = kernels[int(np.argmax(lost[:, index]))]
+        for end in _ends(first):  # found to the last bit when the group was followed
+            if min(good, bad) <= end <= max(good, bad):
+                return DriverLimit(end, first.group.title)
+        while True:
+            between = np.linspace(good, bad, PARTS + 1)[1:-1]
+            between = between[(between != good) & (between != bad)]
+            if not between.size:
+                break
+            gone = np.any(_lost(link_states(linkage, kernels, between, 0), side), axis=0) | _stopped(linkage, between)
+            found = np.flatnonzero(gone)
+            places = np.array([good, *between, bad])
+            there = int(found[0]) + 1 if found.size else len(places) - 1
+            good, bad = places[there - 1], places[there]
+        if stopped[index]:
+            return DriverLimit(float(good), "", linkage.driver.link)
+        return DriverLimit(_at_infinity(first, float(good), towards), first.group.title)
+
+    below, above = blocked[blocked < middle], blocked[blocked > middle]
+    first = limit(int(below[-1]), -1) if below.size else None
+    last = limit(int(above[0]), 1) if above.size else None
+    around = turns and cycle is not None
+    if around and first is None and last is not None:  # the places that are blocked straddle the scan's end
+        first = limit_from(last, blocked, steps, (at, 2 * half), limit)
+    if around and last is None and first is not None:
+        last = limit_from(first, blocked, steps, (at, 2 * half), limit)
+    start = first.place if first else at - half
+    end = last.place if last else at + half
+    return DriverRange(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _stopped(linkage: Linkage, q: Real) -> Real:
+    """Whether the first of several drivers never comes to a place: it slows down and stops before."""
+    lead = linkage.driver
+    if not linkage.others:
+        return np.zeros(np.shape(q), dtype=bool)
+    law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+    found: Real = ~np.isfinite(law.time(q))
+    return found
+
+
+def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
+    """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
+    motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
+    size = max((kernel.size for kernel in kernels), default=1.0)
+    moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
+    return bool(max(moved) < CAME_BACK)
+
+
+def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
+    """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
+    trace = kernel.followed
+    end = (0, -1)[towards > 0]
+    if trace is None or not trace.lost[end]:
+        return place
+    infinite, last = float(trace.q[end]), float(trace.q[end - towards])
+    close = abs(infinite - place) < ALMOST * float(trace.q[-1] - trace.q[0])
+    return infinite if close or abs(infinite - place) < abs(infinite - last) else place
+
+
+def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
+    """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
+    low, high = -half, half
+    for kernel in kernels:
+        trace = kernel.followed
+        if trace is not None and not trace.closed and True not in trace.open_ends:
+            low, high = min(low, 1.001 * (trace.q[0] - at)), max(high, 1.001 * (trace.q[-1] - at))
+    return float(low), float(high)
+
+
+def _ends(kernel: Kernel) -> tuple[float, ...]:
+    """Places where a followed group turns back."""
+    trace = kernel.followed
+    if trace is None or trace.closed:
+        return ()
+    return tuple(float(q) for q, limit in zip((trace.q[0], trace.q[-1]), trace.limits, strict=True) if limit)
+
+
+def rounds_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> dict[str, int]:
+    """How often links that toothed wheels depend on go round in a turn of the driver, where they were followed."""
+    found = {}
+    for kernel in kernels:
+        winding = kernel.winding if isinstance(kernel, Closed) else None
+        if isinstance(winding, Winding) and winding.closed:
+            turns = (winding.q[-1] - winding.q[0]) / (2 * np.pi)
+            for link, angles in winding.angles.items():
+                found[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
+    return found
+
+
+def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
+    """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
+    turns = turns_of_cycle(linkage, rounds_of(linkage, kernels))
+    for kernel in kernels:
+        trace = kernel.followed
+        if trace is not None and trace.closed and turns is not None:
+            turns = math.lcm(turns, round((trace.q[-1] - trace.q[0]) / (2 * np.pi)))
+    return turns if turns is not None and turns <= MOST else None
+
+
+def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, number: int) -> Real:
+    """Places where a group comes nearest to losing its assembly: it may lose it between two places of a scan."""
+    residual = np.where(np.isfinite(scan.placements[number].residual), scan.placements[number].residual, -np.inf)
+    inner = residual[1:-1]
+    # between two places it cannot rise by much more than it does from one to the next
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(inner - residual[:-2], inner - residual[2:])
+    close = (
+        np.flatnonzero((inner >= residual[:-2]) & (inner > residual[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
+    )
+    step = scan.q[1] - scan.q[0]
+
+    upto = towards(kernels, kernels[number].group.links)
+
+    def slack(q: Real) -> Real:
+        return -link_states(linkage, upto, q, 0).placements[-1].residual
+
+    return np.array([least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
+
+
+def _lost(motion: LinkStates, side: list[float]) -> Real:
+    """For each group and place whether the linkage cannot be there: no assembly, or only past a dead position.
+
+    The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
+    went to infinity.
+    """
+    lost = [
+        motion.missing[kernel.group.title] | (np.sign(at.det) == -sign)
+        for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
+    ]
+    found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
+    return found
+
+
+def limit_from(
+    known: DriverLimit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], DriverLimit]
+) -> DriverLimit | None:
+    """The other limit when all blocked places lie on one side of the sketch: a cycle away.
+
+    None when they go on to the end of what was looked at.
+    """
+    at, cycle = about
+    if int(blocked[-1 if known.place > at else 0]) in (0, len(steps) - 1):
+        return None
+    if known.place > at:
+        other = limit(int(blocked[-1]), -1)
+        return DriverLimit(other.place - cycle, other.group)
+    other = limit(int(blocked[0]), 1)
+    return DriverLimit(other.place + cycle, other.group)
+
+
+def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange) -> tuple[DeadPosition, ...]:
+    """Dead positions inside the driver's range (its limits are dead too and are not repeated here)."""
+    q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
+    motion = link_states(linkage, kernels, q, 0)
+    found = []
+    for number, dyad in enumerate(kernels):
+        at = motion.placements[number]
+        margin = np.where(motion.placed | at.dead, at.margin, np.inf)
+        inner = margin[1:-1]
+        low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1)) + 1
+        places = list(q[low])
+        steps = q[1] - q[0]
+        if driver_range.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
+            places.append(q[0])
+        upto = towards(kernels, dyad.group.links)
+        passed = _passed(linkage, upto, driver_range)
+        found += passed
+        for place in places:
+            if any(abs(_apart(place, p.place, driver_range)) <= 2 * steps for p in passed):
+                continue
+            best, left = least(partial(_margin, linkage, upto), place - steps, place + steps)
+            if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
+                best = _pinned(linkage, upto, best, steps)
+                found.append(DeadPosition(best, dyad.group.title, left))
+    return tuple(sorted(found, key=lambda d: d.place))
+
+
+def _passed(linkage: Linkage, upto: tuple[Kernel, ...], driver_range: DriverRange) -> list[DeadPosition]:
+    """Dead positions inside the range that a followed group, the last one, passes smoothly: nodes of its trace."""
+    trace, title = upto[-1].followed, upto[-1].group.title
+    if trace is None or not trace.dead.size:
+        return []
+    places = trace.dead_within(driver_range.start, driver_range.end)
+    left = _margin(linkage, upto, places) if places.size else places
+    return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
+
+
+def _apart(one: float, other: float, driver_range: DriverRange) -> float:
+    """From one place to another, round the cycle where the way is a whole one."""
+    cycle = driver_range.end - driver_range.start
+    return one - other - cycle * round((one - other) / cycle) if driver_range.full else one - other
+
+
+def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+    """Of the last group."""
+    motion = link_states(linkage, kernels, q, 0)
+    return np.where(motion.placed, motion.placements[-1].margin, 0.0)
+
+
+def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
+    """A dead position inside the range to the last bit: there the residual of the group stops growing.
+
+    The least of a quantity is known to half the digits only, the root of its rate to all of them.
+    """
+    last = kernels[-1]
+    if not isinstance(last, Closed):
+        return place
+
+    def residual_rate(q: Real) -> Real:
+        before = link_states(linkage, kernels[:-1], q, 1)
+        return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
+
+    low, high = np.array([place - step]), np.array([place + step])
+    with np.errstate(all="ignore"):
+        if not np.sign(residual_rate(low))[0] * np.sign(residual_rate(high))[0] < 0:
+            return place
+        return float(roots(residual_rate, low, high)[0])

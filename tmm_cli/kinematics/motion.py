@@ -1,0 +1,161 @@
+"""Stage: velocities and accelerations of points, links and sliding pairs, from the states of links and the speed of
+the driver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states
+from tmm_cli.groups.state import Drives
+from tmm_cli.linkage import Linkage, Slide
+from tmm_cli.vectors import Real, Record, Vector, dot, mapped, unit
+
+FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order"})
+"""Names of fields of a motion, and of what follows from it, that hold no array over positions."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """Motion of a point: x (m), v (m/s), a (m/s2); first and second are its transfer functions."""
+
+    x: Vector
+    v: Vector
+    a: Vector
+    first: Vector
+    second: Vector
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Motion of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2) and its transfer functions."""
+
+    angle: Real
+    omega: Real
+    epsilon: Real
+    first: Real
+    second: Real
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (vector, m/s2)."""
+
+    run: Real
+    v: Real
+    a: Real
+    coriolis: Vector
+    u: Vector
+    first: Real
+    second: Real
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion(LinkStates):
+    """States of links in time: time (s), rate of the driver's place (rad/s or m/s) and its acceleration.
+
+    nan where the driver never comes. finer: the positions of the mask `where` in extended precision.
+    """
+
+    time: Real
+    rate: Real
+    acceleration: Real
+    finer: Motion | None = None
+    where: Real | None = None
+
+    def point(self, link: str, local: complex) -> Point:
+        """Motion of a point given in the axes of a link (m)."""
+        return self._finest(lambda motion: motion._point(link, local))
+
+    def _finest(self, of: Callable[[Motion], Record]) -> Record:
+        """What is asked of the motion, from its finer one where there is one."""
+        found = of(self)
+        return found if self.finer is None or self.where is None else spliced(found, of(self.finer), self.where)
+
+    def _point(self, link: str, local: complex) -> Point:
+        pose, first, second = self.poses[link], self.first[link], self.second[link]
+        arm = local * pose.z
+        v1, a1 = first.at(arm), second.at(arm, first.w)
+        return Point(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
+
+    def named(self, point: str) -> Point:
+        """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
+        there = [link for link in self.linkage.carriers(point) if link in self.poses]
+        return self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
+
+    def _sway(self, link: str, point: str) -> float:
+        """Size of the terms that a point's acceleration is the sum of."""
+        first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
+        terms = np.abs(second.a) + (np.abs(second.e) + first.w**2) * arm
+        return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
+
+    def named_on(self, link: str, point: str) -> Point:
+        """Motion of a named point as one of a given link."""
+        return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
+
+    def centre(self, link: str) -> Point:
+        """Motion of a centre of mass."""
+        return self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre))
+
+    def link(self, name: str) -> Turning:
+        """Turning of a link."""
+        w1, e1 = self.first[name].w, self.second[name].e
+        return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+
+    def slide(self, slide: Slide) -> Sliding:
+        """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
+        return self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+
+    def _slide(self, slide: Slide) -> Sliding:
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        u = carrier.z * unit(slide.direction)
+        point = self._point(slide.runner, slide.at)
+        w = self.first[slide.carrier].w
+        arm = runner.at(slide.at) - carrier.x
+        run, first = super().run(slide), super().slope(slide)
+        # along the guide the Coriolis part vanishes, so the rest of the difference is the relative acceleration
+        second = dot(u, point.second - self.second[slide.carrier].at(arm, w))
+        v = first * self.rate
+        coriolis = 2j * (w * self.rate) * v * u
+        return Sliding(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
+
+    def run(self, slide: Slide) -> Real:
+        """Run in a sliding pair, m."""
+        return self._finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
+
+    def slope(self, slide: Slide) -> Real:
+        """First transfer function of the run in a sliding pair."""
+        return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
+
+
+def move(
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: DriverMotion, order: int = 2, *, blank: bool = True,
+    drives: Drives | None = None,
+) -> Motion:  # fmt: skip
+    """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
+
+    With drives by another parameter than q, the law is that of the parameter.
+    """
+    states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
+    rate = law.speed(states.q)
+    whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
+    acceleration = np.full(np.shape(states.q), float(law.sense * law.acceleration))
+    return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=acceleration)
+
+
+def spliced(full: Record, part: Record, where: Real) -> Record:
+    """A record of arrays over positions with those of `where` taken from another one, rounded to its own precision."""
+
+    def joined(path: str, leaf: Any, finer: Any) -> Any:
+        if not (isinstance(leaf, np.ndarray) and isinstance(finer, np.ndarray)) or leaf.shape[-1:] != where.shape:
+            return leaf
+        found = leaf.copy()
+        found[..., where] = finer.astype(leaf.dtype)
+        return found
+
+    return mapped(joined, full, part, skip=FIXED)

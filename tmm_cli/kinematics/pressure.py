@@ -1,0 +1,174 @@
+"""Stage: pressure angles of the groups over the driver's range.
+
+The pressure angle is the acute angle between the force that drives a link, without gravity and inertia, and the
+velocity of the point where it acts (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 5). The force follows
+from statics: the link is resisted by a moment (a force along its guide), the rest of its group carries nothing, and the
+reactions of the group say where it is driven and in what direction. So it holds for a group of any class, with no
+formula of its own.
+
+A link that is driven in several pairs at once (a lead of a class IV contour) has a force and a velocity in each. Its
+angle is that whose cosine is the power of these forces over what they would give along the velocities: for one pair
+that is the angle above, and it is 90 deg in dead positions only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.groups.state import Placement, Wrench
+from tmm_cli.kinematics.driver_range import SCAN, DriverRange
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.roots import least, top
+from tmm_cli.structure.assur import Group, Pair
+from tmm_cli.tolerances import NO_PRESSURE
+from tmm_cli.vectors import Real, cross, dot, unit
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
+
+    pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
+    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest. angles: at the positions of a
+    motion.
+    """
+
+    group: str
+    link: str
+    pair: str
+    slides: bool
+    largest: float
+    place: float
+    allowed: float
+    angles: Real = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def transmission(self) -> float:
+        """The least transmission angle, rad."""
+        return np.pi / 2 - self.largest
+
+    @property
+    def gain(self) -> float:
+        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - 1e-12 else float("inf")
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stays within what is allowed."""
+        return self.largest <= self.allowed
+
+
+Lead = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
+
+
+def named(lead: Lead) -> str:
+    """The pairs in which a link is driven."""
+    return ", ".join(pair.name for pair in lead[2])
+
+
+def followers(group: Group) -> Iterable[Lead]:
+    """Links of a group that it drives: with the pair that holds them and those in which they are driven.
+
+    Those held by the frame count, or the last one where none is.
+    """
+    leads = []
+    for outer in group.outer:
+        link = group.own(outer)
+        inner = tuple(p for p in group.inner if link in (p.i, p.j))
+        held = [p for p in group.outer if link in (p.i, p.j)]
+        if outer.lower and inner and len(held) == 1 and all(p.lower for p in inner):
+            leads.append((link, outer, inner))
+    on_frame = [lead for lead in leads if FRAME in (lead[1].i, lead[1].j)]
+    return on_frame or leads[-1:]
+
+
+def angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+    """Pressure angle of a driven link at every position, rad; nan where there is none."""
+    found: Real = np.arctan2(*sides(motion, kernel, at, lead))
+    return np.where(found < NO_PRESSURE, 0.0, found)
+
+
+def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+    """What is to each other as sine and cosine of the pressure angle: both above zero."""
+    link, outer, pairs = lead
+    group, poses = kernel.group, motion.poses
+    pose = poses[link]
+    still = np.zeros(np.shape(motion.q))
+    if outer.slide is None:
+        pivot = pose.at(motion.linkage.local(link, outer.point))
+        resistance = Wrench(still + 0j, still + 1.0)
+    else:
+        u = poses[outer.slide.carrier].z * unit(outer.slide.direction)
+        resistance = Wrench(u, cross(poses[outer.slide.runner].at(outer.slide.at) - pose.x, u))
+    applied = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
+    reactions = kernel.reactions(at, poses, applied).inner
+    along, across, lost, loose = still, still, still, still
+    for pair in pairs:
+        reaction = reactions[group.inner.index(pair)]
+        force = reaction.force if kernel.inner_on(pair) == link else -reaction.force
+        if pair.slide is None:
+            point = poses[pair.i].at(motion.linkage.local(pair.i, pair.point))
+        else:
+            point = poses[pair.slide.runner].at(pair.slide.at)
+            guide = poses[pair.slide.carrier].z * unit(pair.slide.direction)
+            assert reaction.couple is not None
+            point = point + guide * reaction.couple / dot(reaction.force, 1j * guide)
+        velocity = u if outer.slide is not None else 1j * (point - pivot)
+        # against the resistance all together do work of one sign; by both components, which tells small angles
+        power, aside = -dot(force, velocity), np.abs(cross(force, velocity))
+        along, across = along + power, across + aside
+        if len(pairs) == 1:
+            return across, np.abs(along)
+        most = np.hypot(power, aside)
+        loose = loose + most
+        lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
+    return np.sqrt(lost * (loose + along)), np.abs(along)
+
+
+def find_pressure(
+    linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange, allowed: tuple[float, float]
+) -> tuple[Pressure, ...]:
+    """The largest pressure angle of every driven link; allowed: of sliding and of turning links (rad)."""
+    ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
+    q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
+    scan = link_states(linkage, kernels, q, 0)  # statics needs no velocities
+    found = []
+    with np.errstate(all="ignore"):
+        for number, kernel in enumerate(kernels):
+            upto = towards(kernels, kernel.group.links)
+            for lead in followers(kernel.group):
+                angles = angle(scan, kernel, scan.placements[number], lead)
+                if not np.any(np.isfinite(angles)):
+                    continue
+                k = int(np.nanargmax(angles))
+                place, value = float(q[k]), float(angles[k])
+                if value > 0:
+                    low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
+                    back = partial(_negative, linkage, upto, lead)
+                    place, value = least(back, low, high)
+                    place, value = top(back, place, min(high - place, place - low)), -value
+                slides = lead[1].kind == "P"
+                limit = allowed[0 if slides else 1]
+                found.append(Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit))
+    return tuple(found)
+
+
+def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
+    """The pressure angle of a driven link of a group at every position, rad; nan where there is none."""
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        for lead in followers(kernel.group) if kernel.group.title == group else ():
+            if lead[0] == link:
+                with np.errstate(all="ignore"):
+                    return angle(motion, kernel, at, lead)
+    return np.full(np.shape(motion.q), np.nan)
+
+
+def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:
+    """Of the last group."""
+    motion = link_states(linkage, kernels, q, 0)
+    return -angle(motion, kernels[-1], motion.placements[-1], lead)

@@ -1,0 +1,77 @@
+"""What the models of a problem file are made of: names, values with units, places; and that every key is known."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+MAX_LINKS = 100
+MAX_POSITIONS = 100_000
+
+
+def checked_value(found: Any) -> Any:
+    """A number, or text that may be one."""
+    if isinstance(found, bool) or not isinstance(found, int | float | str):
+        raise PydanticCustomError("value", "a number, text with a unit, or arithmetic on parameters is wanted")
+    return found
+
+
+def checked_name(found: Any) -> str:
+    """A name as text; numbers may be names."""
+    if isinstance(found, int) and not isinstance(found, bool):
+        return str(found)
+    if not isinstance(found, str) or not found.strip():
+        raise PydanticCustomError("name", "a name is wanted")
+    if len(found) > 40:
+        raise PydanticCustomError("name", "a name is at most 40 characters long")
+    return found
+
+
+def checked_vector(found: Any) -> Any:
+    """Two coordinates."""
+    if not isinstance(found, list) or len(found) != 2:
+        raise PydanticCustomError("vector", "two coordinates [x, y] are wanted")
+    return [checked_value(item) for item in found]
+
+
+VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+Value = Annotated[Any, BeforeValidator(checked_value), WithJsonSchema(VALUE)]
+NAMES = [{"type": "string"}, {"type": "integer"}]
+Name = Annotated[str, BeforeValidator(checked_name), WithJsonSchema({"anyOf": NAMES})]
+Vector = Annotated[
+    Any,
+    BeforeValidator(checked_vector),
+    WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2}),
+]
+
+
+def _place(found: Any) -> Any:
+    if isinstance(found, str):
+        return checked_name(found)
+    if isinstance(found, dict):
+        return OnLine.model_validate(found)
+    return checked_vector(found)
+
+
+class Strict(BaseModel):
+    """Every key is known or refused."""
+
+    # built when it first validates: a model that is part of another needs no validator of its own
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
+
+
+class OnLine(Strict):
+    """A place on the line of two points of the link: `at` is 0 at the first, 1 at the second; `side` is off it."""
+
+    on: Name = Field(description="two points of the link, written together: CD (or C-D)")
+    at: Value = Field(default=0.5, description="share of the way from the first to the second")
+    side: Value = Field(default=0, description="distance to the left of the line")
+
+
+Place = Annotated[
+    Any,
+    BeforeValidator(_place),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$comment": "OnLine"}]}),
+]

@@ -1,0 +1,41 @@
+"""A file that has been read: plain data, and where each value stands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+Path = tuple[str | int, ...]
+"""Where a value stands in a file: keys as written (str) and list indices from 0 (int)."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A place in a text; line and column count from 1."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A file as plain data (dict with str keys, list, str, int, float, bool, None) with places.
+
+    marks: start of every value, () being the top. key_marks: start of every key, by the path of its value.
+    commas: flow lists that may be numbers with a decimal comma, by path, with what they would then read.
+    """
+
+    file: str
+    data: dict[str, Any]
+    marks: Mapping[Path, Mark]
+    key_marks: Mapping[Path, Mark]
+    commas: Mapping[Path, str]
+
+    def mark(self, path: Path, *, key: bool = False) -> Mark | None:
+        """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""
+        if path in self.marks:
+            return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]
+        while path and path not in self.marks:
+            path = path[:-1]
+        return self.key_marks.get(path) or self.marks.get(path)

@@ -1,0 +1,160 @@
+"""Reading the parts of a problem file in the light of its parameters, units and names."""
+
+from __future__ import annotations
+
+import cmath
+import re
+from collections.abc import Container, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from tmm_cli.errors import _
+from tmm_cli.linkage import Hinge, Slide
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.expressions import evaluate
+from tmm_cli.problem.schema_parts import OnLine
+from tmm_cli.problem.tree import Path
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.quantities import LENGTH, NUMBER, Dimension
+
+AXIS = 2.5e-16  # the cosine of the double next to a right angle is below this
+POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
+LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
+
+
+class ValueReader:
+    """What values of one file mean. Every method raises ProblemError with the path it was given."""
+
+    def __init__(self, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> None:
+        self.parameters = parameters
+        self.units = units
+
+    def number(self, value: Any, want: Dimension, path: Path) -> float:
+        """A value in SI."""
+        try:
+            return evaluate(value, self.parameters, self.units, want)
+        except ProblemError as error:
+            raise error.at(*path) from None
+
+    def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
+        """A value in SI that must be above zero (or not below)."""
+        number = self.number(value, want, path)
+        if number < 0 or (number == 0 and not zero):
+            raise ProblemError(
+                (_("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")).format(want=want),
+                path=path,
+                found=quote(value) if isinstance(value, str) else str(value),
+                allowed=_("zero or more") if zero else _("more than zero"),
+            )
+        return number
+
+    def vector(self, value: Any, want: Dimension, path: Path) -> complex:
+        """Two coordinates."""
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            raise ProblemError(_("two coordinates [x, y] are wanted"), path=path, found=quote(value))
+        return planar(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
+
+    def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
+        """A place on a link: the name of one of its points, coordinates, or a share of the way between two points."""
+        if isinstance(value, str):
+            return points[self.known(value, points, path, f"point of link {link}" if link != "0" else "frame point")]
+        if isinstance(value, OnLine):
+            first, second = self.two_points(value.on, points, (*path, "on"))
+            way = points[second] - points[first]
+            share = self.number(value.at, NUMBER, (*path, "at"))
+            side = self.number(value.side, LENGTH, (*path, "side"))
+            return points[first] + share * way + (1j * side * way / abs(way) if side else 0)
+        return self.vector(value, LENGTH, path)
+
+    @staticmethod
+    def known(name: str, names: Mapping[str, Any], path: Path, what: str, *, key: bool = False) -> str:
+        """The name, if there is one like it."""
+        if name in names:
+            return name
+        raise ProblemError(
+            _("there is no {what} of that name").format(what=what),
+            path=path,
+            found=quote(name),
+            allowed=", ".join(names) or None,
+            near=nearest(name, names),
+            key=key,
+        )
+
+    @staticmethod
+    def different(links: Sequence[str], path: Path) -> None:
+        """Refuse one link in two places where different ones are wanted."""
+        if len(set(links)) < len(links):
+            raise ProblemError(_("different links are wanted"), path=path, found=", ".join(links))
+
+    @staticmethod
+    def one_of(given: BaseModel, keys: Sequence[str], path: Path) -> str:
+        """The one of these keys that is given."""
+        told = [key for key in keys if getattr(given, key) is not None]
+        if len(told) != 1:
+            raise ProblemError(
+                _("one of these keys is wanted"), path=path, found=", ".join(told) or None, allowed=", ".join(keys),
+                key=True,
+            )  # fmt: skip
+        return told[0]
+
+    def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
+        """Two points of a link written together, CD or C-D."""
+        written = re.split(r"\s*[-–, ]\s*", text.strip())
+        ways = [(text[:k], text[k:]) for k in range(1, len(text))]
+        if len(written) == 2:
+            ways = [(written[0], written[1])]
+        found = [(a, b) for a, b in ways if a in points and b in points and a != b]
+        if len(found) == 1 and points[found[0][0]] != points[found[0][1]]:
+            return found[0]
+        if len(found) > 1:
+            message = _("this can be read in several ways: put a dash between the points")
+        elif found:
+            message = _("these two points lie on one another")
+        else:
+            message = _("two points of one link are wanted")
+        raise ProblemError(
+            message, path=path, found=quote(text), allowed=_("two of {points}").format(points=", ".join(points))
+        )
+
+
+def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
+    """Refuse a name that is taken, or cannot go into tables, drawings and file names: letters and figures only."""
+    pattern = LINK_NAME if what == "link" else POINT_NAME
+    if not pattern.fullmatch(name):
+        raise ProblemError(
+            _("this cannot be the name of a {what}").format(what=what), path=path, found=quote(name),
+            allowed=_("letters and figures, at most 16") if what == "link"
+            else _("letters and figures, at most 16, a letter first"), key=True,
+        )  # fmt: skip
+    if name in taken:
+        raise ProblemError(_("this name is taken"), path=path, found=quote(name), key=True)
+
+
+def unjoined(link: str, base: str, hinges: Iterable[Hinge], slides: Iterable[Slide], path: Path) -> ProblemError:
+    """The refusal of a link that none of these pairs joins to its base; it names those that they do join to it."""
+    pairs = [h.links for h in hinges] + [(s.carrier, s.runner) for s in slides]
+    joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
+    return ProblemError(
+        _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
+        found=quote(link), allowed=", ".join(joined) or None,
+    )  # fmt: skip
+
+
+def planar(x: float, y: float) -> complex:
+    """x + iy in the precision of its parts (a longdouble is no float)."""
+    return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
+
+
+def phase(vector: complex) -> float:
+    """The angle of a vector, in its precision."""
+    return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
+
+
+def direction(angle: float) -> complex:
+    """e^(i angle), exact across and along the axes."""
+    if not isinstance(angle, float):
+        return planar(np.cos(angle), np.sin(angle))
+    turned = cmath.exp(1j * angle)
+    return complex(*(0.0 if abs(part) < AXIS else part for part in (turned.real, turned.imag)))

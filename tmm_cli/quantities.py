@@ -1,0 +1,274 @@
+"""The quantities of motion, forces and energy: what each is called, what it measures, and how it is read.
+
+There is one list for each kind of thing: points, links, sliding pairs, reactions, loads, drivers, forces on the lever,
+and the mechanism as a whole. A thing is a record of arrays, one value a position: `kinematics.motion.Point`,
+`forces.plan.Reaction`, ... Who reads the lists:
+
+- tables take a column, or the columns of a vector's parts, of every quantity that has headers (`columns`);
+- result.json has a key for every quantity, and its schema the text and the unit (results.shapes.fields_of);
+- goals of optimal synthesis read reactions and what balances the driver as they are read here;
+- the bounds of rounding and `prepare` take the leading ones of all things of a linkage (analysis.selection.values).
+
+A further quantity of a point, say, is an attribute of `Point` and a line in POINT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import repeat
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from tmm_cli.errors import _
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Exponents of length, mass, time and angle."""
+
+    length: int = 0
+    mass: int = 0
+    time: int = 0
+    angle: int = 0
+
+    def times(self, other: Dimension, power: int = 1) -> Dimension:
+        """The dimension of a product with other**power."""
+        return Dimension(
+            self.length + power * other.length,
+            self.mass + power * other.mass,
+            self.time + power * other.time,
+            self.angle + power * other.angle,
+        )
+
+    def power(self, exponent: int) -> Dimension:
+        return NUMBER.times(self, exponent)
+
+    def fits(self, wanted: Dimension) -> bool:
+        """Whether it may stand where `wanted` is asked for.
+
+        Radians may come and go beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a ratio alone
+        is not an angle.
+        """
+        return self == wanted or (self._plain() == wanted._plain() != NUMBER)
+
+    def _plain(self) -> Dimension:
+        return Dimension(self.length, self.mass, self.time)
+
+    @property
+    def name(self) -> str | None:
+        """`length`, `moment of force`, ...; None for a dimension that has no name here."""
+        return next((name for name, kind in KINDS.items() if kind.dimension == self), None)
+
+    def __str__(self) -> str:
+        """With its article: `a length`, `an angle`."""
+        if name := self.name:
+            return f"an {name}" if name[0] in "aeiou" else f"a {name}"
+        bases = {"m": self.length, "kg": self.mass, "s": self.time, "rad": self.angle}
+        return f"a quantity in {product_text(bases)}"
+
+    @property
+    def example(self) -> str:
+        """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
+        name = self.name
+        return f"{self}, e.g. {KINDS[name].example}" if name else str(self)
+
+
+class Kind(NamedTuple):
+    """A dimension with a name: the unit of bare numbers unless the file says otherwise, and an example."""
+
+    dimension: Dimension
+    default: str
+    example: str
+
+
+NUMBER: Final = Dimension()
+LENGTH: Final = Dimension(length=1)
+ANGLE: Final = Dimension(angle=1)
+TIME: Final = Dimension(time=1)
+MASS: Final = Dimension(mass=1)
+FORCE: Final = Dimension(1, 1, -2)
+MOMENT: Final = Dimension(2, 1, -2)
+INERTIA: Final = Dimension(2, 1)
+SPEED: Final = Dimension(1, 0, -1)
+ACCELERATION: Final = Dimension(1, 0, -2)
+ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
+ANGULAR_ACCELERATION: Final = Dimension(0, 0, -2, 1)
+STIFFNESS: Final = Dimension(0, 1, -2)
+TORSION: Final = Dimension(2, 1, -2, -1)
+DAMPING: Final = Dimension(0, 1, -1)
+TORSION_DAMPING: Final = Dimension(2, 1, -1, -1)
+
+KINDS: Final[Mapping[str, Kind]] = {
+    "number": Kind(NUMBER, "", "0.5 or 50 %"),
+    "length": Kind(LENGTH, "mm", "110 mm or 0.11 m"),
+    "angle": Kind(ANGLE, "deg", "30 deg or 0.5 rad"),
+    "time": Kind(TIME, "s", "0.5 s"),
+    "mass": Kind(MASS, "kg", "22 kg"),
+    "force": Kind(FORCE, "N", "1500 N or 1.5 kN"),
+    "moment of force": Kind(MOMENT, "N*m", "20 N*m"),
+    "moment of inertia": Kind(INERTIA, "kg*m^2", "1.1 kg*m^2"),
+    "speed": Kind(SPEED, "m/s", "0.2 m/s"),
+    "acceleration": Kind(ACCELERATION, "m/s^2", "3 m/s^2"),
+    "angular speed": Kind(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
+    "angular acceleration": Kind(ANGULAR_ACCELERATION, "rad/s^2", "5 rad/s^2"),
+    "stiffness": Kind(STIFFNESS, "N/m", "800 N/m"),
+    "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
+    "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
+    "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+}
+
+
+def product_text(powers: Mapping[str, int]) -> str:
+    """`m^2·s^-1` from names and powers."""
+    return "·".join(name if power == 1 else f"{name}^{power}" for name, power in powers.items() if power)
+
+
+NamedValues = tuple[str, Any, Dimension]  # header, one value a position (None: the thing has none), dimension
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of a thing, in SI and radians, one value a position.
+
+    name: its key in result.json and, where `read` says nothing else, the attribute of the record. headers: of its
+    columns in tables: of a vector (complex, x + iy) those of x, y and perhaps its size, or of its size alone; none: in
+    no table. of_slider: header and dimension where the driver slides, if they differ. leading: whether `prepare` and
+    the bounds of rounding take it; symbol: what `prepare` calls it where not by its name. goes_with: the attribute that
+    says whether a thing has it at all.
+    """
+
+    name: str
+    text: str
+    unit: str
+    dimension: Dimension
+    headers: tuple[str, ...] = ()
+    vector: bool = False
+    read: Callable[[Any], Any] | None = None
+    of_slider: tuple[str, Dimension] | None = None
+    leading: bool = False
+    symbol: str = ""
+    goes_with: str = ""
+
+    def value(self, record: Any) -> Any:
+        """Its values, or None where the thing has none."""
+        return getattr(record, self.name) if self.read is None else self.read(record)
+
+    def there(self, record: Any) -> bool:
+        """Whether a thing has it."""
+        return not self.goes_with or getattr(record, self.goes_with) is not None
+
+    def measures(self, slider: bool) -> Dimension:
+        """What it measures; slider: of a mechanism whose driver slides."""
+        return self.of_slider[1] if slider and self.of_slider is not None else self.dimension
+
+    def columns(self, record: Any, slider: bool = False) -> Iterator[NamedValues]:
+        """Its columns in a table; slider: of a mechanism whose driver slides; of no record they are empty."""
+        value = None if record is None else self.value(record)
+        parts: Iterable[Any] = (value,)
+        if value is None:
+            parts = repeat(None)
+        elif self.vector:
+            parts = (np.abs(value),) if len(self.headers) == 1 else (value.real, value.imag, np.abs(value))
+        headers = (self.of_slider[0],) if slider and self.of_slider is not None else self.headers
+        for header, part in zip(headers, parts, strict=False):
+            yield header, part, self.measures(slider)
+
+
+def columns(quantities: Iterable[Quantity], record: Any, slider: bool = False) -> list[NamedValues]:
+    """All columns of a thing's quantities."""
+    return [column for quantity in quantities for column in quantity.columns(record, slider)]
+
+
+def place_dimension(kind: str) -> Dimension:
+    """What the place of a driver, or of an output, measures that turns ("turn", "swing") or slides ("slide")."""
+    return LENGTH if kind == "slide" else ANGLE
+
+
+PER_UNIT: Final = "SI, per unit of the driver's motion"
+
+POINT: Final = (
+    Quantity("x", "place", "m", LENGTH, (_("x"), _("y")), vector=True, leading=True),
+    Quantity("v", "velocity", "m/s", SPEED, (_("vx"), _("vy"), _("v")), vector=True, leading=True),
+    Quantity("a", "acceleration", "m/s2", ACCELERATION, (_("ax"), _("ay"), _("a")), vector=True, leading=True),
+    Quantity("first", "derivative of its place by the driver's", PER_UNIT, NUMBER,
+             (_("dx/dq, SI"), _("dy/dq, SI")), vector=True),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("d2x/dq2, SI"), _("d2y/dq2, SI")), vector=True),
+)  # fmt: skip
+
+LINK: Final = (
+    Quantity("angle", "of its x axis", "rad", ANGLE, (_("angle"),), leading=True),
+    Quantity("omega", "angular speed", "rad/s", ANGULAR_SPEED, (_("omega"),), leading=True),
+    Quantity("epsilon", "angular acceleration", "rad/s2", ANGULAR_ACCELERATION, (_("epsilon"),), leading=True),
+    Quantity("first", "d angle / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
+)
+
+SLIDE: Final = (
+    Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (_("s"),)),
+    Quantity("v", "relative velocity", "m/s", SPEED, (_("v relative"),)),
+    Quantity("a", "relative acceleration", "m/s2", ACCELERATION, (_("a relative"),)),
+    Quantity("coriolis", "Coriolis acceleration", "m/s2", ACCELERATION,
+             (_("Coriolis x"), _("Coriolis y"), _("Coriolis")), vector=True),
+    Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
+)  # fmt: skip
+
+REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (_("F"),), read=lambda r: np.abs(r.force))
+REACTION: Final = (
+    Quantity("force", "on link `on`", "N", FORCE, (_("Fx"), _("Fy")), vector=True, leading=True, symbol="R"),
+    REACTION_SIZE,
+    Quantity("angle", "of the force", "rad", ANGLE, (_("angle"),), read=lambda r: np.angle(r.force)),
+    Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
+    Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (_("R tangential"),), vector=True,
+             goes_with="normal"),
+    Quantity("normal", "part along it", "N", FORCE, (_("R normal"),), vector=True, goes_with="tangential"),
+    Quantity("signed", "guides: force along the guide's left normal", "N", FORCE, goes_with="couple"),
+    Quantity("couple", "guides: couple, reduced to the running point", "N m", MOMENT, (_("couple"),), leading=True,
+             symbol="M", goes_with="couple"),
+    Quantity("arm", "guides: where the force acts, along the guide from the running point", "m", LENGTH,
+             (_("acts at"),), goes_with="couple"),
+)  # fmt: skip
+
+LOAD: Final = (
+    Quantity("force", "force", "N", FORCE, (_("Fx"), _("Fy"), _("F")), vector=True),
+    Quantity("moment", "couple", "N m", MOMENT, (_("M"),)),
+)
+
+BALANCE: Final = (
+    Quantity("moment", "null for a driven slider", "N m", MOMENT, (_("M_b"),)),
+    Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (_("F_b"),)),
+    Quantity("vector", "the force", "N", FORCE, vector=True),
+    Quantity("at", "where it acts", "m", LENGTH, vector=True),
+)
+BALANCING: Final = Quantity(
+    "balancing", "what works with the driver's place: moment or force", "N m or N", MOMENT, (_("M_b"),),
+    of_slider=(_("F_b"), FORCE), leading=True, symbol="T", read=lambda balance: balance.generalized,
+)  # fmt: skip
+
+LEVER_FORCE: Final = (
+    Quantity("size", "force", "N", FORCE, (_("force"),)),
+    Quantity("arm", "about the pole", "m per rad", LENGTH, (_("arm"),), of_slider=(_("arm"), NUMBER)),
+)
+LEVER_COUPLE: Final = (
+    Quantity("size", "couple", "N m", MOMENT, (_("couple"),)),
+    Quantity("arm", "omega / omega_1", "", NUMBER, (_("omega / omega_1"),)),
+)
+LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N m or N", MOMENT, (_("moment"),),
+                               of_slider=(_("moment"), FORCE))  # fmt: skip
+
+ENERGY: Final = (
+    Quantity("inertia", "reduced moment of inertia, or mass", "kg m2 or kg", INERTIA, (_("J reduced"),),
+             of_slider=(_("m reduced"), MASS)),
+    Quantity("slope", "its derivative by the driver", "SI", NUMBER),
+    Quantity("moment", "reduced moment of all loads but inertia, or force", "N m or N", MOMENT, (_("M reduced"),),
+             of_slider=(_("F reduced"), FORCE)),
+    Quantity("kinetic", "kinetic energy", "J", NUMBER, (_("kinetic energy, J"),)),
+    Quantity("rate", "its rate", "W", NUMBER, (_("its rate, W"),)),
+    Quantity("drivers", "power of the drivers", "W", NUMBER, (_("drivers, W"),)),
+    Quantity("weights", "power of weights", "W", NUMBER, (_("weights, W"),)),
+    Quantity("loads", "power of loads", "W", NUMBER, (_("loads, W"),)),
+    Quantity("friction", "power of friction", "W", NUMBER, (_("friction, W"),)),
+    Quantity("balance", "what is left of all powers, against the largest", "", NUMBER),
+)  # fmt: skip

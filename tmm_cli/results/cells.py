@@ -1,0 +1,129 @@
+"""Every number of the tables and of result.json, by a key that says what it is, and back to its place."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.quantities import ANGLE
+from tmm_cli.results.as_json import LARGE, numbers
+from tmm_cli.results.reports import REPORTS
+from tmm_cli.results.table import Table
+from tmm_cli.vectors import Real
+
+COMPUTED = ("quality", "pressure", "cycle", "kinematics", "forces", "lever", "energy")  # reports of computed numbers
+Cells = Mapping[Hashable, Real]
+
+
+def all_numbers(
+    results: Results, reports: Collection[str] = COMPUTED, parts: Collection[str] | None = LARGE
+) -> tuple[Cells, Cells]:
+    """Those that have one value a position, and the others, which were searched for. Keys of angles begin with True.
+
+    parts: the large ones of result.json that are wanted; None: tables alone.
+    """
+    count, turns = len(results.numbers), results.linkage.driver.kind == "turn"
+    at_positions: dict[Hashable, Real] = {}
+    searched: dict[Hashable, Real] = {}
+    for table in computed_tables(results, reports):
+        keys = keys_of(table, count)
+        for k, column in enumerate(table.columns):
+            if column.dimension is not None and keys is None:
+                searched[False, table.name, column.header] = column.array
+            elif column.dimension is not None and keys is not None:
+                at_positions.update(zip(keys[k], column.array.reshape(count, -1).T, strict=True))
+    for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
+        if isinstance(value, float):
+            searched[(False, *path)] = np.array([value])
+        elif isinstance(value, np.ndarray) and value.shape == (count,) and value.dtype.kind == "f":
+            angle = path[-1] in ("angle", "angles") or (turns and path == ("positions", "driver"))
+            at_positions[(angle, *path)] = value
+    return at_positions, searched
+
+
+def cells(results: Results) -> Cells:
+    """The numbers at positions."""
+    return all_numbers(results)[0]
+
+
+def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
+    """What reads the numbers of searches out of results like these; whole: those of result.json too."""
+    reports = ("quality", "pressure", "energy") if results.friction is not None else ("quality", "pressure")
+    return lambda other: all_numbers(other, reports, () if whole else None)[1]
+
+
+def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:
+    """Tables with computed numbers, of these reports."""
+    for name, part, __ in REPORTS:
+        wanted = name == "kinematics" or not results.of  # else the rest is not there
+        if name in reports and wanted and getattr(results, part) is not None:
+            yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
+
+
+def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
+    """For each column the keys of its rows at one position; None when the rows are no positions."""
+    if not count or not table.columns or table.columns[0].header != _("position") or table.rows % count:
+        return None
+    per = table.rows // count
+    words = [c.values[:per] for c in table.columns[1:] if c.dimension is None] if per > 1 else []
+    rows, headers = Counter[Hashable](), Counter[str]()
+    told = []
+    for row in range(per):
+        name = tuple(column[row] for column in words)
+        told.append((*name, rows[name]))
+        rows[name] += 1
+    keys: list[list[Hashable]] = []
+    for column in table.columns:
+        which = (column.dimension == ANGLE, table.name, column.header, headers[column.header])
+        headers[column.header] += 1
+        keys.append([(*which, *name) for name in told])
+    return keys
+
+
+def _leaves(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Numbers and arrays of nested content with their paths; items of lists are known by name and link."""
+    for name, part in _parts(value):
+        if isinstance(part, dict | list):
+            yield from _leaves(part, (*path, name))
+        else:
+            yield (*path, name), float(part) if isinstance(part, float | np.floating) else part
+
+
+def _parts(value: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        yield from value.items()
+        return
+    seen = Counter[str]()
+    for part in value:
+        name = " ".join(str(part.get(key, "")) for key in ("name", "link", "group")) if isinstance(part, dict) else ""
+        yield f"{name} {seen[name]}", part
+        seen[name] += 1
+
+
+def parallel(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
+    """The digits of nested content in its shape; what has none is left out, but for items of lists."""
+    if isinstance(value, dict):
+        inner = {name: parallel(part, values, (*path, name)) for name, part in value.items()}
+        return {name: part for name, part in inner.items() if part is not None} or None
+    if isinstance(value, list):
+        items = [parallel(part, values, (*path, name)) for name, part in _parts(value)]
+        return None if all(item is None for item in items) else [{} if item is None else item for item in items]
+    found = values.get(path)
+    if found is None:
+        return None
+    short = _short(found)
+    return short[0] if isinstance(value, float | np.floating) else short
+
+
+def _short(values: Real) -> list[float]:
+    """Two figures are enough for a bound; the last one is rounded up."""
+    with np.errstate(all="ignore"):
+        unit = 10.0 ** (np.floor(np.log10(values)) - 1)
+        short = np.where(values > 0, np.ceil(values / unit) * unit, values)
+    return [float(f"{v:.2g}") for v in short.tolist()]

@@ -1,0 +1,210 @@
+"""The parts of result.json that come from motion and forces; all are read from Results."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.selection import links, moving_centres, moving_points
+from tmm_cli.kinematics.motion import Sliding
+from tmm_cli.linkage import Slide
+from tmm_cli.quantities import BALANCE, ENERGY, LEVER_MOMENT, LINK, LOAD, POINT, REACTION, SLIDE
+from tmm_cli.results.reports.cycle import states
+from tmm_cli.results.shapes import (
+    FLAG,
+    FLAGS,
+    INTEGER,
+    NUMBER,
+    SERIES,
+    TEXT,
+    VECTOR,
+    Field,
+    fields_of,
+    inside,
+    list_of,
+    map_of,
+    optional,
+    record,
+)  # fmt: skip
+from tmm_cli.vectors import Vector
+
+LIMIT = record("a limit", Field("at", NUMBER, "place", "place"), Field("group", TEXT, "by which group"))
+DRIVER = record(
+    "the input",
+    Field("link", TEXT, "driven link", "linkage.driver.link"),
+    Field("kind", TEXT, "turn or slide", "linkage.driver.kind"),
+    Field("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
+    Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", "linkage.driver.rate"),
+    Field("acceleration", NUMBER, "rad/s2 or m/s2, in its sense", "linkage.driver.acceleration"),
+    Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
+    Field("range", list_of(NUMBER), "from, to: places of the driver",
+          lambda results: (results.driver_range.start, results.driver_range.end)),
+    Field("limits", list_of(LIMIT), "where it is stopped", "driver_range.limits"),
+)  # fmt: skip
+
+PRESSURE = record(
+    "where and how a link is driven",
+    Field("group", TEXT, "the group"),
+    Field("link", TEXT, "driven link"),
+    Field("pair", TEXT, "driven in"),
+    Field("slides", FLAG, "slides on what holds it, else turns"),
+    Field("largest", NUMBER, "largest pressure angle, rad"),
+    Field("at", NUMBER, "place of the driver there", "place"),
+    Field("allowed", NUMBER, "rad"),
+    Field("holds", FLAG, "within what is allowed"),
+    Field("transmission", NUMBER, "least transmission angle, rad"),
+    Field("gain", NUMBER, "force increase, 1/cos of the largest"),
+    Field("angles", SERIES, "pressure angle, rad"),
+)
+DEAD = record(
+    "a dead position",
+    Field("at", NUMBER, "place of the driver", "place"),
+    Field("group", TEXT, "the group"),
+    Field("margin", NUMBER, "what is left of its margin there"),
+)
+STROKE = record(
+    "a stroke",
+    Field("start", NUMBER, "driver's place at its start"),
+    Field("length", NUMBER, "how far the driver goes in it"),
+    Field("from", NUMBER, "place of the output at its start", "low"),
+    Field("run", NUMBER, "of the output, signed"),
+    Field("working", FLAG, "working stroke"),
+    Field("rest", NUMBER, "how far the driver goes in the dwell after it, if there is one",
+          there=lambda stroke: stroke.rest),
+)  # fmt: skip
+OUTPUT = record(
+    "strokes of an output",
+    Field("link", TEXT, "output link"),
+    Field("kind", TEXT, "slide or swing"),
+    Field("travel", NUMBER, "stroke H, m, or swing psi, rad", lambda s: s.travel if s.strokes else None),
+    Field("k", NUMBER, "coefficient of change of mean speed", lambda s: s.k if s.strokes else None),
+    Field("rule", TEXT, "why that stroke is the working one"),
+    Field("strokes", list_of(STROKE), "the working one first"),
+)
+TRAVEL = record(
+    "extremes",
+    Field("link", TEXT, "output link"),
+    Field("kind", TEXT, "slide or swing"),
+    Field("low", NUMBER, "least run, m or rad"),
+    Field("high", NUMBER, "greatest"),
+    Field("low_at", NUMBER, "place of the driver there"),
+    Field("high_at", NUMBER, "and there"),
+)
+
+POSITIONS = record(
+    "which positions",
+    Field("number", list_of(INTEGER), "numbers in the cycle, from 0", "numbers"),
+    Field("driver", SERIES, "angle of the crank, rad, or run of the driven slider, m", "motion.q"),
+    Field("time", SERIES, "s since position 0", "motion.time"),
+    Field("rate", SERIES, "speed of the driver, rad/s or m/s", "motion.rate"),
+    Field("placed", FLAGS, "can be assembled", "motion.placed"),
+    Field("moving", FLAGS, "has velocities and forces", "motion.moving"),
+    Field("state", list_of(TEXT), "what is wrong with a position, or nothing", states),
+)
+
+
+class SlideMotion(NamedTuple):
+    """A sliding pair and how it moves."""
+
+    slide: Slide
+    motion: Sliding
+
+
+def _slides(results: Results) -> dict[str, SlideMotion]:
+    assert results.motion is not None
+    slides = () if results.of else results.linkage.slides
+    return {slide.name: SlideMotion(slide, results.motion.slide(slide)) for slide in slides}
+
+
+def _margins(results: Results) -> dict[str, Any]:
+    assert results.motion is not None
+    pairs = zip(results.motion.kernels, results.motion.placements, strict=True)
+    return {kernel.group.title: placement.margin for kernel, placement in pairs}
+
+
+POINT_MOTION = record("motion of a point", *fields_of(POINT))
+SLIDE_MOTION = record(
+    "motion of the runner along the carrier's guide",
+    Field("runner", TEXT, "link", "slide.runner"),
+    Field("carrier", TEXT, "link", "slide.carrier"),
+    *inside("motion", fields_of(SLIDE)),
+)
+KINEMATICS = record(
+    "motion",
+    Field("output", optional(TEXT), "output link", "mechanism.output"),
+    Field("points", map_of(POINT_MOTION), "every named point that moves",
+          lambda r: moving_points(r.linkage, r.motion, r.of)),
+    Field("centres", map_of(POINT_MOTION), "centres of mass, S and the link",
+          lambda r: moving_centres(r.linkage, r.motion, r.of)),
+    Field("links", map_of(record("a link", *fields_of(LINK))), "turning of every link",
+          lambda r: {name: r.motion.link(name) for name in links(r.linkage, r.of)}),
+    Field("slides", map_of(SLIDE_MOTION), "sliding pairs", _slides),
+    Field("margins", map_of(SERIES), "distance of each group from its dead position: 1 at best, 0 there", _margins),
+)  # fmt: skip
+
+
+def _pins(results: Results) -> dict[str, dict[str, Vector]]:
+    """At a compound hinge, what the pin does to each link (however the hinge is counted as pairs)."""
+    assert results.reactions is not None
+    found = {}
+    for hinge in results.linkage.hinges:
+        pairs = [r for r in results.reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
+        if len(hinge.links) > 2:
+            found[hinge.point] = {
+                link: np.sum([r.onto(link) for r in pairs if link in (r.on, r.by)], axis=0) for link in hinge.links
+            }
+    return found
+
+
+APPLIED = record(
+    "G weight, U inertia force with its couple, or a load of the file",
+    Field("name", TEXT, "name"),
+    Field("kind", TEXT, "weight, inertia, load, friction"),
+    Field("link", TEXT, "link"),
+    *fields_of(LOAD),
+)
+PAIR_REACTION = record(
+    "what link `by` does to link `on`", Field("on", TEXT, "link"), Field("by", TEXT, "link"), *fields_of(REACTION)
+)
+DRIVER_BALANCE = record(
+    "what balances a driver",
+    Field("kind", TEXT, "moment or force: which the frame's reaction belongs to"),
+    *fields_of(BALANCE),
+)
+FORCES = record(
+    "force plan",
+    Field("loads", list_of(APPLIED), "everything applied", "reactions.applied"),
+    Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.all}),
+    Field("compound_hinges", map_of(map_of(VECTOR)), "force of the pin on each link, by link, N", _pins),
+    Field("balancing", DRIVER_BALANCE, "what balances the first driver", "reactions.balance"),
+    Field("drivers", map_of(DRIVER_BALANCE), "what balances each driver, by its link",
+          lambda r: {balance.driver.link: balance for balance in r.reactions.balances}),
+)  # fmt: skip
+
+LEVER_ITEM = record(
+    "one of them",
+    Field("name", TEXT, "name"),
+    Field("link", TEXT, "link"),
+    Field("kind", TEXT, "force or couple", lambda item: "force" if item.end is not None else "couple"),
+    Field("size", SERIES, "N or N m"),
+    Field("arm", SERIES, "m per rad; for a couple omega / omega_1"),
+    *fields_of((LEVER_MOMENT,)),
+)
+LEVER = record(
+    "the Zhukovsky lever",
+    Field("balancing", SERIES, "moment, N m, or force of a driven slider, N", "lever.balancing"),
+    Field("difference", SERIES, "from the force plan, relative to the largest in the cycle", "lever.difference"),
+    Field("limit", NUMBER, "allowed difference", "problem.lever_limit"),
+    Field("holds", FLAG, "below the limit at every position", "lever_holds"),
+    Field("items", list_of(LEVER_ITEM), "forces and couples on the lever", "lever.items"),
+)
+MECHANISM_ENERGY = record(
+    "power balance, and the mechanism reduced to its first driver",
+    *inside("energy", fields_of(ENERGY)),
+    Field("locked", FLAGS, "locked by friction", "friction.locked", lambda r: r.friction is not None),
+    Field("efficiency", NUMBER, "with friction: over the cycle", "losses.efficiency", lambda r: r.losses is not None),
+    Field("friction_work", map_of(NUMBER), "work of friction over the cycle, J, by pair", "losses.pairs",
+          lambda r: r.losses is not None),
+)  # fmt: skip

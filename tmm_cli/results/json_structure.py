@@ -1,0 +1,189 @@
+"""The parts of result.json that need no motion: structure, mobility in space, chains, assemblies of groups."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tmm_cli.linkage import Link
+from tmm_cli.results.shapes import (
+    FLAG,
+    INTEGER,
+    NAMES,
+    NUMBER,
+    TEXT,
+    Field,
+    inside,
+    list_of,
+    map_of,
+    optional,
+    record,
+)  # fmt: skip
+from tmm_cli.structure.assur import ROMAN
+from tmm_cli.structure.contours import classification, contours
+
+PROBLEM = record(
+    "what was computed", Field("name", TEXT, "of the file"), Field("title", TEXT, "title"),
+    Field("description", TEXT, "description"),
+)  # fmt: skip
+
+
+class LinkInRole(NamedTuple):
+    """A moving link and what it is in the mechanism."""
+
+    link: Link
+    role: str
+
+
+LINK = record(
+    "a link",
+    Field("name", TEXT, "its key in the file", "link.name"),
+    Field("role", TEXT, "crank, rocker, coupler, ..."),
+    Field("label", TEXT, "the file's own name", "link.label"),
+    Field("points", NAMES, "its points", "link.points"),
+)
+PAIR = record(
+    "a pair",
+    Field("name", TEXT, "point or guide; a compound hinge's further pairs have primes"),
+    Field("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
+    Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j)),
+    Field("point", TEXT, "hinge or running point"),
+)
+PASSIVE = record(
+    "conditions that only repeat others",
+    Field("pair", TEXT, "pair"),
+    Field("constraints", NUMBER, "how many"),
+    Field("links", NAMES, "its links, the passive one last"),
+    Field("among", NAMES, "links that hold each other"),
+)
+GROUP = record(
+    "an Assur group",
+    Field("links", NAMES, "links"),
+    Field("class", TEXT, "roman", lambda group: ROMAN[group.group_class]),
+    Field("order", NUMBER, "number of outer pairs"),
+    Field("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
+    Field("name", TEXT, "II(2,3)", "title"),
+    Field("inner", NAMES, "inner pairs", lambda group: [pair.name for pair in group.inner]),
+    Field("outer", NAMES, "outer pairs", lambda group: [pair.name for pair in group.outer]),
+)
+
+
+STRUCTURE = record(
+    "links, pairs and Assur groups",
+    Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
+    Field("links", list_of(LINK), "moving links",
+          lambda results: [LinkInRole(results.linkage.links[n], results.roles[n]) for n in results.structure.links]),
+    Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
+    Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
+          lambda results: results.structure.mobility + results.structure.redundant),
+    Field("passive", list_of(PASSIVE), "passive constraints", "structure.passive"),
+    Field("n", NUMBER, "moving links", lambda results: len(results.structure.links)),
+    Field("p1", NUMBER, "lower pairs", lambda results: len(results.structure.pairs) - results.structure.higher),
+    Field("p2", NUMBER, "higher pairs", "structure.higher"),
+    Field("contours", NUMBER, "independent contours K = p - n", "structure.contours"),
+    Field("classification", NAMES, "closed or open; elementary, simple, complex; of one type or several",
+          lambda results: classification(results.structure)),
+    Field("formula", TEXT, "formula of structure", "structure.formula"),
+    Field("class", TEXT, "class of the mechanism", lambda results: ROMAN[results.structure.mechanism_class]),
+    Field("groups", list_of(GROUP), "in solving order", "structure.groups"),
+)  # fmt: skip
+
+CONTOUR = record(
+    "a contour",
+    Field("links", NAMES, "from the one nearest the frame round"),
+    Field("pairs", NAMES, "between them"),
+)
+
+
+CHAIN = (
+    Field("mobility", NUMBER, "Somov-Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5"),
+    Field("n", NUMBER, "moving links", lambda chain: len(chain.links)),
+    Field("p1", NUMBER, "pairs with 1 freedom", lambda chain: chain.p(1)),
+    Field("p2", NUMBER, "pairs with 2 freedoms", lambda chain: chain.p(2)),
+    Field("p3", NUMBER, "pairs with 3 freedoms", lambda chain: chain.p(3)),
+    Field("p4", NUMBER, "pairs with 4 freedoms", lambda chain: chain.p(4)),
+    Field("p5", NUMBER, "pairs with 5 freedoms", lambda chain: chain.p(5)),
+    Field("K", NUMBER, "independent contours", lambda chain: len(chain.pairs) - len(chain.links)),
+)
+REPLACEMENT = record(
+    "a pair",
+    Field("pair", TEXT, "name", "pair.name"),
+    Field("links", NAMES, "first and second link", lambda replacement: (replacement.pair.i, replacement.pair.j)),
+    Field("was", TEXT, "kind"),
+    Field("kind", TEXT, "kind it is to have"),
+    Field("freedoms", NUMBER, "of that kind"),
+)
+PROPOSED = record(
+    "the same count with them",
+    *inside("proposed", CHAIN),
+    Field("local", NUMBER, "Wm", "rank.local"),
+    Field("redundant", NUMBER, "q", "redundant_then"),
+)
+SPACE = record(
+    "the planar linkage counted in space",
+    *inside("chain", CHAIN),
+    Field("wanted", NUMBER, "mobility Wo"),
+    Field("local", NUMBER, "local mobility Wm"),
+    Field("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
+    Field("contours", list_of(CONTOUR), "independent contours",
+          lambda space: contours(space.chain.pairs, space.chain.links)),
+    Field("replacements", optional(list_of(REPLACEMENT)),
+          "pairs to give more freedoms, so that q = 0; null: none found"),
+    Field("proposed", optional(PROPOSED), "the same count with them",
+          lambda space: None if space.replacements is None else space),
+)  # fmt: skip
+
+CHAIN_PAIR = record(
+    "a pair",
+    Field("name", TEXT, "name"),
+    Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j)),
+    Field("kind", optional(TEXT), "null when only freedoms are given", lambda pair: pair.kind or None),
+    Field("freedoms", NUMBER, "1 to 5"),
+    Field("class", NUMBER, "number of its constraints", "pair_class"),
+)
+LOCAL_FREEDOM = record(
+    "one of them",
+    Field("links", NAMES, "that move alone"),
+    Field("freedoms", NUMBER, "how many"),
+    Field("pairs", NAMES, "that hold them", lambda local: [pair.name for pair in local.ends]),
+)
+SPATIAL = record(
+    "a chain given by pairs alone",
+    *inside("chain", CHAIN),
+    Field("form", TEXT, "open, closed, or mixed: with open branches"),
+    Field("contours", list_of(CONTOUR), "independent contours"),
+    Field("branches", NAMES, "links in no contour"),
+    Field("pairs", list_of(CHAIN_PAIR), "pairs", "chain.pairs"),
+    Field("local_freedoms", list_of(LOCAL_FREEDOM), "found from the kinds of pairs", "local"),
+    Field("local", NUMBER, "local mobility Wm, as given or as found", "local_mobility"),
+    Field("wanted", NUMBER, "mobility Wo, as given"),
+    Field("redundant", NUMBER, "q = Wo + Wm - W"),
+    Field("output", optional(TEXT), "link held"),
+    Field("manoeuvrability", NUMBER, "mobility with the output held"),
+)
+
+PLACE = record("m", Field("x", NUMBER, "x", "real"), Field("y", NUMBER, "y", "imag"))
+ASSEMBLY = record(
+    "an assembly",
+    Field("angles", map_of(NUMBER), "of the group's links, rad"),
+    Field("points", map_of(PLACE), "of the group's links, m"),
+    Field("margin", NUMBER, "distance from a dead position: 0 there"),
+    Field("sketch", FLAG, "that of the sketch", "of_sketch"),
+)
+GROUP_ASSEMBLIES = record(
+    "a group",
+    Field("group", TEXT, "II(2,3)", "group.title"),
+    Field("method", TEXT, "closed form, polynomial, angles, many starts"),
+    Field("complete", FLAG, "whether it is proved that there are no others"),
+    Field("most", NUMBER, "so many are possible, if known"),
+    Field("moves", FLAG, "moves by itself here: assemblies without end"),
+    Field("assemblies", list_of(ASSEMBLY), "real ones"),
+)
+ASSEMBLIES = record(
+    "a place",
+    Field("position", optional(INTEGER), "its number; null: the place of the sketch", "number"),
+    Field("driver", NUMBER, "rad or m", "q"),
+    Field("undecided", optional(TEXT), "group that the sketch does not decide",
+          lambda here: here.undecided and here.undecided.title),
+    Field("lost", NAMES, "groups whose neighbours cannot be placed", lambda here: [g.title for g in here.lost]),
+    Field("groups", list_of(GROUP_ASSEMBLIES), "in solving order, links before placed as in the sketch"),
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""Structural synthesis: schemes built of Assur groups."""

@@ -1,0 +1,92 @@
+"""The block `synthesis:` of a problem file: what the blocks of all tasks share. Each task has its own in its room (see
+tmm_cli.synthesis).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, Field, ValidationError, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema_parts import VALUE, Name, Strict, Value, checked_value
+from tmm_cli.problem.tree import Tree
+from tmm_cli.synthesis import TASKS, block
+
+
+def _range(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 2:
+        raise PydanticCustomError("range", "two numbers [from, to] are wanted")
+    return [checked_value(item) for item in found]
+
+
+Range = Annotated[
+    Any, BeforeValidator(_range), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
+]
+
+
+class Block(Strict):
+    """What all tasks have. names: other names of the parameters that are found."""
+
+    task: str = Field(description="one of: " + ", ".join(TASKS))
+    names: dict[Name, Name] = Field(
+        default_factory=dict, max_length=50, description="other names for what is found, {r: OA, l: AB}"
+    )
+
+
+def one_of(shape: Block, sets: Sequence[tuple[str, ...]], what: str) -> tuple[str, ...]:
+    """Which of these sets of keys is given, and no more of them. Raises ProblemError, which says that they do not
+    determine `what`.
+    """
+    keys = dict.fromkeys(key for one in sets for key in one)
+    here = tuple(key for key in keys if getattr(shape, key) is not None)
+    for one in sets:
+        if set(one) == set(here):
+            return one
+    raise ProblemError(
+        _("these keys do not determine {what}").format(what=what), found=", ".join(here) or "none of them",
+        allowed="; or ".join(" and ".join(one) for one in sets), key=True,
+    )  # fmt: skip
+
+
+class OfTheFile(Exception):  # noqa: N818  it says whose the error is
+    """What the file around the block is refused for, with numbers that the synthesis tries."""
+
+    def __init__(self, error: ProblemError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+class SynthesisFile(Strict):
+    """A problem file without a linkage, for `tmm synthesis` alone."""
+
+    tmm: Literal[1] = Field(description="version of this format")
+    title: str = Field(default="", max_length=200)
+    description: str = Field(default="", max_length=4000)
+    units: dict[str, str] = Field(default_factory=dict)
+    parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
+    synthesis: dict[str, Any]
+
+
+class Named(BaseModel):
+    """The key that says whose block it is."""
+
+    task: Literal[tuple(TASKS)]  # type: ignore[valid-type]
+
+
+def checked(tree: Tree) -> Block:
+    """The block of a file in the shape of its task, of which only the file's own is imported. Raises ProblemError."""
+    given, shape = tree.data["synthesis"], Block
+    try:
+        if not isinstance(given, dict) or not isinstance(given.get("task"), str) or given["task"] not in TASKS:
+            Named.model_validate(given)
+        shape = block(given["task"]).Shape
+        found: Block = shape.model_validate(given)
+    except ValidationError as error:
+        from tmm_cli.problem.refusals import shape_error  # only a bad file needs its words
+
+        raise shape_error(error, tree, shape, ("synthesis",)) from None
+    return found

@@ -1,0 +1,123 @@
+"""Four-bar by positions of its coupler: keys of the task."""
+
+from __future__ import annotations
+
+from math import sin
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
+
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema_parts import Value, Vector
+from tmm_cli.problem.values import ValueReader, planar
+from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.synthesis.blocks import Block
+from tmm_cli.synthesis.coupler_positions.task import Side, Task
+
+
+def _pose(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
+        raise PydanticCustomError("pose", "a place and an angle [x, y, angle] are wanted")
+    return found
+
+
+Pose = Annotated[list[Value], BeforeValidator(_pose)]
+Where = Literal["left", "right"]
+DYADS = ("AB", "DC")
+SAME = 1e-12  # half a whole turn more is the same angle
+
+
+class Shape(Block):
+    """A four-bar ABCD (AB drives) whose coupler takes 2, 3 or 4 positions."""
+
+    task: Literal["coupler-positions"]
+    positions: list[Pose] = Field(
+        min_length=2, max_length=4, description="[x, y, angle] of the coupler's axes, 2 to 4, in order"
+    )
+    B: Vector | None = Field(default=None, description="pin of AB in the coupler's axes; or its pivot A")
+    C: Vector | None = Field(default=None, description="pin of DC in the coupler's axes; or its pivot D")
+    A: Vector | None = Field(default=None, description="pivot of AB on the frame")
+    D: Vector | None = Field(default=None, description="pivot of DC on the frame")
+    AB: Value | None = Field(default=None, description="length, with two positions")
+    DC: Value | None = Field(default=None, description="length, with two positions")
+    AB_side: Where = Field(default="left", description="of the way from place 1 to 2, with two positions")
+    DC_side: Where = "left"
+    AB_turn: Value | None = Field(default=None, description="turn of AB from 1 to 2, with four; best transmission")
+    DC_turn: Value | None = Field(default=None, description="turn of DC from 1 to 2, with four; best transmission")
+    A_near: Vector | None = Field(
+        default=None, description="or, with four, a place: the pivot of the curve nearest to it"
+    )
+    D_near: Vector | None = Field(default=None, description="the same of D")
+    pivots_within: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=2, description="with four, opposite corners of a box for free pivots"
+    )
+    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links of that turn")
+    DC_branch: Literal[1, 2] = 1
+    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI. Raises ProblemError."""
+    count = len(shape.positions)
+    poses = [
+        (
+            planar(*(values.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
+            values.number(pose[2], ANGLE, ("positions", k, 2)),
+        )
+        for k, pose in enumerate(shape.positions)
+    ]
+    for k in range(count):
+        same = [m for m in range(k) if poses[m][0] == poses[k][0] and abs(sin((poses[m][1] - poses[k][1]) / 2)) < SAME]
+        if same:
+            raise ProblemError(
+                "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",
+                allowed="any other position, as one turned by 20 deg",
+            )  # fmt: skip
+    sides = {name: side for name in DYADS if (side := _side(shape, values, name, count)) is not None}
+    places, angles = zip(*poses, strict=True)
+    return Task(tuple(places), tuple(angles), sides, shape.defects == "keep", _box(shape, values, count, sides))
+
+
+def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) -> tuple[complex, complex] | None:
+    """Corners of the box for free pivots."""
+    if shape.pivots_within is None:
+        return None
+    if count != 4 or len(sides) == 2:
+        why = f"{count} positions" if count != 4 else "both links are given"
+        raise ProblemError(
+            "a box is for pivots that are free", path=("pivots_within",), found=why,
+            allowed="four positions, and AB or DC free", key=True,
+        )  # fmt: skip
+    one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
+    return one, other
+
+
+def _side(shape: Shape, values: ValueReader, name: str, count: int) -> Side | None:
+    """What is given of a dyad, which must be just what the count of positions needs."""
+    pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
+    given = {key for key in (pivot, pin, name, turn, near) if getattr(shape, key) is not None}
+    good = {
+        2: ({pivot, name}, {pin, name}), 3: ({pivot}, {pin}), 4: ({turn}, {near}, set[str]()),
+    }[count]  # fmt: skip
+    if given not in good:
+        wanted = {
+            2: f"{pin} and {name}; or {pivot} and {name}",
+            3: f"{pin}; or {pivot}",
+            4: f"{turn}; or {near}; or nothing",
+        }
+        raise ProblemError(
+            f"these keys do not determine {name} with {count} positions", found=", ".join(sorted(given)) or "none",
+            allowed=wanted[count], key=True,
+        )  # fmt: skip
+    if not given:
+        return None
+    found: dict[str, Any] = {
+        field: values.vector(getattr(shape, key), LENGTH, (key,))
+        for field, key in (("pivot", pivot), ("pin", pin), ("near", near)) if key in given
+    }  # fmt: skip
+    if name in given:
+        found["length"] = values.number(getattr(shape, name), LENGTH, (name,))
+    if turn in given:
+        found["turn"] = values.number(getattr(shape, turn), ANGLE, (turn,))
+    return Side(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)

@@ -1,0 +1,158 @@
+"""Pivots that guide a plane through 2, 3 or 4 positions: centres of circles through the places of one of its points.
+
+Positions: places P (complex, m) of the plane's origin and angles theta (rad) of its axis. A dyad AB has its pivot A on
+the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point curve and A on
+the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); by the turn beta2 of AB from position 1 to 2,
+    W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,
+W = AB and Z = BP in position 1, alpha_j = theta_j - theta_1; its determinant is a closed four-bar of the unknown turns
+(G. N. Sandor, A. G. Erdman, Advanced Mechanism Design 2, 1984). Extended precision throughout; leading axes are many
+dyads or tasks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.synthesis.four_bar import extreme_inputs
+from tmm_cli.tolerances import DEAD_COSINE
+
+EXACT: Final = np.longdouble
+COMPLEX: Final = np.clongdouble
+SAME_ANGLE: Final = 1e-9  # rad: the plane does not turn by less
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Places (m) and angles (rad), positions on the last axis."""
+
+    places: Any
+    angles: Any
+
+    def on_frame(self, local: Any) -> Any:
+        """Places of points of the plane, positions on a last axis more."""
+        return self.places + np.asarray(local, COMPLEX)[..., None] * unit(self.angles)
+
+    def in_plane(self, fixed: Any) -> Any:
+        """Points of the frame in the plane's axes, in every position."""
+        return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit(-np.asarray(self.angles))
+
+    @cached_property
+    def loop(self) -> tuple[Any, ...]:
+        """Of the closed four-bar of four positions: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4."""
+        places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
+        d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
+        d2, d3, d4 = (
+            a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1], a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
+            a[..., 0] * d[..., 1] - a[..., 1] * d[..., 0],
+        )  # fmt: skip
+        return d, a, d2, d3, np.abs(d3), np.abs(d4), d2 + d3 + d4
+
+
+@dataclass(frozen=True)
+class Dyads:
+    """Pivots on the frame and pins in the plane (m, complex)."""
+
+    pivot: Any
+    pin: Any
+
+    def __getitem__(self, at: Any) -> Dyads:
+        return Dyads(np.asarray(self.pivot)[at], np.asarray(self.pin)[at])
+
+
+def unit(angle: Any) -> Any:
+    """e^(i angle) in extended precision."""
+    angle = np.asarray(angle, EXACT)
+    return np.cos(angle) + 1j * np.sin(angle)
+
+
+def equal_angles(angles: Any) -> bool:
+    """Whether the plane does not turn between positions of these angles (rad)."""
+    return bool(np.all(np.abs(unit(np.asarray(angles) - angles[0]) - 1) < SAME_ANGLE))
+
+
+def centre(places: Any) -> Any:
+    """Centre of the circle through three places (last axis); infinite or nan where they lie on a line."""
+    first, second = places[..., 1] - places[..., 0], places[..., 2] - places[..., 0]
+    with np.errstate(all="ignore"):
+        area = (np.conj(first) * second).imag
+        square = (first * np.conj(first)).real * second - (second * np.conj(second)).real * first
+        return places[..., 0] - 1j * square / (2 * area)
+
+
+def beside(places: Any, radius: Any, side: float) -> Any:
+    """The point at a distance from two places (last axis), to the left (1) or right (-1) of the way between them."""
+    way = places[..., 1] - places[..., 0]
+    half = np.abs(way) / 2
+    with np.errstate(all="ignore"):
+        height = np.sqrt((radius - half) * (radius + half))
+    return (places[..., 0] + places[..., 1]) / 2 + 1j * side * height * way / (2 * half)
+
+
+def by_turn(poses: Poses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
+    """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none.
+
+    ends: turns are known to have dyads, and are not outside the last ones but for rounding.
+    """
+    places, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
+    second = unit(turn)
+    rest = total - d2 * second
+    with np.errstate(all="ignore"):
+        length = np.abs(rest)
+        cosine = (length**2 + size3**2 - size4**2) / (2 * length * size3)
+        cosine = np.clip(cosine, -1, 1) if ends else cosine
+        sine = np.sqrt((1 - cosine) * (1 + cosine)) * np.where(np.equal(branch, 0), 1, -1)
+        third = rest / length * (cosine + 1j * sine) * size3 / d3
+        least = (second - 1) * a[..., 1] - (third - 1) * a[..., 0]
+        w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least
+        z = ((second - 1) * d[..., 1] - (third - 1) * d[..., 0]) / least
+    pin = -z * unit(-np.asarray(poses.angles, EXACT)[..., 0])
+    return Dyads(places[..., 0] - z - w, pin)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Of four-bars ABCD driven by AB from the first to the last position.
+
+    defect: 0 none, 1 positions on two assemblies, 2 not in order, 3 AB locks; least: transmission angle (rad); turn: of
+    AB (rad, signed); worst: the angle of AB from AD where transmission is least.
+    """
+
+    defect: Any
+    least: Any
+    turn: Any
+    worst: Any
+
+
+def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
+    """Marks of the four-bars of dyads AB and DC (broadcast together)."""
+    b, c = poses.on_frame(first.pin), poses.on_frame(second.pin)
+    a, d = np.asarray(first.pivot)[..., None], np.asarray(second.pivot)[..., None]
+    b, c, a, d = (np.asarray(x, complex) for x in (b, c, a, d))
+    with np.errstate(all="ignore"):
+        l1, l2, l3, l4 = (np.abs(x)[..., 0] for x in (b - a, c - b, c - d, d - a))
+        phi = np.angle((b - a) / (d - a))
+        steps = np.mod(np.diff(phi, axis=-1), 2 * np.pi)
+        side = np.sign(((c - b) * np.conj(c - d)).imag)
+        dead = 1 - DEAD_COSINE * (l1**2 + l2**2 + l3**2 + l4**2) / (2 * l2 * l3)  # as with pin C on pivot A: a kite
+    branch = np.any(side != side[..., :1], axis=-1)
+    found = []
+    for turn in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
+        low, high = phi[..., 0] + np.minimum(turn, 0), phi[..., 0] + np.maximum(turn, 0)
+        places = extreme_inputs(low, high)
+        with np.errstate(all="ignore"):
+            rest = (l2**2 + l3**2 - l1**2 - l4**2)[..., None]
+            size = np.abs(rest + (2 * l1 * l4)[..., None] * np.cos(places)) / (2 * l2 * l3)[..., None]
+        worst = np.argmax(np.where(np.isnan(size), np.inf, size), -1)[..., None]
+        largest = np.take_along_axis(size, worst, -1)[..., 0]
+        where = np.take_along_axis(places, worst, -1)[..., 0]
+        locks = ~(largest < dead)
+        back = np.abs(turn) >= 2 * np.pi
+        defect = np.where(branch, 1, np.where(back, 2, np.where(locks, 3, 0)))
+        found.append((defect, np.arccos(np.clip(largest, 0, 1)), turn, where))
+    one, other = found
+    better = (one[0] < other[0]) | ((one[0] == other[0]) & (one[1] >= other[1]))
+    return Marks(*(np.where(better, x, y) for x, y in zip(one, other, strict=True)))

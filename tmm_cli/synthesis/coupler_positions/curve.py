@@ -1,0 +1,188 @@
+"""Burmester's curves of four positions with a parameter that is smooth all along, and their parts of sensible links.
+
+The closed four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the turns (see `by_turn`) has one loop of
+places where b2 turns fully, for each branch, or one or two where it rocks: b2 = middle + half cos(t), the branch being
+the sign of sin(t), passes from branch to branch without a stop. Three positions of one angle leave a circle of pins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.roots import bisect
+from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, centre, equal_angles, unit
+
+APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between
+HALF: Final = np.longdouble("1.57079632679489661923132169163975144")  # a right angle
+FULL: Final = 4 * HALF
+
+
+@dataclass(frozen=True)
+class Loops:
+    """Loops of b2 (rad): its middle, half its way (nan: it turns fully) and the branch of those that turn fully."""
+
+    poses: Poses
+    middle: Any
+    half: Any
+    branch: Any
+
+    def at(self, loop: Any, t: Any) -> Dyads:
+        """Dyads at parameters t (0 to 2 pi) of loops of these numbers (broadcast together)."""
+        t = np.asarray(t, EXACT)
+        middle, half, branch = (np.asarray(x)[loop] for x in (self.middle, self.half, self.branch))
+        turns = np.isnan(half)
+        turn = np.where(turns, t, middle + np.where(turns, 0, half) * np.cos(t))
+        return by_turn(self.poses, turn, np.where(turns, branch, np.sin(t) < 0), ends=True)
+
+    def __len__(self) -> int:
+        return len(self.middle)
+
+
+@dataclass(frozen=True)
+class Circle:
+    """Pins on a circle, all with the same arm (complex, m) in the position `of`: three positions of one angle."""
+
+    poses: Poses
+    of: int
+    arm: Any
+    middle: Any
+    radius: Any
+
+    def at(self, _: Any, t: Any) -> Dyads:
+        pin = self.middle + self.radius * unit(t)
+        return Dyads(self.poses.places[self.of] + pin * unit(self.poses.angles[self.of]) - self.arm, pin)
+
+    def __len__(self) -> int:
+        return 1
+
+
+@dataclass(frozen=True)
+class One:
+    """A dyad that is given."""
+
+    dyad: Dyads
+
+    def at(self, _: Any, t: Any) -> Dyads:
+        return Dyads(*(np.broadcast_to(np.asarray(x), np.shape(t)) for x in (self.dyad.pivot, self.dyad.pin)))
+
+    def __len__(self) -> int:
+        return 1
+
+
+Curve = Loops | Circle | One
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Parts of a curve end to end: places t of all, about evenly apart, loops of each, ends of its part as numbers."""
+
+    curve: Curve
+    t: Any
+    loop: Any
+    low: Any
+    high: Any
+
+    def at(self, x: Any) -> Dyads:
+        """Dyads at places x, whole numbers or between them."""
+        here = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
+        beyond = np.minimum(here + 1, len(self.t) - 1)
+        return self.curve.at(self.loop[here], self.t[here] + (x - here) * (self.t[beyond] - self.t[here]))
+
+
+def curve(poses: Poses) -> Curve:
+    """Burmester's curve of four positions that do not all have one angle."""
+    for odd in range(4):
+        rest = [k for k in range(4) if k != odd]
+        if equal_angles(poses.angles[rest]):
+            return _circle(poses, rest, odd)
+    d, a = poses.places[1:] - poses.places[0], unit(poses.angles[1:] - poses.angles[0]) - 1
+    d2, d3, d4 = a[1] * d[2] - a[2] * d[1], a[2] * d[0] - a[0] * d[2], a[0] * d[1] - a[1] * d[0]
+    total = d2 + d3 + d4
+    over, about = 2 * np.abs(total * d2), np.abs(total) ** 2 + np.abs(d2) ** 2
+    toward = np.angle(total * np.conj(d2))
+    with np.errstate(all="ignore"):
+        high, low = ((about - (np.abs(d3) + sign * np.abs(d4)) ** 2) / over for sign in (-1, 1))
+    if not over > 0 or (high >= 1 and low <= -1):
+        rows = [(EXACT(0), EXACT(np.nan), branch) for branch in (0, 1)]
+    elif high >= 1:
+        rows = [(toward, np.arccos(min(low, EXACT(1))), 0)]
+    elif low <= -1:
+        rows = [(toward + 2 * HALF, 2 * HALF - np.arccos(high), 0)]
+    else:
+        near, far = np.arccos(high), np.arccos(low)
+        rows = [(toward + side * (near + far) / 2, (far - near) / 2, 0) for side in (-1, 1)]
+    middle, half, branch = (np.array(x) for x in zip(*rows, strict=True))
+    return Loops(poses, middle.astype(EXACT), half.astype(EXACT), branch)
+
+
+def _circle(poses: Poses, equal: list[int], odd: int) -> Circle:
+    """|B - A| is the same in the odd position: |c + m g| = |arm| for the pin m."""
+    first = equal[0]
+    arm = poses.places[first] - centre(poses.places[equal])
+    turned = unit(poses.angles[[first, odd]])
+    g = turned[1] - turned[0]
+    return Circle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
+
+
+def scanned(found: Curve, size: float, first: int, rounds: int) -> list[Any]:
+    """Parameters all round every loop, nearer to each other where dyads of a sensible place change fast."""
+    return [] if isinstance(found, One) else [_scanned(found, loop, size, first, rounds) for loop in range(len(found))]
+
+
+def parts(
+    found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int, halvings: int
+) -> Rows | None:  # fmt: skip
+    """The parts where dyads are good, with about `count` places in all; their ends are exact but for few halvings."""
+    if isinstance(found, One):
+        return Rows(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
+    rows = []
+    for loop, t in enumerate(scans):
+        here = good(found.at(loop, t))
+        starts, ends = (np.flatnonzero(x) for x in (here[1:] & ~here[:-1], here[:-1] & ~here[1:]))
+        inside, outside = np.concatenate([t[starts + 1], t[ends]]), np.concatenate([t[starts], t[ends + 1]])
+        edges, __ = bisect(lambda at, loop=loop: good(found.at(loop, at)), inside, outside, halvings)  # type: ignore[misc]
+        low, high = np.split(edges, [len(starts)])
+        low = np.concatenate([t[:1] if here[0] else t[:0], low])
+        high = np.concatenate([high, t[-1:] if here[-1] else t[:0]])
+        for a, b in zip(low, high, strict=True):
+            inner = np.concatenate([[a], t[(t > a) & (t < b)], [b]])
+            way = np.cumsum(np.concatenate([[0], _gaps(found.at(loop, inner), size)]))
+            rows.append((loop, inner, np.asarray(way, float)))
+    total = sum(way[-1] for _, _, way in rows)
+    made = []
+    for loop, inner, way in rows:
+        n = int(np.ceil(count * way[-1] / total)) + 3 if total > 0 else 3
+        even = np.interp(np.linspace(0, way[-1], n), way, np.asarray(inner - inner[0], float))
+        t = inner[0] + even.astype(EXACT)
+        t[-1] = inner[-1]
+        made.append((loop, t))
+    if not made:
+        return None
+    counts = [len(t) for __, t in made]
+    ends = np.cumsum(counts)
+    loops = np.repeat([loop for loop, __ in made], counts)
+    first, last = np.repeat(ends - counts, counts), np.repeat(ends - 1, counts)
+    return Rows(found, np.concatenate([t for __, t in made]), loops, first, last)
+
+
+def _scanned(found: Curve, loop: int, size: float, first: int, rounds: int) -> Any:
+    t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
+    for _ in range(rounds):
+        dyads = found.at(loop, t)
+        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size  # type: ignore[union-attr]
+        wide = (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART)
+        wide &= np.diff(t) > 1e-12
+        if not np.any(wide):
+            break
+        t = np.sort(np.concatenate([t, ((t[1:] + t[:-1]) / 2)[wide]]))
+    return t
+
+
+def _gaps(dyads: Dyads, size: float) -> Any:
+    """How far neighbours are from each other, over the size of the task."""
+    with np.errstate(all="ignore"):
+        return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size

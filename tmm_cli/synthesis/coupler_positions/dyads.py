@@ -1,0 +1,243 @@
+"""Dyads AB and DC of a four-bar whose coupler takes 2, 3 or 4 positions: from what is given, or the best of a curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.roots import least
+from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
+from tmm_cli.synthesis.coupler_positions.search import FULL, QUICK, THOROUGH, Effort, Limits
+from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
+from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
+from tmm_cli.synthesis.record import Infeasible
+
+SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
+FINE: Final = 1440  # turns among which the pivot nearest to a place is sought
+SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
+FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
+SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
+ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
+EFFORTS: Final = (FULL, THOROUGH, QUICK)  # another layout of the curves may find a strip that one passes over
+DEFECTS: Final = {  # by their numbers in Marks
+    1: _("branch defect: some positions are on the other assembly of the four-bar"),
+    2: _("order defect: AB does not reach the positions in order by turning one way"),
+    3: _("circuit defect: AB locks on the way between the positions"),
+}
+POLE: Final = _("{point} does not move between these positions, or not against the coupler: it is the pole")
+NO_LINKS: Final = _("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
+
+
+class Defective(Infeasible):
+    """A four-bar that takes the positions, but not one after the other."""
+
+
+def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
+    """Dyads AB and DC, and what they are worth. Raises Infeasible, without a suggestion where a search may find one."""
+    one, other = both(task)
+    names = {"C": (_("B and C"), one.pin - other.pin), "D": (_("A and D"), one.pivot - other.pivot)}
+    by_pivot = any(side.pivot is not None for side in task.sides.values())
+    for point in "DC" if by_pivot else "CD":
+        if not abs(names[point][1]) > SAME * task.size:
+            raise Infeasible(
+                _key_of(task, "DC"),
+                _("{names} are one point: that is no four-bar").format(names=names[point][0]),
+                None,
+            )
+    mark = marks(task.poses, one, other)
+    if mark.defect and not task.keep:
+        raise Defective("positions", DEFECTS[int(mark.defect)], None)
+    return one, other, mark
+
+
+def _key_of(task: Task, name: str) -> str:
+    """What is given of a link."""
+    side = task.sides.get(name, Side())
+    keys = {name[1]: side.pin, name[0]: side.pivot, f"{name}_turn": side.turn, f"{name[0]}_near": side.near}
+    return next((key for key, value in keys.items() if value is not None), "positions")
+
+
+def both(task: Task) -> tuple[Dyads, Dyads]:
+    """Dyads AB and DC. Raises Infeasible."""
+    if len(task.places) < 4:
+        return dyad(task, "AB"), dyad(task, "DC")
+    if task.still:
+        return parallel(task)
+    given = given_on_curves(task)
+    return (given["AB"], given["DC"]) if len(given) == 2 else best(task, given)
+
+
+def dyad(task: Task, name: str) -> Dyads:
+    """The dyad of two or three positions. Raises Infeasible."""
+    side, poses = task.sides[name], task.poses
+    pin_given = side.pin is not None
+    point = name[1] if pin_given else name[0]
+    given = side.pin if pin_given else side.pivot
+    places = poses.on_frame(given) if pin_given else poses.in_plane(given)
+    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME * task.size:
+        raise Infeasible(point, POLE.format(point=point), None)
+    if len(places) == 3:
+        found = centre(places)
+        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME:
+            reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
+            raise Infeasible(point, reason.format(point=point), None)
+    else:
+        if not side.length > abs(places[1] - places[0]) / 2:
+            raise Infeasible(name, _("{name} does not reach both places").format(name=name), None)
+        found = beside(places, side.length, SIDES[side.side])
+    fixed = np.asarray(given, np.clongdouble)
+    return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
+
+
+def given_on_curves(task: Task) -> dict[str, Dyads]:
+    """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
+    found = {name: of_turn(task, name) if side.near is None else of_near(task, name)
+             for name, side in task.sides.items()}  # fmt: skip
+    for name, own in found.items():
+        if exists(task, own):
+            continue
+        length = float(abs(task.poses.on_frame(own.pin)[..., 0] - own.pivot))
+        if not np.isfinite(length):
+            reason = _("no link through the four positions turns by this angle from the first to the second")
+            raise Infeasible(f"{name}_turn", reason, None)
+        reason = _(
+            "{link} of this turn is {length} long, or its ends are as far from the positions: near the turn of the "
+            "coupler itself links grow beyond all bounds"
+        )
+        values = {"link": (name, "word"), "length": (length, "length")}
+        raise Infeasible(f"{name}_turn", reason, None, values)
+    return found
+
+
+def of_turn(task: Task, name: str) -> Dyads:
+    """The dyad of four positions that turns as wanted; nan where there is none."""
+    side = task.sides[name]
+    return by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
+
+
+def of_near(task: Task, name: str) -> Dyads:
+    """The dyad of four positions whose pivot is the place of the centre-point curve nearest to the wanted one."""
+    wanted = complex(task.sides[name].near)
+
+    def away(turns: Any, branch: int) -> Any:
+        found = by_turn(task.poses, np.asarray(turns, np.longdouble), branch)
+        distance = np.abs(np.asarray(found.pivot, complex) - wanted)
+        return np.where(exists(task, found) & np.isfinite(distance), distance, np.inf)
+
+    grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
+    step, found = grid[1] - grid[0], []
+    for branch in (0, 1):
+        turn = float(grid[int(np.argmin(away(grid, branch)))])
+        turn, distance = least(partial(away, branch=branch), turn - step, turn + step)
+        found.append((distance, turn, branch))
+    distance, turn, branch = min(found)
+    if not np.isfinite(distance):
+        raise Infeasible(f"{name[0]}_near", NO_LINKS, None)
+    return by_turn(task.poses, np.asarray(turn, np.longdouble), branch)
+
+
+def exists(task: Task, found: Dyads) -> Any:
+    """Whether there are such dyads, with ends that are not far from place 1 and links of some length."""
+    with np.errstate(all="ignore"):
+        reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
+        length = np.abs(task.poses.on_frame(found.pin)[..., 0] - found.pivot)
+        return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME * task.size)
+
+
+def limits(task: Task, given: Mapping[str, Dyads]) -> Limits:
+    """What is sensible beside the dyads that are given."""
+    first, size = task.poses.places[0], task.size
+    frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
+    coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
+    box = None if task.within is None else task.outside
+    return Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
+
+
+def searched(
+    task: Task, given: Mapping[str, Dyads], loose: bool = False, efforts: tuple[Effort, ...] = EFFORTS
+) -> tuple[Dyads, Dyads, float] | None:
+    """The best dyads beside those that are given and their transmission angle (rad), of the first search with a sound
+    four-bar, else of the last; None: there are none. loose: branches are not asked for."""
+    found, bounds = None, limits(task, given)
+    for effort in efforts:
+        found = best_on_curves(task.poses, task.size, bounds, dict(given), loose, effort)
+        if found is None or found[2] > SURE:
+            break
+    return found
+
+
+def best(task: Task, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
+    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+    bounds, found = limits(task, given), None
+    for loose in (False, True):  # without a sound one: one whose branches only are not the same
+        found = searched(task, given, loose, EFFORTS[: 1 if loose else None])
+        if found is None or found[2] > SURE:
+            break
+    if found is not None:
+        frame, coupler = abs(found[0].pivot - found[1].pivot), abs(found[0].pin - found[1].pin)
+        if bounds.shortest <= min(frame, coupler) and frame <= bounds.frame and coupler <= bounds.coupler:
+            return found[:2]
+    if task.within is not None:
+        reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
+        raise Infeasible("pivots_within", reason, None)
+    raise Infeasible("positions", NO_LINKS, None)
+
+
+def parallel(task: Task) -> tuple[Dyads, Dyads]:
+    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
+
+    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
+    """
+    places, angles = task.poses.places, task.poses.angles
+    centres = [centre(np.delete(places, out)) for out in range(4)]
+    middle = min(centres, key=lambda z: float(np.nan_to_num(abs(z), nan=np.inf)))
+    arms = places - middle
+    radius = abs(arms[0])
+    if not (np.isfinite(radius) and radius < FAR * task.size):
+        raise Infeasible(
+            "positions",
+            _("the coupler does not turn, and its places lie on a line: links would be infinitely long"),
+            _("places on a circle, or a slider"),
+        )
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
+        _refuse_off_circle(places[3], centre(places[:3]), abs(places[0] - centre(places[:3])))
+    turn = float(np.angle(complex(arms[1] / arms[0])))
+    for name, side in task.sides.items():
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
+            reason = _("the coupler does not turn: both links turn as its places do on their circle")
+            raise Infeasible(f"{name}_turn", reason, (turn, "angle", "exact"))
+    steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
+    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
+    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, task.size)
+    if task.within is not None:
+        low, high = task.within
+        frame *= min(1.0, ROOM * min(abs((high - low).real), abs((high - low).imag)) / float(abs(frame)))
+        middles = [(low + high) / 2 + sign * frame / 2 for sign in (-1, 1)]
+    else:
+        middles = [middle + sign * frame / 2 for sign in (-1, 1)]
+    pivots = [
+        task.sides[name].near if name in task.sides and task.sides[name].near is not None else at
+        for name, at in zip(("AB", "DC"), middles, strict=True)
+    ]
+    one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
+    return one, other
+
+
+def _refuse_off_circle(place: Any, middle: Any, radius: Any) -> None:
+    """The fourth place is not on the circle through the others: raises Infeasible with its nearest y, or x, there."""
+    reason = _(
+        "the coupler does not turn: all its points go on equal circles, and the fourth place is not on that through "
+        "the others"
+    )
+    arm = place - middle
+    text, along, across, start = _("position 4: y {value}"), arm.imag, arm.real, middle.imag
+    if abs(across) >= radius:
+        text, along, across, start = _("position 4: x {value}"), arm.real, arm.imag, middle.real
+    if abs(across) >= radius:
+        raise Infeasible(("positions", 3), reason, _("a fourth place on that circle, or a coupler that turns"))
+    on = start + np.copysign(np.sqrt((radius - across) * (radius + across)), along)
+    raise Infeasible(("positions", 3), reason, text, {"value": (float(on), "length", "exact")})

@@ -1,0 +1,200 @@
+"""Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
+
+2 and 3 positions: the pin (B, C: in the coupler's axes) or the pivot (A, D) of each of both dyads is given; with 2 also
+its length. 4 positions: dyads on Burmester's curves, by the turn of AB and DC from position 1 to 2, by the nearness of
+a pivot, or those of best transmission. Positions must be on one assembly, reached in order by turning AB one way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.synthesis import four_bar
+from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, by_turn
+from tmm_cli.synthesis.coupler_positions.drawing import construction
+from tmm_cli.synthesis.coupler_positions.dyads import exists, guiding
+from tmm_cli.synthesis.coupler_positions.suggestion import suggested
+from tmm_cli.synthesis.coupler_positions.task import Side, Task
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.vectors import settled
+
+__all__ = ["PARAMETERS", "Side", "Task", "solve"]
+NAMES: Final = {
+    "Ax": _("pivot A: x"), "Ay": _("pivot A: y"), "Dx": _("pivot D: x"), "Dy": _("pivot D: y"),
+    "l1": _("driver l1 = AB"), "l2": _("coupler l2 = BC"), "l3": _("follower l3 = DC"), "l4": _("frame l4 = AD"),
+    "Px": _("P of the coupler, from B: x"), "Py": _("P of the coupler, from B: y"),
+    "Cx": _("pin C in position 1: x"), "Cy": _("pin C in position 1: y"), "phi1": _("angle of AB in position 1"),
+}  # fmt: skip
+PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
+GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by the fields of Side; places as x and y
+    "AB": {"pin": (_("B in the coupler: x"), _("B in the coupler: y")), "pivot": (NAMES["Ax"], NAMES["Ay"]),
+           "length": _("length AB"), "turn": _("turn of AB from position 1 to 2"),
+           "near": (_("A near to x"), _("A near to y"))},
+    "DC": {"pin": (_("C in the coupler: x"), _("C in the coupler: y")), "pivot": (NAMES["Dx"], NAMES["Dy"]),
+           "length": _("length DC"), "turn": _("turn of DC from position 1 to 2"),
+           "near": (_("D near to x"), _("D near to y"))},
+}  # fmt: skip
+BRANCH: Final = {"AB": _("branch of AB"), "DC": _("branch of DC")}
+AWAY: Final = {"AB": _("distance of A from the wanted place"), "DC": _("distance of D from the wanted place")}
+DEFECTS: Final = (  # by their numbers in Marks
+    _("none: all positions on one assembly, reached in order"),
+    _("branch: some positions are on the other assembly"),
+    _("order: the driver must turn back between positions"),
+    _("circuit: the driver locks on the way"),
+)
+SOURCES: Final = {  # by the count of positions; 1: four of one angle
+    1: _("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
+    2: _("pivots on the bisector of the two places of a pin, at the link's length"),
+    3: _("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
+         "coupler held (inversion)"),
+    4: _("pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
+         "W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"),
+}  # fmt: skip
+LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    try:
+        one, other, mark = guiding(task)
+    except Infeasible as error:
+        if error.suggestion is not None:
+            raise
+        raise suggested(task, error) from None
+    numbers = _parameters(task, one, other)
+    plain = np.longdouble if isinstance(task.angles[0], np.longdouble) else float
+    values = [Value(name, plain(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
+    values += [
+        Value("", float(mark.least), "angle", _("least transmission angle on the way")),
+        Value("", float(mark.turn), "angle", _("turn of AB from the first to the last position")),
+        Value("", DEFECTS[int(mark.defect)], "word", _("defects")),
+    ]
+    count = len(task.places)
+    notes, listings = [], []
+    if task.still:
+        notes.append(_(
+            "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
+            "direction, taken across the arms in the middle of their way"
+        ))  # fmt: skip
+    elif count == 4:
+        values += [*_on_curve(task, "AB", one), *_on_curve(task, "DC", other)]
+        listings.append(_curve(task))
+    by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
+    drawn = construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
+    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, one, other, mark))
+    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings))
+
+
+def _parameters(task: Task, one: Dyads, other: Dyads) -> dict[str, Any]:
+    """All parameters in extended precision."""
+    b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
+    a, d = one.pivot, other.pivot
+    size = task.size + np.max(np.abs(np.asarray(task.places))) + np.abs(a) + np.abs(d)
+    a, b, c, d = (settled(x, size) for x in (a, b, c, d))
+    span = other.pin - one.pin
+    p = settled(-one.pin * np.conj(span) / np.abs(span), size)
+    found = {"Ax": a.real, "Ay": a.imag, "Dx": d.real, "Dy": d.imag, "Px": p.real, "Py": p.imag}
+    found |= {"l1": np.abs(b - a), "l2": np.abs(span), "l3": np.abs(c - d), "l4": np.abs(d - a)}
+    return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
+
+
+def _on_curve(task: Task, name: str, found: Dyads) -> Iterator[Value]:
+    """Where a dyad is on Burmester's curves, as it can be given again."""
+    side = task.sides.get(name, Side())
+    if side.turn is None:
+        pins = task.poses.on_frame(found.pin)
+        turn = float(np.angle(complex((pins[1] - found.pivot) / (pins[0] - found.pivot))))
+        ends = [by_turn(task.poses, np.asarray(turn, np.longdouble), branch).pivot for branch in (0, 1)]
+        branch = int(np.argmin(np.nan_to_num(np.abs(np.array(ends, complex) - complex(found.pivot)), nan=np.inf)))
+        yield Value("", turn, "angle", GIVEN[name]["turn"])
+        yield Value("", str(branch + 1), "word", BRANCH[name])
+    if side.near is not None:
+        yield Value("", float(abs(complex(found.pivot) - complex(side.near))), "length", AWAY[name])
+
+
+def _curve(task: Task) -> Listing:
+    """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
+    columns = (
+        ("branch", _("branch"), "name"), ("turn", _("turn from 1 to 2"), "angle"),
+        ("pivot_x", _("pivot, x"), "length"), ("pivot_y", _("pivot, y"), "length"),
+        ("pin_x", _("pin in the coupler, x"), "length"), ("pin_y", _("pin in the coupler, y"), "length"),
+        ("first_x", _("pin in position 1, x"), "length"), ("first_y", _("pin in position 1, y"), "length"),
+        ("length", _("length of the link"), "length"),
+    )  # fmt: skip
+    turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
+    rows = []
+    for branch in (0, 1):
+        found = by_turn(task.poses, turns, branch)
+        first = task.poses.on_frame(found.pin)[..., 0]
+        for k in np.flatnonzero(exists(task, found)):
+            a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
+            places = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
+            rows.append((str(branch + 1), float(turns[k]), *places, abs(b1 - a)))
+    title = _("Burmester's curves: pivots on the frame and their pins")
+    return Listing("curve", title, columns, tuple(rows), long=True)
+
+
+def _position_names(k: int) -> tuple[str, str, str]:
+    """What x, y and angle of a position are called."""
+    texts = _("position {number}: x of P"), _("position {number}: y of P"), _("position {number}: angle of the coupler")
+    x, y, angle = (text.format(number=k + 1) for text in texts)
+    return x, y, angle
+
+
+def _demands(task: Task, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Demand]:
+    b = task.poses.on_frame(one.pin)
+    phi = np.angle(np.asarray((b - one.pivot) / (other.pivot - one.pivot), complex))
+    span = complex(other.pin - one.pin)
+    local, slope = complex(-one.pin) * np.conj(span) / abs(span), float(np.angle(span))
+    for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
+        at = {"phi": float(phi[k]), "local": local, "slope": slope, "near": float(angle)}
+        x, y, turned = _position_names(k)
+        yield Demand(x, complex(place).real, "length", partial(_pose, "x", at), at=task.size)
+        yield Demand(y, complex(place).imag, "length", partial(_pose, "y", at), at=task.size)
+        yield Demand(turned, float(angle), "angle", partial(_pose, "angle", at), at=1.0)
+    measure = partial(_transmission, float(mark.worst))
+    name = _("least transmission angle on the way")
+    yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
+
+
+def _pose(part: str, at: dict[str, Any], results: Any) -> float:
+    """A coordinate of the coupler's position where AB stands at an angle from AD."""
+    found = four_bar.pins(results, np.array([at["phi"]]))
+    if found is None:
+        return float("nan")
+    b, c = found[1][0], found[2][0]
+    along = (c - b) / abs(c - b)
+    place = b + along * at["local"]
+    turned = at["near"] + float(np.angle(complex(along) * np.exp(-1j * (at["near"] + at["slope"]))))
+    return float({"x": place.real, "y": place.imag, "angle": turned}[part])
+
+
+def _transmission(phi: float, results: Any) -> float:
+    return float(four_bar.transmission(results, np.array([phi]))[0])
+
+
+def _given(task: Task) -> Iterator[Value]:
+    for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
+        x, y, turned = _position_names(k)
+        yield from _place(place, x, y)
+        yield Value("", angle, "angle", turned)
+    for name, side in task.sides.items():
+        texts = GIVEN[name]
+        for part in ("pin", "pivot", "length", "turn", "near"):
+            value = getattr(side, part)
+            if value is not None and isinstance(texts[part], tuple):
+                yield from _place(value, *texts[part])
+            elif value is not None:
+                yield Value("", value, "length" if part == "length" else "angle", texts[part])
+    if task.within is not None:
+        yield from _place(task.within[0], _("pivots within, x"), _("pivots within, y"))
+        yield from _place(task.within[1], _("pivots within, to x"), _("pivots within, to y"))
+
+
+def _place(place: Any, x: str, y: str) -> tuple[Value, Value]:
+    return Value("", place.real, "length", x), Value("", place.imag, "length", y)

@@ -1,0 +1,1 @@
+"""Crank-slider from its stroke, or its mean speed, and two more."""

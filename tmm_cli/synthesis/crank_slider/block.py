@@ -1,0 +1,43 @@
+"""Crank-slider by its stroke: keys of the task."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from tmm_cli.problem.schema_parts import Value
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED
+from tmm_cli.synthesis.blocks import Block, one_of
+from tmm_cli.synthesis.crank_slider.solver import Task
+
+WANTS = {
+    "stroke": LENGTH, "speed": SPEED, "crank_speed": ANGULAR_SPEED,
+    "ratio": NUMBER, "nu": NUMBER, "k": NUMBER, "pressure": ANGLE, "e": LENGTH,
+}  # fmt: skip
+STROKES = (("stroke",), ("speed", "crank_speed"))
+PAIRS = (("ratio", "nu"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
+
+
+class Shape(Block):
+    """A crank-slider by its stroke (or mean speed) and two of L, nu, k, pressure angle."""
+
+    task: Literal["crank-slider"]
+    stroke: Value | None = Field(default=None, description="stroke H of the slider")
+    speed: Value | None = Field(default=None, description="mean speed of the slider, instead of the stroke")
+    crank_speed: Value | None = Field(default=None, description="of the crank, with the mean speed: 300 rpm")
+    ratio: Value | None = Field(default=None, description="L = l/r, rod over crank")
+    nu: Value | None = Field(default=None, description="nu = e/r, offset of the guide over crank")
+    k: Value | None = Field(default=None, description="coefficient of change of mean speed, 1 or more")
+    pressure: Value | None = Field(
+        default=None, description="largest pressure angle allowed: the shortest rod that keeps it is found"
+    )
+    e: Value | None = Field(default=None, description="offset of the guide from the crank's axis")
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
+    keys = (*one_of(shape, STROKES, "a crank-slider"), *one_of(shape, PAIRS, "a crank-slider"))
+    found: dict[str, Any] = {key: values.number(getattr(shape, key), WANTS[key], (key,)) for key in keys}
+    return Task(**found)

@@ -1,0 +1,265 @@
+"""Crank-slider from its stroke (tasks 1 to 4): h = H/r, L = l/r, nu = e/r, theta between the extreme cranks.
+
+The triangle A B1 B2 of the crank's pivot and the slider's extreme positions has the sides L + 1, L - 1 and h, the
+height nu on h, and the angle theta at A:
+    h = sqrt((L + 1)^2 - nu^2) - sqrt((L - 1)^2 - nu^2) = 2 sqrt(1 + (L^2 - 1) sin^2(theta/2)),
+    nu = (L^2 - 1) sin(theta) / h,   sin(lambda_max) = (1 + nu)/L.
+All functions take floats or arrays of any precision. Differences of near numbers are nowhere taken.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.roots import roots
+from tmm_cli.synthesis.crank_slider.drawing import construction
+from tmm_cli.synthesis.mean_ratio import k_of, theta_of
+from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.vectors import pi
+
+PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
+QUANTITIES: Final = {  # that a task may give: kind and what they are called
+    "stroke": ("length", _("stroke H")), "speed": ("speed", _("mean speed of the slider")),
+    "crank_speed": ("angular speed", _("speed of the crank")), "ratio": ("number", _("L = l/r")),
+    "nu": ("number", _("nu = e/r")), "k": ("number", _("k")), "pressure": ("angle", _("largest pressure angle lambda")),
+    "e": ("length", _("offset of the guide e")),
+}  # fmt: skip
+FOUND: Final = {
+    "r": ("length", _("crank r")), "l": ("length", _("connecting rod l")), "e": QUANTITIES["e"],
+    "h": ("number", _("h = H/r")), "theta": ("angle", _("theta, between the extreme cranks")),
+    "printed": ("number", _("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
+    "error": ("number", _("relative error of that")),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Task:
+    """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
+    k, pressure (largest angle, rad) and nu, pressure and k, e (m) and k. Floats or arrays; None: not given.
+    """
+
+    stroke: Any = None
+    speed: Any = None
+    crank_speed: Any = None
+    ratio: Any = None
+    nu: Any = None
+    k: Any = None
+    pressure: Any = None
+    e: Any = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths r, l, e and the stroke (m), theta and the largest pressure angle (rad), L, nu, h, k.
+
+    printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: of that, relative.
+    """
+
+    r: Any
+    l: Any  # noqa: E741  its name in every course
+    e: Any
+    stroke: Any
+    ratio: Any
+    nu: Any
+    h: Any
+    theta: Any
+    k: Any
+    pressure: Any
+    printed: Any
+    error: Any
+
+
+def nu_of(length: Any, theta: Any) -> Any:
+    """Offset nu for a ratio L and theta."""
+    sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
+    more = (length - 1) * (length + 1)
+    return more * sine * cosine / np.sqrt(1 + more * sine * sine)
+
+
+def theta_between(length: Any, nu: Any) -> Any:
+    """Theta for a ratio L and an offset nu, from the sides and the height of the triangle."""
+    near, far = np.sqrt((length - 1 - nu) * (length - 1 + nu)), np.sqrt((length + 1 - nu) * (length + 1 + nu))
+    return np.arctan2(4 * length * nu / (near + far), near * far + nu * nu)
+
+
+def stroke_ratio(length: Any, nu: Any) -> Any:
+    """h = H/r for a ratio L and an offset nu."""
+    near, far = (length - 1 - nu) * (length - 1 + nu), (length + 1 - nu) * (length + 1 + nu)
+    return 4 * length / (np.sqrt(near) + np.sqrt(far))
+
+
+def largest_theta(length: Any) -> Any:
+    """The bound of theta for a ratio L: beyond it the crank does not turn fully; tan(theta/2) = 1/sqrt(L)."""
+    return 2 * np.arctan(1 / np.sqrt(length))
+
+
+def least_pressure(theta: Any) -> Any:
+    """The least possible largest pressure angle for theta, over all L; see `shortest`.
+
+    The derivative of sin(lambda) over sigma vanishes where sin(sigma)^2 = s cos(sigma).
+    """
+    s = np.sin(theta / 2)
+    cosine = 2 / (s + np.sqrt(s * s + 4))
+    return np.arcsin(np.sqrt(s * cosine) * (2 - s / cosine) / np.cos(theta / 2))
+
+
+def shortest(theta: Any, pressure: Any) -> Any:
+    """The least ratio L for theta at which the largest pressure angle is the given one; nan where there is none.
+
+    With sigma half the sum of the angles of both extreme rods with the guide, s = sin(theta/2), c = cos(theta/2):
+    L = tan(sigma) c/s, nu = (sin(sigma)^2 - s^2)/(s cos(sigma)); so 1 + nu = L sin(lambda) becomes, with w =
+    sin(sigma)/s, an equation that theta = 0 does not spoil: s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda). It falls
+    from w = 1 to the least of lambda.
+    """
+    theta, pressure = np.broadcast_arrays(theta, pressure)
+    s, c, sine = np.sin(theta / 2), np.cos(theta / 2), np.sin(pressure)
+    end = np.sqrt(2 / (s + np.sqrt(s * s + 4)) / np.where(s > 0, s, 1.0))
+    end = np.where(s > 0, end, 2 / sine)
+
+    def excess(w: Any) -> Any:
+        return s * (w - 1) * (w + 1) + np.sqrt((1 - s * w) * (1 + s * w)) - w * c * sine
+
+    good = (excess(end) <= 0) & (excess(np.ones_like(end)) > 0)
+    w = roots(excess, np.ones_like(end), end)
+    return np.where(good, w * c / np.sqrt((1 - s * w) * (1 + s * w)), np.nan)
+
+
+def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
+    """L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
+
+    (l + r)(l - r) sin(theta) = H e is twice the triangle's area; the law of cosines gives the sums of the squares.
+    """
+    tangent = np.tan(theta / 2)
+    return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
+
+
+def find(task: Task) -> Found:
+    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    height = _stroke(task)
+    theta = None if task.k is None else theta_of(task.k)
+    if task.e is not None:
+        length = ratio_of_offset(height, task.e, theta)
+    elif task.ratio is not None:
+        length = np.asarray(task.ratio)
+    elif theta is not None:
+        length = shortest(theta, task.pressure)
+    else:
+        length = (1 + np.asarray(task.nu)) / np.sin(task.pressure)
+    nu = np.asarray(task.nu) if theta is None else nu_of(length, theta)
+    if theta is None:
+        theta, h = theta_between(length, nu), stroke_ratio(length, nu)
+    else:
+        half = np.sin(theta / 2)
+        h = 2 * np.sqrt(1 + (length - 1) * (length + 1) * half * half)
+    r = height / h
+    if task.e is not None:
+        nu = task.e / r
+    scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
+    return Found(
+        r, length * r, nu * r, height, length, nu, h, theta, k_of(theta), np.arcsin((1 + nu) / length), nu * scale,
+        (scale - 1) * (nu != 0),
+    )  # fmt: skip
+
+
+def _stroke(task: Task) -> Any:
+    """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
+    if task.stroke is not None:
+        return np.asarray(task.stroke)
+    return pi(1.0 * task.speed) * task.speed / task.crank_speed
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason and what could be met."""
+    for name in ("stroke", "speed", "crank_speed"):
+        value = getattr(task, name)
+        if value is not None and not value > 0:
+            raise Infeasible(name, _("there is no such motion"), (SMALLEST, QUANTITIES[name][0], "least"))
+    ratio, nu, k, pressure, e = task.ratio, task.nu, task.k, task.pressure, task.e
+    if nu is not None and not nu >= 0:
+        raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"),
+                         (0.0, "number", "least"))  # fmt: skip
+    if e is not None and not e > 0:
+        raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"),
+                         (SMALLEST, "length", "least"))  # fmt: skip
+    if ratio is not None and not ratio > 1:
+        raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"),
+                         (1 + (nu or 0.0), "number", "above"))  # fmt: skip
+    if ratio is not None and nu is not None and not nu < ratio - 1:
+        raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"), (ratio - 1, "number", "below"))
+    theta = None if k is None else _refuse_k(task)
+    if pressure is None:
+        return
+    least = 0.0 if theta is None else float(least_pressure(theta))
+    if not pressure < np.pi / 2:
+        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"),
+                         (np.pi / 2, "angle", "below"))  # fmt: skip
+    if not pressure > 0:
+        raise Infeasible("pressure", _("a largest pressure angle is more than zero"),
+                         (max(SMALLEST, least), "angle", "least"))  # fmt: skip
+    if pressure < least:
+        raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"),
+                         (least, "angle", "least"))  # fmt: skip
+
+
+def _refuse_k(task: Task) -> float:
+    """Theta, from 0 up to its bound for what else is given."""
+    theta, e, limit = float(theta_of(task.k)), task.e, np.pi / 2
+    if not task.k >= 1:
+        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"),
+                         (1.0, "number", "least" if e is None else "above"))  # fmt: skip
+    if e is not None and theta == 0:
+        raise Infeasible("k", _("with an offset k is more than 1"), (1.0, "number", "above"))
+    if task.ratio is not None:
+        limit = float(largest_theta(task.ratio))
+    elif e is not None:  # the crank's pivot lies on the circle between B2 and the normal through B2: e < H cot(theta)
+        limit = float(np.arctan2(_stroke(task), e))
+    if theta < limit:
+        return theta
+    most = largest_k(task.pressure) if task.pressure is not None and 0 < task.pressure < limit else k_of(limit)
+    if theta >= np.pi / 2:
+        reason = _("no crank-slider whose crank turns fully has k of 3 or more")
+    elif task.ratio is not None:
+        reason = _("the crank does not turn fully: k is too large for this ratio of rod and crank")
+    else:
+        reason = _("the crank does not turn fully: k is too large for this stroke and offset")
+    raise Infeasible("k", reason, (float(most), "number", "below"))
+
+
+def largest_k(pressure: Any) -> Any:
+    """The largest k that a limit of the pressure angle allows at any L: `least_pressure` solved for theta."""
+    pressure = np.asarray(pressure, dtype=float)
+    low, high = np.zeros_like(pressure), np.full_like(pressure, np.pi / 2)
+    return k_of(roots(lambda theta: least_pressure(theta) - pressure, low, high))
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
+    refuse(task)
+    found = find(task)
+    given = tuple(
+        Value(name, value, *QUANTITIES[name]) for name, value in vars(task).items() if value is not None
+    )  # fmt: skip
+    lengths = tuple(Value(name, getattr(found, name), *FOUND[name]) for name in PARAMETERS)
+    rest = [name for name in ("stroke", "ratio", "nu", "k", "pressure") if getattr(task, name) is None]
+    more = tuple(
+        Value("", getattr(found, name), *(QUANTITIES | FOUND)[name])
+        for name in ("h", *rest, "theta", "printed", "error")
+    )
+    demands = [Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False)]
+    if task.speed is not None:
+        demands.append(Demand(_("mean speed of the slider"), float(task.speed), "speed", mean_speed))
+    for name, measure in (("stroke", stroke), ("k", ratio), ("pressure", pressure)):
+        kind, text = QUANTITIES[name]
+        wanted = float(getattr(found, name))
+        demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
+    return Outcome(
+        given, lengths + more,
+        _("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
+          "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
+        tuple(demands), (construction(found),),
+    )  # fmt: skip

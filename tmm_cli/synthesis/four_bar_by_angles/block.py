@@ -1,0 +1,152 @@
+"""Four-bar by pairs of angles, or by a function: keys of the task."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.schema_parts import Value, Vector
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.synthesis.blocks import Block, Range
+from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES, FUNCTIONS, Function
+from tmm_cli.synthesis.four_bar_by_angles.pairs import Task
+
+DOMAINS = {
+    "log10(x)": "x more than 0", "ln(x)": "x more than 0", "sqrt(x)": "x of 0 or more", "x^1.5": "x of 0 or more",
+    "1/x": "x on one side of 0",
+}  # fmt: skip
+LENGTHS = ("l1", "l2", "l3", "l4")
+OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
+
+
+class Shape(Block):
+    """A four-bar by 2 to 5 pairs of input and output angles, or by a function with precision points."""
+
+    task: Literal["four-bar-by-angles"]
+    pairs: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=5, description="[input, output] angles from AD, 2 to 5, in order"
+    )
+    l1: Value | None = Field(default=None, description="one length gives the size; l1 input, l2 coupler, l3 output")
+    l2: Value | None = None
+    l3: Value | None = None
+    l4: Value | None = Field(default=None, description="frame; with two pairs two lengths of l1, l3, l4 may be given")
+    phi0: Value | None = Field(default=None, description="zero of input angles, from AD; 0; 4 and 5 pairs find it")
+    psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 pairs find it")
+    function: str | None = Field(default=None, max_length=40, description="y: " + ", ".join(FUNCTIONS))
+    table: list[Vector] | None = Field(default=None, min_length=2, max_length=10_000, description="or rows [x, y]")
+    x: Range | None = Field(default=None, description="[from, to], with a function")
+    input: Range | None = Field(default=None, description="[from, to]: input angles for x")
+    output: Range | None = Field(default=None, description="[from, to]: output angles for y")
+    points: int | None = Field(default=None, ge=2, le=5, description="precision points, with Chebyshev's spacing; 3")
+    choose: Literal["transmission", "crank", 1, 2, 3] = Field(
+        default="transmission", description="of several solutions: best transmission, a crank if there is one, a number"
+    )
+    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch and order defects")
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI. Raises ProblemError."""
+    lengths = {
+        key: values.number(value, LENGTH, (key,)) for key in LENGTHS if (value := getattr(shape, key)) is not None
+    }
+    function = None
+    if shape.pairs is None:
+        function = _function(shape, values)
+        phi, psi = function.precision(shape.points or 3)
+        pairs = list(zip(phi.tolist(), psi.tolist(), strict=True))
+    else:
+        if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:
+            raise ProblemError(
+                "pairs and a function are two tasks", path=(extra[0],), allowed="one of the two", key=True
+            )
+        pairs = [
+            (values.number(a, ANGLE, ("pairs", k, 0)), values.number(b, ANGLE, ("pairs", k, 1)))
+            for k, (a, b) in enumerate(shape.pairs)
+        ]
+    count = len(pairs)
+    _lengths(lengths, count)
+    zeros: dict[str, Any] = {
+        key: None if (value := getattr(shape, key)) is None else values.number(value, ANGLE, (key,))
+        for key in ("phi0", "psi0")
+    }
+    _zeros(zeros, count)
+    phi, psi = zip(*pairs, strict=True)
+    choose, keep = str(shape.choose), shape.defects == "keep"
+    return Task(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
+
+
+def _lengths(lengths: dict[str, float], count: int) -> None:
+    two = count == 2 and len(lengths) == 2 and "l2" not in lengths
+    if len(lengths) != 1 and not two:
+        raise ProblemError(
+            "one length gives the size of the four-bar", found=", ".join(lengths) or "none",
+            allowed="one of l1, l2, l3, l4" + ("; or two of l1, l3, l4" if count == 2 else ""), key=True,
+        )  # fmt: skip
+
+
+def _zeros(zeros: dict[str, Any], count: int) -> None:
+    """The zero angles that the count of pairs leaves to be found stay None, others are 0."""
+    given = [key for key, value in zeros.items() if value is not None]
+    if len(given) > 5 - max(count, 3):
+        raise ProblemError(
+            f"{count} pairs determine zero angles too", path=(given[-1],), found=", ".join(given),
+            allowed="phi0 or psi0" if count == 4 else "neither phi0 nor psi0", key=True,
+        )  # fmt: skip
+    for key in ("psi0", "phi0")[: 5 - max(count, 3)]:
+        if zeros[key] is None and not (count == 4 and given):
+            zeros[key] = 0.0
+
+
+def _function(shape: Shape, values: ValueReader) -> Function:
+    missing = [key for key in ("input", "output") if getattr(shape, key) is None]
+    if (shape.function is None) == (shape.table is None) or missing:
+        given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
+        raise ProblemError(
+            "these keys do not determine a four-bar", found=", ".join(given) or "none",
+            allowed="pairs; or function (or table), x, input, output", key=True,
+        )  # fmt: skip
+    name = (shape.function or "").replace(" ", "")
+    if name and name not in FUNCTIONS:
+        raise ProblemError(
+            "this function is not known here", path=("function",), found=quote(shape.function),
+            allowed=", ".join(FUNCTIONS) + "; or table: [[x, y], ...]", near=nearest(name, FUNCTIONS),
+        )  # fmt: skip
+    ends: dict[str, Any] = {
+        key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))
+        for key in ("input", "output")
+    }
+    of_x = ANGLE if name in ANGLES else NUMBER
+    rows = tuple(
+        (values.number(a, NUMBER, ("table", k, 0)), values.number(b, NUMBER, ("table", k, 1)))
+        for k, (a, b) in enumerate(shape.table or ())
+    )
+    if rows and any(b[0] <= a[0] for a, b in pairwise(rows)):
+        raise ProblemError("x must grow from row to row", path=("table",), allowed="rows in the order of x")
+    if shape.x is not None:
+        x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(shape.x))
+    elif rows:
+        x = (rows[0][0], rows[-1][0])
+    else:
+        raise ProblemError("the range of x is missing", path=("function",), allowed="x: [from, to]", key=True)
+    found = Function((x[0], x[1]), ends["input"], ends["output"], name, rows)
+    _sound(found)
+    return found
+
+
+def _sound(function: Function) -> None:
+    with np.errstate(all="ignore"):
+        y = function.value(np.linspace(*function.x, 101))
+    if function.x[0] == function.x[1] or function.phi[0] == function.phi[1]:
+        key = "x" if function.x[0] == function.x[1] else "input"
+        raise ProblemError("this range is empty", path=(key,), allowed="two different ends")
+    if not np.all(np.isfinite(y)) or y[0] == y[-1]:
+        other = "two ends at which the function differs"
+        raise ProblemError(
+            "the function has no values there, or the same at both ends", path=("x",),
+            allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
+        )  # fmt: skip

@@ -1,0 +1,257 @@
+"""Freudenstein's equation for pairs of angles phi (input AB) and psi (output DC), both from the frame AD.
+
+    p cos(psi) - q cos(phi) + s = cos(phi - psi),   p = l4/l1, q = l4/l3, s = (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3)
+(F. Freudenstein, An analytical approach to the design of four-link mechanisms, Trans. ASME 76 (1954)). A negative p or
+q is a link drawn the other way: its zero angle is then half a turn more. With phi = phi0 + given angle, psi = psi0 +
+given angle, 4 pairs leave one of the zero angles to be found: the determinant of the four equations is a quadratic form
+in its cosine and sine; 5 pairs leave both: with delta = phi0 - psi0 a cubic form in cos(delta) and sin(delta).
+Arrays: tasks on the first axis, pairs on the last.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from tmm_cli.roots import bisect
+from tmm_cli.vectors import PI
+
+EXACT: Final = np.longdouble
+POLISHES: Final = 4
+SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
+REFINEMENTS: Final = 6
+ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
+
+
+class Bars(NamedTuple):
+    """Lengths over l4 (positive) and zero angles (rad), arrays of one shape: a four-bar each."""
+
+    l1: Any
+    l2: Any
+    l3: Any
+    phi0: Any
+    psi0: Any
+
+    def at(self, index: Any) -> Bars:
+        """The four-bars at an index of the arrays."""
+        return Bars(*(np.asarray(value)[index] for value in self))
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return int(np.size(self.l1))
+
+    def pins(self, phi: Any, psi: Any) -> tuple[Any, Any]:
+        """Pins B and C for given angles (without the zero angles), over l4; A is 0, D is 1."""
+        return self.l1 * _unit(self.phi0 + phi), 1 + self.l3 * _unit(self.psi0 + psi)
+
+
+def inverse(rows: Any) -> Any:
+    """Inverses (..., m, n) of rows (..., n, m) in ordinary precision, for corrections; of least squares where there are
+    more rows than columns, of least length where there are fewer; nan where rows are singular, whatever their size.
+
+    Near positions make rows that are nearly the same: their determinant is as small as it may be, and they are still
+    good while their least singular value, over the largest one, is more than rounding.
+    """
+    near = np.asarray(rows, dtype=float)
+    finite = np.isfinite(near).all((-1, -2), keepdims=True)
+    left, sizes, right = np.linalg.svd(np.where(finite, near, 0.0), full_matrices=False)
+    sound = finite[..., 0] & (sizes[..., -1:] > SINGULAR * sizes[..., :1])
+    back = np.where(sound, 1 / np.where(sound, sizes, 1.0), np.nan)
+    return np.einsum("...ki,...k,...jk->...ij", right, back, left)
+
+
+def solve_linear(rows: Any, right: Any) -> Any:
+    """Linear systems (..., n, m), (..., n), refined in extended precision; nan where they are singular."""
+    back = inverse(rows)
+    found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
+    for _ in range(REFINEMENTS):
+        rest = np.asarray(right - (rows * found[..., None, :]).sum(-1), dtype=float)
+        found = found + (back * rest[..., None, :]).sum(-1)
+    return found
+
+
+def solve_homogeneous(rows: Any) -> Any:
+    """Two vectors (..., m, 2) that span what rows (..., m - 2, m) send to zero, in extended precision."""
+    near, back = np.asarray(rows, dtype=float), inverse(rows)
+    near = np.where(np.isfinite(near), near, 0.0)
+    found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
+    for _ in range(REFINEMENTS):
+        rest = np.asarray((rows[..., None] * found[..., None, :, :]).sum(-2), dtype=float)
+        found = found - np.matmul(back, rest)
+    return found
+
+
+def of_zeros(phi: Any, psi: Any) -> Any:
+    """p, q, s (tasks, 3) of three or more pairs with their zero angles in them."""
+    return solve_linear(_rows(phi, psi), np.cos(phi - psi))
+
+
+def two(phi: Any, psi: Any, known: Any, value: Any) -> Any:
+    """p, q, s (tasks, 3) of two pairs and a linear condition known . (p, q, s) = value."""
+    rows = np.concatenate([_rows(phi, psi), np.asarray(known, dtype=EXACT)[..., None, :]], axis=-2)
+    right = np.concatenate([np.cos(phi - psi), np.asarray(value, dtype=EXACT)[..., None]], axis=-1)
+    return solve_linear(rows, right)
+
+
+def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
+    """Both zero angles (tasks, 2), nan where not real; phi and psi of four pairs, of which `free` still lacks its own.
+
+    Angles half a turn away are the same four-bars.
+    """
+
+    turn = phi - psi
+    angle, sign = (phi, -1) if free == "phi0" else (psi, 1)
+    still = np.cos(psi if free == "phi0" else phi)
+    over_cos, over_sin = (np.cos(angle), np.cos(turn)), (-np.sin(angle), sign * np.sin(turn))  # columns that turn
+
+    def form(one: Any, other: Any) -> Any:  # the column of ones leaves differences of the rows
+        (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(x[..., 1:] - x[..., :1], -1, 0) for x in (still, one, other))
+        return a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
+
+    a, c = form(*over_cos), form(*over_sin)
+    b = form(over_cos[0], over_sin[1]) + form(over_sin[0], over_cos[1])
+    with np.errstate(all="ignore"):
+        root = np.sqrt(b * b - 4 * a * c)
+        big = -(b + np.where(b < 0, -root, root)) / 2
+        angles = np.stack([np.arctan2(big, c), np.arctan2(a, big)], axis=-1)  # of a cos^2 + b cos sin + c sin^2
+    zero = np.zeros_like(angles)
+    return (angles, zero) if free == "phi0" else (zero, angles)
+
+
+def five(phi: Any, psi: Any) -> tuple[Any, Any]:
+    """Both zero angles (tasks, 3), nan where not real, of five pairs.
+
+    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), all times a number: two vectors
+    span their solutions, and the directions of the three complex numbers, which must agree, make a cubic form.
+    """
+    columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
+    span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
+    a, b, turn = (span[:, k] + 1j * span[:, k + 1] for k in (0, 2, 5))  # (tasks, 2) over both vectors
+    (b0, b1), (a0, a1), (t0, t1) = b.T, a.conj().T, turn.T
+    form = [b1 * a1 * t1, b0 * a1 * t1 + b1 * a0 * t1 + b1 * a1 * t0, b0 * a0 * t1 + b0 * a1 * t0 + b1 * a0 * t0]
+    angles = angles_of_forms(np.stack([*form, b0 * a0 * t0], axis=-1).imag)
+    with np.errstate(all="ignore"):
+        cosines, sines = np.cos(angles), np.sin(angles)
+        side, delta = (x[:, :1] * cosines + x[:, 1:] * sines for x in (a, turn))
+        endless = np.abs(delta) <= ENDLESS * np.abs(side)  # l1 is nothing beside the frame
+        psi0 = np.where(endless, np.nan, -np.angle(side))
+        return psi0 + np.angle(delta), psi0
+
+
+def angles_of_forms(forms: Any) -> Any:
+    """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
+    and sine vanish; nan where there is no more.
+
+    Between the angles where it is extreme (its slope is a form too) it has one sign change or none: no root is lost
+    because two are near each other, and none is made of two complex ones.
+    """
+    forms = np.asarray(forms, dtype=EXACT)
+    size = np.max(np.abs(forms), axis=-1, keepdims=True)
+    whole = np.isfinite(size[:, 0]) & (size[:, 0] > 0)
+    forms = np.where(whole[:, None], forms, 1.0) / np.where(whole[:, None], size, 1.0)
+    extremes = np.stack([np.angle(_roots(row)) / 2 for row in np.asarray(forms, dtype=float) @ WAVES]) if len(
+        forms) else np.zeros((0, 3))  # fmt: skip
+    even = np.broadcast_to(np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1], (len(forms), 24))
+    scan = np.sort(np.concatenate([extremes, even], axis=-1)).astype(EXACT)
+    ends = np.concatenate([scan, scan[:, :1] + EXACT(PI)], axis=-1)
+    values = _value(forms.T[:, :, None], ends)
+    values[:, -1] = -values[:, 0]  # half a turn on, a form of odd degree is what it was, of the other sign
+    below = np.signbit(values)
+    rows, here = np.nonzero((below[:, 1:] != below[:, :-1]) & whole[:, None])
+    low, high, below, own = ends[rows, here], ends[rows, here + 1], below[rows, here], forms[rows].T
+    low, high = bisect(lambda angle: np.signbit(_value(own, angle)) == below, low, high)
+    found = np.full((len(forms), 3), EXACT(np.nan))
+    number = np.arange(len(rows)) - np.searchsorted(rows, rows)
+    kept = number < 3
+    found[rows[kept], number[kept]] = ((low + high) / 2)[kept]
+    return found
+
+
+def _value(form: Any, angle: Any) -> Any:
+    c, s = np.cos(angle), np.sin(angle)
+    f0, f1, f2, f3 = form
+    return ((f0 * s + f1 * c) * s + f2 * c * c) * s + f3 * c * c * c
+
+
+def _roots(polynomial: Any) -> Any:
+    """Three roots of a cubic; 1 where it has fewer."""
+    found = np.roots(polynomial)
+    return np.concatenate([found, np.ones(3 - len(found))])
+
+
+def _slopes() -> Any:
+    """Over z = e^(2 i angle) a form times e^(3 i angle) is a cubic, and so is its slope: that of each of the four."""
+    sine, cosine, rows = np.array([-1j, 1j]), np.array([1, 1]), []  # 2 sin, 2 cos: of e^(i angle), e^(-i angle)
+    for one in ((sine, sine, sine), (sine, sine, cosine), (sine, cosine, cosine), (cosine, cosine, cosine)):
+        rows.append(np.convolve(np.convolve(one[0], one[1]), one[2]) * np.array([3j, 1j, -1j, -3j]))
+    return np.array(rows)
+
+
+WAVES: Final = _slopes()
+
+
+def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
+    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals in extended precision."""
+    columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
+    values = np.asarray(values, dtype=EXACT)
+    for _ in range(POLISHES):
+        p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
+        one, other = phi + phi0, psi + psi0
+        rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
+        turn = np.sin(one - other)
+        slopes = np.stack(
+            [np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn], -1
+        )[..., columns]
+        step = (inverse(slopes) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
+        values = values.copy()
+        values[:, columns] -= np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
+    return values
+
+
+def bars(values: Any, phi: Any, psi: Any) -> Bars:
+    """Positive lengths from p, q, s, phi0, psi0 (tasks, 5); the coupler is measured at the first pair."""
+    p, q, _, phi0, psi0 = (values[..., k] for k in range(5))
+    half = EXACT(PI)
+    with np.errstate(all="ignore"):
+        l1, l3 = 1 / np.abs(p), 1 / np.abs(q)
+        phi0, psi0 = _wrapped(phi0 + half * (p < 0)), _wrapped(psi0 + half * (q < 0))
+        b, c = Bars(l1, l1, l3, phi0, psi0).pins(phi[..., 0], psi[..., 0])
+        return Bars(l1, np.abs(c - b), l3, phi0, psi0)
+
+
+def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
+    """All real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where there is no more root.
+
+    A zero angle (one, or one a task) of None is to be found: none for 3 pairs, one for 4, both for 5.
+    """
+    phi, psi = np.atleast_2d(np.asarray(phi, EXACT)), np.atleast_2d(np.asarray(psi, EXACT))
+    free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
+    given_phi, given_psi = (np.asarray(0.0 if zero is None else zero, EXACT)[..., None] for zero in (phi0, psi0))
+    if not free:
+        one, other = np.zeros((len(phi), 1)), np.zeros((len(phi), 1))
+    elif len(free) == 1:
+        one, other = four(phi + given_phi, psi + given_psi, free[0])
+    else:
+        one, other = five(phi, psi)
+    shape = one.shape
+    a, b = (one + given_phi).reshape(-1, 1), (other + given_psi).reshape(-1, 1)
+    phi, psi = (np.repeat(row, shape[1], axis=0) for row in (phi, psi))
+    values = np.concatenate([of_zeros(phi + a, psi + b), a, b], axis=-1)
+    values = polished(values, phi, psi, free) if free else values
+    return Bars(*(numbers.reshape(shape) for numbers in bars(values, phi, psi)))
+
+
+def _rows(phi: Any, psi: Any) -> Any:
+    return np.stack([np.cos(psi), -np.cos(phi), np.ones_like(np.asarray(phi, dtype=EXACT))], axis=-1)
+
+
+def _unit(angle: Any) -> Any:
+    return np.cos(angle) + 1j * np.sin(angle)
+
+
+def _wrapped(angle: Any) -> Any:
+    """Within half a turn, in the angle's precision."""
+    full = 2 * EXACT(PI)
+    return angle - full * np.round(np.asarray(angle / full, dtype=float))

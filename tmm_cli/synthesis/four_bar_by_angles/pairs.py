@@ -1,0 +1,163 @@
+"""Four-bars through 2 to 5 pairs of angles, what each is worth, and which of them is taken."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from tmm_cli.roots import least
+from tmm_cli.synthesis.four_bar import FourBar, cosine, extreme_inputs, turning
+from tmm_cli.synthesis.four_bar_by_angles import freudenstein
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars
+from tmm_cli.synthesis.four_bar_by_angles.function import Function
+from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
+from tmm_cli.tolerances import DEAD_COSINE_DOUBLE
+
+SCAN: Final = 1500  # four-bars through two pairs that are compared, and
+LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
+_POSITIVE: Final = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
+RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # their l4/l1, negative for a crank the other way
+SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
+
+
+@dataclass(frozen=True)
+class Task:
+    """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs; zero angles, None: to find.
+
+    choose: transmission, crank, or the number of a solution; keep: whether defects are put up with.
+    """
+
+    phi: tuple[float, ...]
+    psi: tuple[float, ...]
+    lengths: dict[str, float]
+    phi0: float | None = 0.0
+    psi0: float | None = 0.0
+    choose: str = "transmission"
+    keep: bool = False
+    function: Function | None = None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last input angle that are used."""
+        return self.function.phi if self.function else (self.phi[0], self.phi[-1])
+
+    @property
+    def free(self) -> bool:
+        """Whether two pairs and one length leave l1/l4 free."""
+        return len(self.phi) == 2 and len(self.lengths) == 1
+
+
+class Quality(NamedTuple):
+    """Of four-bars (arrays of one shape): the least transmission angle (rad) over the range and the input angle there
+    (from AD), the defect ("", locks, branch), whether the input turns fully, whether a link is the other way than its
+    given zero says.
+    """
+
+    least: Any
+    worst: Any
+    defect: Any
+    crank: Any
+    reversed: Any
+
+
+def quality(found: Bars, task: Task) -> Quality:
+    """What four-bars are worth; BD, and with it the angle BCD, is extreme at the ends and on AD."""
+    l1, l2, l3, phi0 = (np.asarray(x, dtype=float)[..., None] for x in (found.l1, found.l2, found.l3, found.phi0))
+    with np.errstate(all="ignore"):
+        ends = np.sort(phi0 + np.asarray(task.span, dtype=float), axis=-1)
+        places = extreme_inputs(ends[..., 0], ends[..., 1])
+        cosines = cosine(l2, l3, 1 + l1 * l1 - 2 * l1 * np.cos(places))
+        terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
+        k = np.argmax(np.abs(cosines), axis=-1)[..., None]
+        sharpest = np.take_along_axis(np.abs(cosines), k, axis=-1)[..., 0]
+        b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
+        sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
+        branch = np.any(sides != sides[..., :1], axis=-1)
+        turned = np.zeros(np.shape(branch), dtype=bool)
+        for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
+            if given is not None:
+                turned |= np.cos(np.asarray(given - zero, dtype=float)) < 0
+    defect = np.where(branch, "branch", np.where(1 - sharpest <= DEAD_COSINE_DOUBLE * terms[..., 0], "locks", ""))
+    turns = turning(FourBar(l1[..., 0], l2[..., 0], l3[..., 0], np.ones(np.shape(branch)))).turns[..., 0]
+    worst = np.take_along_axis(places, k, axis=-1)[..., 0]
+    return Quality(np.arccos(np.minimum(1.0, sharpest)), worst, defect[()], turns, turned)
+
+
+def through(task: Task) -> Bars:
+    """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free."""
+    if len(task.phi) > 2 and (one := parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
+        return one.at(None)
+    if task.free:
+        found = _best_of_ratios(task)
+    elif len(task.phi) == 2:
+        found = _of_lengths(task)
+    else:
+        found = freudenstein.solutions(task.phi, task.psi, task.phi0, task.psi0).at(0)
+    return found.at(real(found))
+
+
+def of_ratios(task: Task, ratios: Any) -> Bars:
+    """The four-bars through two pairs with l4/l1 = |ratio|; a negative one is a crank drawn the other way."""
+    return _of_two(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
+
+
+def _of_lengths(task: Task) -> Bars:
+    """The four-bars through two pairs with two given lengths; either link may be drawn the other way."""
+    a, b = sorted(task.lengths)
+    ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
+    one, zero = np.ones(2), np.zeros(2)
+    if b == "l3":  # p = ratio q
+        return _of_two(task, np.stack([one, -ratio * sense, zero], axis=-1), zero)
+    return _of_two(task, np.stack([one, zero, zero] if a == "l1" else [zero, one, zero], axis=-1), ratio * sense)
+
+
+def _of_two(task: Task, known: Any, value: Any) -> Bars:
+    """The four-bars through two pairs with conditions known . (p, q, s) = value, (n, 3) and (n,)."""
+    phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
+    phi, psi = (
+        np.broadcast_to(np.asarray(row, EXACT) + zero, (len(known), 2))
+        for row, zero in ((task.phi, phi0), (task.psi, psi0))
+    )
+    values = freudenstein.two(phi, psi, known, value)
+    found = freudenstein.bars(np.concatenate([values, np.zeros((len(phi), 2))], -1), phi, psi)
+    return found._replace(phi0=found.phi0 + phi0, psi0=found.psi0 + psi0)
+
+
+def _best_of_ratios(task: Task) -> Bars:
+    """The four-bar of best transmission through two pairs, l1/l4 being free."""
+
+    def badness(ratios: Any) -> Any:
+        found = of_ratios(task, ratios)
+        mark = quality(found, task)
+        return np.where(real(found), np.where(mark.defect != "", 4.0, 2.0 * mark.reversed) - mark.least, 9.0)
+
+    values = badness(RATIOS)
+    k = int(np.argmin(values))
+    best = RATIOS[k]
+    low, high = (RATIOS[min(max(k + step, 0), len(RATIOS) - 1)] for step in (-1, 1))
+    if low * high > 0:
+        place, value = least(badness, low, high)
+        best = place if value <= values[k] else best
+    return of_ratios(task, np.array([best]))
+
+
+def real(found: Bars) -> Any:
+    """Whether there are such four-bars, with links neither infinite nor of no length."""
+    numbers = np.stack([np.asarray(x, dtype=float) for x in found])
+    lengths = numbers[:3]
+    with np.errstate(all="ignore"):
+        return np.isfinite(numbers).all(0) & (lengths > SHORT).all(0) & (lengths < LONG).all(0)
+
+
+def chosen(task: Task, found: Bars) -> int:
+    """Which of the four-bars is taken, -1: none has no defect."""
+    if task.choose.isdigit():
+        return int(task.choose) - 1
+    mark = quality(found, task)
+    fair = np.flatnonzero((mark.defect == "") | task.keep)
+    if not fair.size:
+        return -1
+    crank = mark.crank & (task.choose == "crank")
+    return int(max(fair, key=lambda k: (mark.defect[k] == "", crank[k], not mark.reversed[k], mark.least[k])))

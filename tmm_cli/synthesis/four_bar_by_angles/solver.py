@@ -1,0 +1,253 @@
+"""Four-bar by 2 to 5 pairs of angles of its input AB and output DC, given or taken from a function.
+
+l1 = AB, l2 = BC, l3 = DC, l4 = AD; angles from AD, counterclockwise, without the zero angles phi0 and psi0. Of all real
+solutions those without defects are kept: all pairs on one assembly, no place between them where the input locks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.synthesis import four_bar
+from tmm_cli.synthesis.four_bar_by_angles.drawing import construction
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
+from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES
+from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, chosen, of_ratios, quality, real, through
+from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
+from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes
+from tmm_cli.synthesis.four_bar_by_angles.suggestion import in_order, refuse_found, refuse_inputs
+from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.vectors import settled
+
+__all__ = ["PARAMETERS", "Task", "solve"]
+PARAMETERS: Final = {
+    "l1": "length", "l2": "length", "l3": "length", "l4": "length",
+    "phi0": "angle", "psi0": "angle", "phi1": "angle", "psi1": "angle",
+}  # fmt: skip
+NAMES: Final = {
+    "l1": _("input l1 = AB"), "l2": _("coupler l2 = BC"), "l3": _("output l3 = DC"), "l4": _("frame l4 = AD"),
+    "phi0": _("phi0, zero of the input angle, from AD"), "psi0": _("psi0, zero of the output angle, from AD"),
+    "phi1": _("angle of AB from AD in the first pair"), "psi1": _("angle of DC from AD in the first pair"),
+}  # fmt: skip
+DEFECTS: Final = {
+    "": _("none: all pairs on one assembly, reached in order"),
+    "branch": _("branch: some pairs are on the other assembly"),
+    "locks": _("order: the input locks on the way"),
+}
+SHORT_DEFECTS: Final = {"": _("none"), "branch": _("branch"), "locks": _("order")}
+CHOSEN_HAS: Final = {
+    "branch": _("branch defect: this solution has some pairs on its other assembly"),
+    "locks": _("order defect: the input of this solution locks on the way"),
+}
+COLUMNS: Final = (
+    *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
+    ("transmission", _("least transmission angle"), "angle"),
+)
+FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    refuse(task)
+    found = through(task)
+    at = _taken(task, found)
+    one, mark = found.at(at), quality(found.at(at), task)
+    any_one = parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
+    values, demands = _values(task, one, mark), _demands(task, one, mark)
+    if not any_one:  # it has change points
+        demands.append(Demand(_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
+    drawings: list[Any] = [construction(one, task.phi, task.psi, float(_size(task, one)))]
+    listings = []
+    if found.size > 1:
+        values.append(Value("", f"{at + 1} / {found.size}", "word", _("solution, of those below")))
+        listings.append(_solutions(task, found, at))
+    if task.free:
+        values.append(Value("", 1 / float(one.l1), "number", _("l4/l1, free with two pairs")))
+        listings.append(_family(task))
+    if task.function and not mark.defect:
+        curve, error = errors(one, task)
+        values.append(Value("", error, "angle", _("largest structural error")))
+        largest = partial(_largest, one, task)
+        demands.append(Demand(_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
+        drawings.append(curve)
+    source = _(
+        "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
+        "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
+    )
+    notes = _notes(task, one, mark, any_one)
+    return Outcome(
+        _given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
+    )  # fmt: skip
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible for lengths that are none and inputs that turn back, or round."""
+    for name, value in task.lengths.items():
+        if not value > 0:
+            rest = {key: other for key, other in task.lengths.items() if other > 0}
+            if not rest:  # the size of the four-bar
+                raise Infeasible(name, _("there is no such link"), (SMALLEST, "length", "least"))
+            best = float(solve(replace(task, lengths=rest)).parameters[name].value)
+            raise Infeasible(name, _("there is no such link"), (best, "length"))
+    steps = np.diff(task.phi)
+    if not task.function and not (np.all(steps > 0) or np.all(steps < 0)):
+        bad = int(np.argmax(steps * (np.sign(steps[0]) or 1.0) <= 0)) + 1
+        reason = _("the input turns back: pair {this} cannot be reached after pair {last} in order")
+        refuse_inputs(task, ("pairs", bad), reason.format(this=bad + 1, last=bad), (bad, bad - 1))
+    if not in_order(task):
+        key, last = ("input", 1) if task.function else ("pairs", len(task.phi) - 1)
+        refuse_inputs(task, (key,), _("the input has come round before the last pair"), (last, 0))
+
+
+def _taken(task: Task, found: Bars) -> int:
+    """The number of the solution that is taken. Raises Infeasible."""
+    at = chosen(task, found)
+    if at < 0 or not found.size:
+        refuse_found(task, found)
+    defects = quality(found, task).defect
+    fair = " or ".join(str(k + 1) for k in np.flatnonzero((defects == "") | task.keep))
+    others = _("{numbers}; or choose: transmission").format(numbers=fair)
+    if not fair:
+        others = _("1 to {count} with defects: keep; every solution has a defect").format(count=found.size)
+    if at >= found.size:
+        raise Infeasible("choose", _("there is no solution of this number"), others)
+    if defects[at] and not task.keep:
+        raise Infeasible("choose", CHOSEN_HAS[str(defects[at])], others)
+    return at
+
+
+def _size(task: Task, one: Bars) -> Any:
+    """l4 (m) of a four-bar, by the length that is given."""
+    name = next(iter(task.lengths))
+    return task.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
+
+
+def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
+    size = _size(task, one)
+    numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
+    angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + task.psi[0]}
+    numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
+    # more digits only where they are asked
+    plain = float if isinstance(next(iter(task.lengths.values())), float) else np.longdouble
+    return [
+        *(Value(key, plain(numbers[key]), kind, NAMES[key]) for key, kind in PARAMETERS.items()),
+        Value("", mark.least, "angle", _("least transmission angle over the range")),
+        Value("", DEFECTS[str(mark.defect)], "word", _("defects")),
+    ]
+
+
+def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
+    demands = [
+        Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
+        for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
+    ]
+    name, measure = _("least transmission angle over the range"), partial(_transmission, float(mark.worst))
+    return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
+
+
+def _output_name(k: int) -> str:
+    return _("output angle {number}").format(number=k + 1)
+
+
+def _output(one: Bars, phi: float, psi: float, results: Any) -> float:
+    """The output angle, from its zero, at an input angle."""
+    near = np.array([psi]) + float(one.psi0)
+    return float((four_bar.output_angles(results, np.array([phi]) + float(one.phi0), near) - float(one.psi0))[0])
+
+
+def _transmission(phi: float, results: Any) -> float:
+    return float(four_bar.transmission(results, np.array([phi]))[0])
+
+
+def _largest(one: Bars, task: Task, results: Any) -> float:
+    """The largest structural error on the mechanism."""
+    assert task.function
+    function = task.function
+
+    def error(phi: Any) -> Any:
+        wanted = function.wanted(phi)
+        there = four_bar.output_angles(results, phi + float(one.phi0), wanted + float(one.psi0)) - float(one.psi0)
+        return there - wanted
+
+    return extremes(error, function)[1]
+
+
+def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
+    if any_one:
+        yield _(
+            "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its transmission "
+            "angle is that of DC with AD; l1/l4 is free, 1/2 is taken"
+        )
+    if mark.reversed:
+        yield _("a zero angle is half a turn from the given one: in the given sense there is no such link")
+    if task.choose == "crank" and not mark.crank:
+        yield _("no solution without defects has an input that turns fully: another was taken")
+    if task.free and abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9:
+        yield _(
+            "two pairs leave l1/l4 free: of 0.1 to 10 an end has the best transmission, and was taken; give two of "
+            "l1, l3, l4 to take another"
+        )
+    elif task.free:
+        yield _(
+            "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two of l1, l3, "
+            "l4 to take another"
+        )
+
+
+def _solutions(task: Task, found: Bars, at: int) -> Listing:
+    """Every four-bar that was found, by the number by which it can be chosen."""
+    columns = (
+        ("number_of", _("choose"), "name"), ("taken", _("taken"), "word"), *COLUMNS,
+        ("crank", _("input turns fully"), "word"), ("defect", _("defects"), "word"),
+    )  # fmt: skip
+    rows = []
+    for k in range(found.size):
+        mark = quality(found.at(k), task)
+        taken, crank = _("yes") if k == at else None, _("yes") if mark.crank else _("no")
+        rows.append((str(k + 1), taken, *_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)]))
+    return Listing("solutions", _("Solutions; another is taken by choose: its number"), columns, tuple(rows))
+
+
+def _family(task: Task) -> Listing:
+    """Four-bars through two pairs for the ratios l1/l4 that are compared."""
+    columns = (("free", _("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", _("defects"), "word"))
+    ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
+    ratios = np.concatenate([ratios, -ratios])
+    found = of_ratios(task, ratios)
+    rows = []
+    for k in np.flatnonzero(real(found)):
+        mark = quality(found.at(k), task)
+        rows.append((abs(float(ratios[k])), *_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
+    return Listing("family", _("Four-bars through both pairs"), columns, tuple(rows), long=True)
+
+
+def _row(task: Task, one: Bars, mark: Quality) -> tuple[float, ...]:
+    """Lengths (m), zero angles and least transmission angle of a four-bar."""
+    size = _size(task, one)
+    return (*(float(x * size) for x in one[:3]), float(size), float(one.phi0), float(one.psi0), float(mark.least))
+
+
+def _given(task: Task) -> tuple[Value, ...]:
+    values = [Value(name, value, "length", NAMES[name]) for name, value in task.lengths.items()]
+    if task.function:
+        text = task.function.name.replace("x^1.5", "x^(3/2)") or _("table, straight between its rows")
+        of_x = "angle" if task.function.name in ANGLES else "number"
+        (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
+        values += [
+            Value("", text, "word", _("y")),
+            Value("", x0, of_x, _("x, from")), Value("", x1, of_x, _("x, to")),
+            Value("", phi0, "angle", _("input angle, from")), Value("", phi1, "angle", _("input angle, to")),
+            Value("", psi0, "angle", _("output angle, from")), Value("", psi1, "angle", _("output angle, to")),
+        ]  # fmt: skip
+    for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True)):
+        name = _("input angle {number}").format(number=k + 1)
+        values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]
+    zeros = {"phi0": task.phi0, "psi0": task.psi0}
+    return (*values, *(Value(key, value, "angle", NAMES[key]) for key, value in zeros.items() if value is not None))

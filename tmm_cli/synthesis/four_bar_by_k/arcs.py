@@ -1,0 +1,173 @@
+"""The arcs of pivots A of the four-bars by k and both extreme positions C1, C2 of their rocker.
+
+C1C2 = 2 h is seen from A under theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's side of
+C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a place along the arc that theta = 0 does not spoil:
+    sin(beta + theta/2) = w sin(theta/2),
+    l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
+The triangles A C1 D and A C2 D make the crank turn fully; both positions belong to one motion when C1 and C2 lie on one
+side of AD, so that the rocker does not pass its dead position, and AC2 > AC1 is the order of the positions:
+    0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
+Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a circle lie on the line to its centre;
+l2 grows from h on, l1 falls from h on (with k = 1 it is h everywhere).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.synthesis.four_bar import cosine as cosine_of
+from tmm_cli.synthesis.mean_ratio import theta_of
+from tmm_cli.vectors import pi, settled
+
+SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
+END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
+ARC: Final = 2e-3  # rad: a shorter arc has the rocker so nearly dead that k is not determined to 1e-9
+SLACK: Final = 1 - 1e-9  # of that, for rounding
+LINE: Final = 50.0  # l2 over half C1C2 to which the straight line of k = 1 is told
+STRAIGHT: Final = 1e-9  # rad of theta: places along an arc are told by w alone
+FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
+
+
+@dataclass(frozen=True)
+class Task:
+    """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
+
+    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, near (a
+    place), l1, l2 or l4 (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
+    """
+
+    l3: Any
+    psi1: Any
+    psi2: Any
+    k: Any
+    support: Any = 0j
+    choose: str = "best"
+    l1: Any = None
+    l2: Any = None
+    l4: Any = None
+    near: Any = None
+    sense: int = 0
+
+    @property
+    def swing(self) -> Any:
+        return np.abs(np.asarray(self.psi2) - self.psi1)
+
+    @property
+    def theta(self) -> Any:
+        return theta_of(self.k)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths (m), the pivot a (complex, m), the slope of a over w, the largest pressure angle and beta (rad).
+
+    side: -1 on D's side of C1C2, 1 beyond; sense: of the crank whose slow stroke leads from psi1 to psi2.
+    """
+
+    w: Any
+    side: Any
+    l1: Any
+    l2: Any
+    l4: Any
+    a: Any
+    slope: Any
+    pressure: Any
+    beta: Any
+    sense: Any
+
+
+def widest(task: Task, side: Any) -> Any:
+    """The bound of beta on an arc; negative where the arc has no pivot."""
+    half, theta = task.swing / 2, task.theta
+    return np.where(
+        np.asarray(side) > 0, pi(1.0 * half) / 2 - half - theta,
+        pi(1.0 * half) / 2 - np.abs(half - theta / 2) - theta / 2,
+    )  # fmt: skip
+
+
+def bound(task: Task, side: Any) -> Any:
+    """The bound of w on an arc that has pivots."""
+    sine = np.sin(task.theta / 2)
+    most = np.sin(widest(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
+    return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
+
+
+def at(task: Task, w: Any, side: Any) -> Found:
+    """The four-bar whose pivot A stands at a place of an arc."""
+    half, theta, l3 = task.swing / 2, task.theta, task.l3
+    h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
+    sine = w * s
+    cosine = np.sqrt((1 - sine) * (1 + sine))
+    l1, l2 = h * cosine / c, h * w
+    turn = c * cosine + s * sine + 1j * side * s * (w * c - cosine)  # e^(i beta), of the side
+    local = l3 * np.cos(half) + 1j * h - 1j * (l1 + l2) * turn  # D at 0, the middle of the swing along x, C1 below
+    slope = -1j * (cosine + 1j * side * sine) ** 2 * h / (c * cosine)
+    l4 = np.abs(local)
+    sines = [np.abs(cosine_of(l2, l3, (l4 + sign * l1) ** 2)) for sign in (-1, 1)]  # where A, B and D are in line
+    way = np.where(np.asarray(task.psi2) > task.psi1, 1, -1)
+    middle = (np.asarray(task.psi1) + task.psi2) / 2
+    frame = np.cos(middle) + 1j * np.sin(middle)
+    a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
+    a = settled(task.support + a, l4 + np.abs(task.support))
+    return Found(
+        w, side, l1, l2, l4, a, slope, np.arcsin(np.minimum(np.maximum(*sines), 1)),
+        np.arctan2(s * (w * c - cosine), c * cosine + s * sine), -side * way,
+    )  # fmt: skip
+
+
+def arcs(task: Task) -> list[int]:
+    """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
+    if task.k == 1:
+        return [-1]
+    way = 1 if task.psi2 > task.psi1 else -1
+    return [side for side in SIDES if widest(task, side) >= ARC * SLACK and task.sense in (0, -side * way)]
+
+
+def places(task: Task, side: int, count: int = 400) -> Any:
+    """Places w along an arc, close together where the mechanism changes fast, from end to end."""
+    theta, most = float(task.theta), float(bound(task, side))
+    first = END * min(1.0, most - 1)
+    found = 1 + np.geomspace(first, most - 1, count)
+    if theta > STRAIGHT:
+        beta = float(widest(task, side)) * np.linspace(END, 1 - END, count)
+        by_angle = np.sin(beta + theta / 2) / np.sin(theta / 2)
+        found = np.unique(np.clip(np.concatenate((found, by_angle)), 1 + first, most - END * (most - 1)))
+    return found.astype(np.result_type(task.theta, float))  # places between are found in the precision of the data
+
+
+def whole(task: Task, side: int, count: int = 121) -> Any:
+    """Places w of an arc with both its ends, closer together towards them, where the pressure angle changes fast.
+
+    Even in the angle at C2 and in the logarithm of w alike: on arcs that are nearly straight the first says little.
+    """
+    share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+    theta, most = float(task.theta), float(bound(task, side))
+    if theta < STRAIGHT:
+        return np.exp(share * np.log(LINE))
+    by_angle = np.sin(share * float(widest(task, side)) + theta / 2) / np.sin(theta / 2)
+    return np.unique(np.clip(np.concatenate((by_angle, np.exp(share * np.log(most)))), 1.0, most))
+
+
+def level_places(task: Task) -> list[Any]:
+    """Places w of the pivots A = D + t, t real, from which C1C2 is seen under theta.
+
+    With D in the origin, z = conj(C1 - t)(C2 - t): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line
+    through D cuts each of both circles twice. Whether a place is admissible is not asked here.
+    """
+    l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
+    sine, cosine = np.sin(task.theta), np.cos(task.theta)
+    across, rise = 2 * l3 * np.cos(middle) * np.cos(half), 2 * l3 * np.cos(middle) * np.sin(half)
+    c1, c2 = (l3 * (np.cos(psi) + 1j * np.sin(psi)) for psi in (task.psi1, task.psi2))
+    found = []
+    for sign in (-1, 1):
+        a, b = sine, sign * cosine * rise - sine * across
+        c = l3 * l3 * (sine * np.cos(2 * half) - sign * cosine * np.sin(2 * half))
+        inner = b * b - 4 * a * c
+        if inner >= 0:
+            larger = -(b + np.copysign(np.sqrt(inner), b)) / 2
+            found += [larger / a] if a > 0 else []
+            found += [c / larger] if larger != 0 else []
+    return [(np.abs(c1 - t) + np.abs(c2 - t)) / (2 * l3 * np.abs(np.sin(half))) for t in found]

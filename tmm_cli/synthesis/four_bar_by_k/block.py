@@ -1,0 +1,58 @@
+"""Four-bar by k and both extreme positions of its rocker: keys of the task."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema_parts import Value, Vector
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.synthesis.blocks import Block
+from tmm_cli.synthesis.four_bar_by_k.arcs import Task
+
+CHOICES = {"best transmission": "best", "supports level": "level"}
+WAYS = ("choose", "l1", "l2", "l4", "near")
+
+
+class Shape(Block):
+    """A four-bar by k, its rocker and both extreme angles of that; one way to choose the crank's pivot A."""
+
+    task: Literal["four-bar-by-k"]
+    l3: Value = Field(description="rocker DC")
+    psi1: Value = Field(description="angle of DC where the crank lies over the coupler")
+    psi2: Value = Field(description="angle of DC where the crank is in line with the coupler")
+    k: Value = Field(description="coefficient of change of mean speed, 1 or more")
+    support: Vector = Field(default=(0, 0), description="D; [0, 0]")
+    choose: Literal["best transmission", "supports level"] | None = Field(
+        default=None, description="how A is chosen; best transmission"
+    )
+    l1: Value | None = Field(default=None, description="or: the crank AB")
+    l2: Value | None = Field(default=None, description="or: the coupler BC")
+    l4: Value | None = Field(default=None, description="or: the frame AD")
+    near: Vector | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
+    turns: Literal["ccw", "cw"] | None = Field(
+        default=None, description="sense of the crank whose slow stroke leads from psi1 to psi2; any"
+    )
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI. Raises ProblemError."""
+    ways = [name for name in WAYS if getattr(shape, name) is not None]
+    if len(ways) > 1:
+        raise ProblemError(
+            "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of " + ", ".join(WAYS), key=True
+        )
+    wants = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER, "l1": LENGTH, "l2": LENGTH, "l4": LENGTH}
+    found: dict[str, Any] = {
+        key: values.number(getattr(shape, key), want, (key,))
+        for key, want in wants.items() if getattr(shape, key) is not None
+    }  # fmt: skip
+    for key in ("support", "near"):
+        if getattr(shape, key) is not None:
+            found[key] = values.vector(getattr(shape, key), LENGTH, (key,))
+    way = ways[0] if ways else "choose"
+    choice = CHOICES[shape.choose or "best transmission"] if way == "choose" else way
+    return Task(**found, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])

@@ -1,0 +1,1 @@
+"""Which links of a four-bar, a crank-slider or a slotted lever turn fully."""

@@ -1,0 +1,155 @@
+"""Which links turn fully: four-bar (Grashof), crank-slider, slotted lever. Lengths are floats or arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.synthesis.four_bar import CHANGE, SAME, TYPES, FourBar, turning
+from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
+
+PARAMETERS: Final[dict[str, str]] = {}
+LINKS: Final = {
+    "l1": _("link 1"), "l2": _("link 2"), "l3": _("link 3"), "l4": _("link 4"), "r": _("crank r"),
+    "l": _("connecting rod l"), "e": _("offset e"), "OA": _("crank OA"), "OC": _("frame OC"),
+}  # fmt: skip
+FOUR_BARS: Final = {
+    "GCCC": _("GCCC: crank-crank-crank (double crank, drag link)"),
+    "GCRR": _("GCRR: crank-rocker-rocker (crank-rocker)"),
+    "GRCR": _("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
+    "GRRC": _("GRRC: rocker-rocker-crank (rocker-crank)"),
+    "RRR1": _("RRR1: triple rocker, the frame longest"),
+    "RRR2": _("RRR2: triple rocker, the input longest"),
+    "RRR3": _("RRR3: triple rocker, the coupler longest"),
+    "RRR4": _("RRR4: triple rocker, the output longest"),
+    "SCCC": _("SCCC: crank-crank-crank with change points"),
+    "SCRR": _("SCRR: crank-rocker-rocker with change points"),
+    "SRCR": _("SRCR: rocker-crank-rocker with change points"),
+    "SRRC": _("SRRC: rocker-rocker-crank with change points"),
+    "S2X": _("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
+    "S3X": _("S3X: four equal links (rhombus), change points"),
+}
+SLIDERS: Final = {  # by the number of the kind
+    "crank": _("the crank turns fully"),
+    "rod": _("the crank rocks, the rod turns fully"),
+    "none": _("neither crank nor rod turns fully"),
+    "change": _("change point: the slider may leave its side"),
+}
+LEVERS: Final = {
+    "swings": _("the crank turns fully, the slotted link swings"),
+    "turns": _("the crank turns fully, and the slotted link with it"),
+    "none": _("the crank does not turn fully"),
+    "change": _("change point: the stone may pass the hinge of the slotted link"),
+}
+
+
+@dataclass(frozen=True)
+class CrankSlider:
+    """Crank r, rod l, offset e (m)."""
+
+    r: Any
+    l: Any  # noqa: E741  its name in every course
+    e: Any = 0.0
+
+
+@dataclass(frozen=True)
+class SlottedLever:
+    """Crank OA, frame OC, and the distance e of the slot's line from C (m)."""
+
+    OA: Any
+    OC: Any
+    e: Any = 0.0
+
+
+@dataclass(frozen=True)
+class Condition:
+    """kind: number in SLIDERS or LEVERS; margin (m): by how much the crank turns fully (negative: does not)."""
+
+    kind: Any
+    margin: Any
+
+
+Task = FourBar | CrankSlider | SlottedLever
+
+
+def crank_slider(task: CrankSlider) -> Condition:
+    """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
+    r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
+    same = SAME * (r + rod + e)
+    margin = rod - (r + e)
+    other = r - (rod + e)
+    kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
+    return Condition(np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind), margin)
+
+
+def slotted_lever(task: SlottedLever) -> Condition:
+    """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
+    crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
+    same = SAME * (crank + frame + e)
+    margin = np.abs(frame - crank) - e
+    kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
+    return Condition(np.where(np.abs(margin) <= same, 3, kind), margin)
+
+
+def solve(task: Task) -> Outcome:
+    """The answer for one file. Raises Infeasible for what is no mechanism."""
+    lengths = {name: value for name, value in vars(task).items() if name not in ("frame", "driver")}
+    for name, value in lengths.items():
+        if name != "e" and not value > 0:
+            raise Infeasible(name, _("there is no such link"), _least(task, lengths, name))
+    given = tuple(Value(name, value, "length", LINKS[name]) for name, value in lengths.items())
+    if isinstance(task, FourBar):
+        return _four_bar(task, given)
+    if isinstance(task, CrankSlider):
+        found, kinds, margin = crank_slider(task), SLIDERS, _("l - (r + e)")
+        source = _("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
+    else:
+        found, kinds, margin = slotted_lever(task), LEVERS, _("|OC - OA| - e")
+        source = _("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
+    name = list(kinds)[int(found.kind)]
+    values = (Value("", kinds[name], "word", _("type")), Value("", found.margin, "length", margin))
+    return Outcome(given, values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
+
+
+def _least(task: Task, lengths: dict[str, Any], name: str) -> Shown:
+    """The least length of a link that is none: with it the links of a four-bar close."""
+    rest = sorted(max(0.0, float(value)) for other, value in lengths.items() if other != name)
+    gap = rest[-1] - sum(rest[:-1]) if isinstance(task, FourBar) else 0.0
+    return (gap, "length", "above") if gap >= SMALLEST else (SMALLEST, "length", "least")
+
+
+def _four_bar(task: FourBar, given: tuple[Value, ...]) -> Outcome:
+    found = turning(task)
+    links = {f"l{number}": getattr(task, f"l{number}") for number in range(1, 5)}
+    longest = max(links, key=lambda name: float(links[name]))
+    if found.kind < 0:
+        rest = float(sum(links.values()) - links[longest])
+        raise Infeasible(longest, _("the links do not close: {link} is as long as the others together, or longer"),
+                         (rest, "length", "below"), {"link": (longest, "word")})  # fmt: skip
+    change = int(found.kind) >= CHANGE
+    at_change, fully, rocks = (
+        _("turns fully or rocks: decided in the change positions"), _("turns fully"), _("rocks"),
+    )  # fmt: skip
+    given += (
+        Value("frame", f"l{task.frame}", "word", _("frame")),
+        Value("driver", f"l{task.driver}", "word", _("driver")),
+    )
+    values = [
+        Value("", FOUR_BARS[TYPES[int(found.kind)]], "word", _("type")),
+        Value("", found.excess, "length", _("(sum of the middle two) - (shortest + longest)")),
+    ]
+    for role, turns in zip((_("input link"), _("coupler"), _("output link")), found.turns, strict=True):
+        values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
+    source = _("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
+               "four-bar linkages, Mechanism and Machine Theory 20 (1985)")  # fmt: skip
+    return Outcome(given, tuple(values), source, _turning(bool(found.turns[0]), change))
+
+
+def _turning(turns: bool, change: bool) -> tuple[Demand, ...]:
+    """Nothing is foretold of a change point."""
+    words = _("driver turns fully (1: yes, 0: no)")
+    return () if change else (Demand(words, float(turns), "number", crank_turns, asked=False),)

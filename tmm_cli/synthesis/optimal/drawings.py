@@ -1,0 +1,153 @@
+"""Drawings of an optimal synthesis: the search by generation, and what was wanted of a path or a law of motion beside
+what the best candidate reaches, with its table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.synthesis.construction import Diagram, Line
+from tmm_cli.synthesis.optimal.evolution import Evolved
+from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.record import Listing
+from tmm_cli.tolerances import NO_VIOLATION
+from tmm_cli.variants.variant import Places
+from tmm_cli.vectors import Real, Vector
+
+CURVE = 361  # places of a path or a law that is drawn
+ZOOMS = 6  # of the place where a path comes nearest
+CLOSER = 12  # times, each
+NONE = np.zeros(0)
+
+Read = Callable[[Places, str], Real]
+
+
+def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, quantity: str, kind: str) -> Diagram:
+    """shown: an objective as users read it; polished: the one that was found; quantity: what it is called.
+
+    Above: the best so far of those that keep the constraints, and behind it the candidate that led in each generation
+    (early on it misses them: the tolerance shrinks). Below: by how much that one misses them, where it does. Where all
+    were tried, each of them that keeps the constraints, and the best so far.
+    """
+    objective, violation = evolved.history.T
+    if evolved.every:
+        leading, found = _("candidate at the positions of the search"), _("the best of them, looked at closely")
+        across, title = _("candidate"), _("All candidates, one after another")
+    else:
+        leading, found = _("leading candidate (a new population where it rises)"), _("after the polish")
+        across, title = _("generation"), _("Best candidate by generation")
+    number = np.arange(len(objective))
+    there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
+    kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
+    lines = [Line(leading, number, shown(there), faint=True)]
+    if np.any(np.isfinite(kept)):
+        lines.append(Line(_("best so far that keeps the constraints"), number, shown(kept)))
+    lines.append(Line(found, np.array([len(number)]), np.array([polished]), dots=True))
+    missed = np.isfinite(violation) & (violation > NO_VIOLATION)
+    violated = Line(_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
+    return Diagram(
+        "history", title, (across, "number"), (_("objective: {quantity}").format(quantity=quantity), kind),
+        tuple(lines), lower=(violated,) if np.any(missed) and not evolved.every else (),
+        lower_y=(_("constraints missed, relative"), "number"),
+    )  # fmt: skip
+
+
+def reached(search: Search, x: Real, n: int) -> tuple[Listing, Diagram]:
+    """Of the n-th quantity, for shares x of the ranges."""
+    two = x[None]
+
+    def read(places: Places, key: str) -> Real:
+        found: Real = search.run(two, places)[f"{n}.{key}"][0]
+        return found
+
+    return (_law if search.quantities[n].of == "law" else _path)(search, n, read)
+
+
+def _name(search: Search, n: int) -> str:
+    return f"{search.quantities[n].of}-{n}" if n else search.quantities[n].of
+
+
+def _law(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
+    quantity, swings = search.quantities[n], search.overs[n].swings
+    at, wanted = np.array(quantity.places), np.array(quantity.wanted)
+    low, high = float(np.min(at)), float(np.max(at))
+    if search.closed:
+        high = max(high, low + search.cycle)
+    else:
+        low, high = min(search.ends[0], low), max(search.ends[1], high)
+    q = np.linspace(low, high, CURVE)
+    run, there = read(Places(NONE, q), "run"), read(Places(NONE, at), "run")
+    if quantity.relative:
+        run, there = run - there[0], there - there[0]
+    if swings:
+        there = wanted + np.angle(np.exp(1j * (there - wanted)))
+        run = np.unwrap(run)
+        run = run + 2 * np.pi * np.round((there[0] - np.interp(at[0], q, run)) / (2 * np.pi))
+    kind = "angle" if swings else "length"
+    place = "angle" if search.linkage.driver.kind == "turn" else "length"
+    columns = (
+        ("at", _("driver at"), place), ("wanted", _("wanted"), kind), ("reached", _("reached"), kind),
+        ("off", _("deviation"), kind),
+    )  # fmt: skip
+    rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
+    lines = (
+        Line(_("found mechanism"), q, run), Line(_("wanted"), at, wanted, dots=True),
+        Line(_("reached"), at, there, dots=True),
+    )  # fmt: skip
+    up = (_("angle of the link") if swings else _("run of the link"), kind)
+    title = _("Law of motion over the whole way of the driver")
+    drawn = Diagram(_name(search, n), title, (_("driver"), place), up, lines)
+    return Listing(_name(search, n), _("Wanted law and what is reached"), columns, rows), drawn
+
+
+def _path(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
+    quantity, wanted = search.quantities[n], np.array(search.quantities[n].wanted)
+
+    def spots(places: Places) -> Vector:
+        found: Vector = read(places, "px") + 1j * read(places, "py")
+        return found
+
+    path = spots(Places(np.linspace(0, 1, CURVE), NONE))
+    if quantity.places:
+        there = spots(Places(NONE, np.array(quantity.places)))
+    else:
+        there = spots(Places(_closest(lambda shares: spots(Places(shares, NONE)), wanted, search.closed), NONE))
+    rows: tuple[tuple[float, ...], ...] = tuple(
+        (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
+    )
+    columns: tuple[tuple[str, str, str], ...] = (
+        ("x", _("x"), "length"), ("y", _("y"), "length"), ("x_reached", _("x reached"), "length"),
+        ("y_reached", _("y reached"), "length"), ("off", _("deviation"), "length"),
+    )  # fmt: skip
+    if quantity.places:
+        rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
+        columns = (("at", _("driver at"), "angle" if search.linkage.driver.kind == "turn" else "length"), *columns)
+    lines = (
+        Line(_("path"), path.real, path.imag), Line(_("wanted"), wanted.real, wanted.imag, dots=True),
+        Line(_("reached"), there.real, there.imag, dots=True),
+    )  # fmt: skip
+    drawn = Diagram(
+        _name(search, n), _("Path of the point over the whole way of the driver"), (_("x"), "length"),
+        (_("y"), "length"), lines, equal=True,
+    )  # fmt: skip
+    title = (
+        _("Wanted points and those that are reached at these places of the driver") if quantity.places
+        else _("Wanted points and the nearest that are reached")
+    )  # fmt: skip
+    return Listing(_name(search, n), title, columns, rows), drawn
+
+
+def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
+    """Shares of the way at which a path comes nearest to points: closer and closer about the nearest place."""
+    grid, width = np.broadcast_to(np.linspace(0, 1, CURVE), (len(wanted), CURVE)), 1 / (CURVE - 1)
+    nearest: Real = np.zeros(len(wanted))
+    for __ in range(ZOOMS):
+        grid = grid if closed else np.clip(grid, 0, 1)
+        there = path(grid.ravel()).reshape(grid.shape)
+        nearest = grid[np.arange(len(wanted)), np.argmin(np.abs(there - wanted[:, None]), axis=1)]
+        grid = nearest[:, None] + width * np.linspace(-1, 1, 2 * CLOSER + 1)
+        width /= CLOSER
+    return nearest

@@ -1,0 +1,109 @@
+"""Differential evolution with constraints: a global search over a box, by scipy.
+
+R. Storn, K. Price, Differential Evolution, Journal of Global Optimization 11 (1997); constraints by the rules of K.
+Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000), for equalities with a tolerance that shrinks (T. Takahama, S.
+Sakai, 2006).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.vectors import Real
+
+Evaluate = Callable[[Real], tuple[Real, Real]]  # (variants, n) in 0..1 -> objective, violation (0: none)
+GATHERED = 1e-5  # a population whose objectives differ by no more of them makes room for a new one
+TOLERANCES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what the first candidates violate, one after another, for equalities
+FORBIDDEN = 1e30  # times a violation: above every objective
+
+
+@dataclass(frozen=True)
+class Evolved:
+    """population (variants, n): the first candidates and the best of each generation, best first, with objective and
+    violation; history: objective and violation of the one that led in each generation.
+
+    stopped: by hand, before its end. every: nothing evolved, all were tried, and history is of each of them.
+    """
+
+    population: Real
+    objective: Real
+    violation: Real
+    history: Real
+    stopped: bool
+    every: bool = False
+
+
+class _Generations:
+    """What scipy calls with a generation (n, variants); keeps the first one and the best of each."""
+
+    def __init__(self, evaluate: Evaluate, generations: int, progress: Callable[[int, int], None]) -> None:
+        self.evaluate, self.generations, self.progress = evaluate, generations, progress
+        self.kept: list[tuple[Real, Real, Real]] = []
+        self.history: list[tuple[float, float]] = []
+        self.tolerance = 0.0
+        self.leading = np.inf  # of the present population
+
+    @property
+    def left(self) -> int:
+        return self.generations - len(self.history)
+
+    def judged(self, f: Real, v: Real) -> Real:
+        """Deb's rules as one number: less violation, or both allowed and a smaller objective."""
+        return np.where(v > self.tolerance, FORBIDDEN * v, np.where(np.isfinite(f), f, np.inf))
+
+    def __call__(self, columns: Real) -> Real:
+        self.progress(len(self.history), self.generations)
+        x = columns.T
+        f, v = self.evaluate(x)
+        found = self.judged(f, v)
+        first = np.argsort(found)[:1]
+        if found[first[0]] < self.leading or not self.history:
+            self.leading = float(found[first[0]])
+            self.history.append((float(f[first[0]]), float(v[first[0]])))
+        else:
+            self.history.append(self.history[-1])
+        self.kept.append((x[first], f[first], v[first]) if self.kept else (x.copy(), f, v))
+        return found
+
+
+def evolve(
+    evaluate: Evaluate, size: int, *, population: int, generations: int, seed: int, equalities: bool = False,
+    progress: Callable[[int, int], None] = lambda at, of: None,
+) -> Evolved:  # fmt: skip
+    """Search 0..1 in `size` dimensions; the same seed gives the same answer. One that gathers early is begun anew."""
+    from scipy.optimize import differential_evolution
+
+    chance = np.random.default_rng(seed)
+    watched = _Generations(evaluate, generations, progress)
+    stopped = False
+    start = 0.0
+    try:
+        while watched.left > 0:
+            square = chance.permuted(np.tile(np.arange(population), (size, 1)), axis=1).T
+            x = (square + chance.random(square.shape)) / population  # a Latin square: every coordinate evenly spread
+            for share in TOLERANCES if equalities else (0.0,):
+                if watched.left <= 0:
+                    break
+                watched.tolerance, watched.leading = share * start, np.inf
+                last = share == TOLERANCES[-1] or not equalities
+                count = watched.left if last else min(watched.left, max(1, generations // len(TOLERANCES) // 2))
+                found = differential_evolution(
+                    watched, [(0.0, 1.0)] * size, init=x, maxiter=count - 1,
+                    strategy="currenttobest1bin", mutation=(0.5, 1.0), recombination=0.9, tol=GATHERED, atol=0.0,
+                    polish=False, updating="deferred", vectorized=True, rng=chance,
+                )  # fmt: skip
+                x = found.population
+                if equalities and not start:
+                    start = float(np.quantile(np.minimum(watched.kept[0][2], 10.0), 0.2))
+    except KeyboardInterrupt:
+        stopped = True
+    finally:
+        progress(generations, generations)
+    if not watched.kept:
+        raise KeyboardInterrupt
+    x, f, v = (np.concatenate(parts) for parts in zip(*watched.kept, strict=True))
+    order = np.argsort(watched.judged(f, v), kind="stable")
+    return Evolved(x[order], f[order], v[order], np.array(watched.history), stopped)

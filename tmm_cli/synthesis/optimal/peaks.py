@@ -1,0 +1,77 @@
+"""Peaks and zeros between the places at which a quantity is known, many variants at once.
+
+Seven neighbours on equal steps h determine a polynomial of degree 6, which is off by h^7 times the seventh derivative
+over 7! and less; arrays are (variants, places).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import perm
+
+import numpy as np
+
+from tmm_cli.synthesis.optimal.readings import peaks_of
+from tmm_cli.vectors import Real
+
+WINDOW = 33  # places about a peak
+SIDE = 3  # neighbours on either side
+_FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
+NEWTON = 6
+RIVALS = 8  # highest places of what may jump
+ZOOMS = 9  # of a peak that may be a jump
+FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
+
+
+def _near(y: Real, k: Real) -> tuple[Real, Real]:
+    middle = np.clip(k, SIDE, y.shape[1] - SIDE - 1)
+    near = np.take_along_axis(y, middle[:, None] + np.arange(-SIDE, SIDE + 1), axis=1)
+    return near @ _FIT, middle
+
+
+def _value(c: Real, u: Real, order: int = 0) -> Real:
+    found = FACTORS[order][-1] * c[:, -1]
+    for power in range(2 * SIDE - 1, order - 1, -1):
+        found = found * u + FACTORS[order][power] * c[:, power]
+    return found
+
+
+def peak(y: Real) -> Real:
+    """The largest value within a window; (variants,)."""
+    c, middle = _near(y, np.argmax(y, axis=1))
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            bend = _value(c, u, 2)
+            u = np.clip(u - np.where(bend < 0, _value(c, u, 1) / bend, 0.0), -SIDE, SIDE)
+    found: Real = np.maximum(_value(c, u), np.max(y, axis=1))
+    return np.where((middle == np.argmax(y, axis=1)) & (np.abs(u) < SIDE), found, np.max(y, axis=1))
+
+
+def zero(y: Real) -> Real:
+    """Where in a window a quantity changes its sign, in steps from its first place; (variants,)."""
+    c, middle = _near(y, np.argmin(np.abs(y), axis=1))
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            step = _value(c, u) / _value(c, u, 1)
+            u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
+    found: Real = middle + u
+    return found
+
+
+def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
+    """The largest value of a curve that may jump or bend sharply: closer and closer about its highest places.
+
+    scan: shares of the way at equal steps; closed: the curve goes on after its end as at its beginning.
+    """
+    y = curve(scan)
+    best, step = float(np.nanmax(y)), scan[1] - scan[0]
+    middle = scan[peaks_of(y, RIVALS, closed)]
+    for _ in range(ZOOMS):
+        shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
+        shares = shares if closed else np.clip(shares, 0.0, 1.0)
+        there = curve(shares.ravel()).reshape(shares.shape)
+        middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
+        best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
+    return best

@@ -1,0 +1,221 @@
+"""A quantity of a mechanism over its cycle, for many variants at once.
+
+It is written on the tape with the linkage (`outputs`), and then read off coarsely, from places all round the cycle
+(`coarse`), or finely, from windows of places about its peaks and zeros (`windows`, `fine`), where it is exact to some
+1e-12; and it is measured on a mechanism that was analysed by the ordinary stages (`measure`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import Linkage
+from tmm_cli.roots import least, top
+from tmm_cli.structure.naming import output_link
+from tmm_cli.synthesis import measures
+from tmm_cli.synthesis.measures import Ends
+from tmm_cli.synthesis.optimal.peaks import highest, peak
+from tmm_cli.synthesis.optimal.readings import peaks_of
+from tmm_cli.variants.batch import reactions_of
+from tmm_cli.vectors import Real
+
+MOST_PEAKS = 4  # of a curve that are looked at closely
+SCAN = 1440  # places in a turn, or in a stroke, of an analysed mechanism
+CLOSELY = "closely."  # begins the names of outputs that are wanted for windows alone
+
+Read = Callable[[str], Real]  # an output by name, (variants, places)
+Curve = Callable[[str, Real], Real]  # of one candidate: an output by name, at shares of the driver range
+Windows = list[tuple[Any, float, Read]]  # what a window is of, its first place, its outputs
+
+
+@dataclass(frozen=True)
+class Over:
+    """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
+
+    swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
+    counts: as the quantity has them. taped: many places cost little.
+    """
+
+    swings: bool
+    closed: bool = True
+    cycle: float = 2 * np.pi
+    rough: bool = False
+    counts: tuple[int, ...] = ()
+    taped: bool = True
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a task asks of it. name: of the pair, the point or the link; links: those whose lengths count.
+
+    places: of the driver (rad or m), with the wanted values there; a path without places is to pass through the points
+    in any of its positions. norm: how deviations are counted.
+    """
+
+    name: str = ""
+    links: tuple[str, ...] = ()
+    places: tuple[float, ...] = ()
+    wanted: tuple[Any, ...] = ()
+    norm: Literal["least squares", "largest"] = "least squares"
+    relative: bool = False
+
+    of: ClassVar[str]  # its name in files
+    text: ClassVar[str]
+    dimension: ClassVar[str] = "length"
+    keys: ClassVar[tuple[str, ...]] = ()  # of a problem file, beside `of`
+    named: ClassVar[str] = ""  # the one of them that says of what it is: pair, point or link
+    given: ClassVar[str] = ""  # the one of them that says what is wanted
+    forces: ClassVar[bool] = False  # wants the force plan
+    moves: ClassVar[bool] = True  # hangs on where the driver goes
+    lowest: ClassVar[bool] = False  # its least value in a cycle counts, and as an objective it is made largest
+
+    def kind(self, linkage: Linkage, groups: Any) -> str:
+        """Its dimension by name."""
+        return self.dimension
+
+    def title(self, linkage: Linkage) -> str:
+        """What it is called."""
+        return self.text
+
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
+        """Why a linkage has no such quantity, and what has."""
+        return None
+
+    def output(self, linkage: Linkage, groups: Any) -> str | None:
+        """The link whose run it rests on."""
+        return output_link(linkage, groups)
+
+    def slides(self, linkage: Linkage, groups: Any) -> bool:
+        """Whether that link slides."""
+        link = self.output(linkage, groups)
+        return link is not None and linkage.slides_on_frame(link)
+
+    def counts(self, linkage: Linkage) -> tuple[int, ...]:
+        """Of points, or of distances on each link."""
+        return ()
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        """What is to be written down for it."""
+        raise NotImplementedError
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        """From places all over the driver range (for `places`: from those), (variants,)."""
+        raise NotImplementedError
+
+    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+        """What to look at closely, and about which place of a scan of one variant."""
+        return []
+
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        """Pieces of the quantity, (variants, pieces); the largest counts (of `lowest`: the least).
+
+        exact: outputs at the quantity's own places; step: of places in windows. Places are shares of the range.
+        """
+        raise NotImplementedError
+
+    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+        """The quantity of one candidate where windows may not be exact enough; value: from those."""
+        return value
+
+    def measure(self, results: Results, ends: Ends) -> float:
+        """On an analysed mechanism (SI, rad), over the driver range between two ends, else over its cycle.
+
+        nan where the mechanism has none.
+        """
+        return self._measured(results, ends) if measures.goes_its_way(results, ends) else measures.NONE
+
+    def _measured(self, results: Results, ends: Ends) -> float:
+        raise NotImplementedError
+
+    def open(self, results: Results) -> float:
+        """By how much of it rounding leaves the measured value open."""
+        return 0.0
+
+    def smooth(self, pieces: Real) -> Real:
+        """Of pieces what is made least in their place, with derivatives where they are zero."""
+        return pieces
+
+    def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
+        """What is written down for it at places of an analysed mechanism."""
+        motion = motion_at(results, q)
+        plan = reactions_of(motion, results.structure, results.strokes) if self.forces else None
+        return self.outputs(motion, plan)
+
+
+class Constant(Goal):
+    """The same in all positions, its `value`."""
+
+    moves = False
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        return read("value")[:, 0]
+
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        return exact("value")[:, :1]
+
+    def _measured(self, results: Results, ends: Ends) -> float:
+        return float(self.outputs_of(results, np.array([results.start]))["value"])
+
+
+class Peak(Goal):
+    """The largest value of a curve in a cycle, or the sum of those of several."""
+
+    curves: ClassVar[tuple[str, ...]] = ("y",)
+
+    def levelled(self, y: Any) -> Any:
+        """The quantity of a place from its curve, whose opposite it is for `lowest`."""
+        return y
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        found: Real = self.levelled(sum(np.max(read(name), axis=1) for name in self.curves))
+        return -found if self.lowest else found
+
+    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+        return [("y", k) for k in peaks_of(read("y")[0], MOST_PEAKS, over.closed)]
+
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        ys = [self.levelled(read(name)) for name, _, read in parts]
+        rough = over.rough and self.forces
+        found: Real = np.stack([np.max(y, axis=1) if rough else peak(y) for y in ys], axis=1)
+        return -found if self.lowest else found
+
+    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+        if over.rough and self.forces:
+            return highest(lambda shares: curve("y", shares), scan, closed=over.closed)
+        return value
+
+    def _measured(self, results: Results, ends: Ends) -> float:
+        total = sum(
+            highest_on(lambda q, n=name: np.asarray(self.outputs_of(results, q)[n]), results, ends)  # type: ignore[misc]
+            for name in self.curves
+        )
+        return -total if self.lowest else total
+
+
+def motion_at(results: Results, q: Real) -> Motion:
+    """Of an analysed mechanism at other places of its driver."""
+    return at_positions(results, np.atleast_1d(q))
+
+
+def highest_on(curve: Callable[[Real], Real], results: Results, ends: Ends) -> float:
+    """The largest value of a curve over the driver range: in a cycle from position 0 on."""
+    assert results.driver_range is not None
+    driver, turns = results.linkage.driver, results.driver_range.turns
+    if ends is None and not results.driver_range.full:
+        ends = results.driver_range.start, results.driver_range.end
+    low, high = ends or sorted((results.start, results.start + driver.sense * 2 * np.pi * turns))
+    q = np.linspace(low, high, SCAN * turns + 1)
+    y = curve(q)
+    k, step = int(np.nanargmax(y)), q[1] - q[0]
+    if (ends or driver.acceleration) and k in (0, len(q) - 1):
+        return float(y[k])
+    place, value = least(lambda x: -curve(x), q[k] - step, q[k] + step)
+    place = top(lambda x: -curve(x), place, step)
+    return float(max(curve(np.array([place]))[0], -value, y[k]))

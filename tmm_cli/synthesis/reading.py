@@ -1,0 +1,272 @@
+"""The block `synthesis:` of a problem file: checked when the file is loaded, solved when something needs its answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property, partial
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from tmm_cli.errors import _
+from tmm_cli.problem import schema
+from tmm_cli.problem.arithmetic import Parser
+from tmm_cli.problem.build import Builder, checked_shape, parameters, unit_system, validated
+from tmm_cli.problem.build import build as build_linkage
+from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
+from tmm_cli.problem.expressions import check_parameter
+from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
+from tmm_cli.problem.tree import Path, Tree
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, plain_text
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import KINDS
+from tmm_cli.synthesis import block, solver
+from tmm_cli.synthesis.blocks import OfTheFile, SynthesisFile, checked
+from tmm_cli.synthesis.bounded import Bounded
+from tmm_cli.synthesis.record import Infeasible, Outcome, sound
+from tmm_cli.synthesis.refusals import refusal, suggested
+
+Parameters = dict[str, PhysicalValue]
+GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
+
+
+def read(tree: Tree) -> TaskProblem:
+    """A file with a task and a linkage: all of the block is checked, nothing is solved. Raises ProblemError."""
+    if "links" not in tree.data:
+        raise ProblemError(
+            _("there is no linkage that could use what is found"), path=("synthesis",),
+            allowed=_("tmm synthesis, or links and a driver"), key=True,
+        ).located(tree.file, tree)  # fmt: skip
+    file = TaskFile(tree)
+    with placed_in(tree):
+        if not file.searches:
+            file.task  # noqa: B018  refuses what is wrong in it
+    shape, name = file.shape, PurePath(tree.file).stem
+    return TaskProblem(
+        name, shape.title or name, file.units, shape.description, partial(_found, file), partial(_draft, file)
+    )
+
+
+def build(tree: Tree) -> Problem:
+    """A problem with all its numbers: those that its task finds too, if it has one. Raises ProblemError."""
+    return read(tree).whole if "synthesis" in tree.data else build_linkage(tree)
+
+
+def alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
+    """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
+    file, name = TaskFile(tree), PurePath(tree.file).stem
+    with placed_in(tree):
+        return name, file.shape.title or name, file.synthesised(), file.units
+
+
+def task_of(tree: Tree) -> Any:
+    """What the task of a file asks, in SI, without its answer. Raises ProblemError."""
+    file = TaskFile(tree)
+    with placed_in(tree):
+        return file.task
+
+
+class TaskFile:
+    """A file with a task: which of its parameters the task finds, which rest on these, and which it rests on.
+
+    Raises ProblemError, located in the file.
+    """
+
+    def __init__(self, tree: Tree, *, extended: bool = False) -> None:
+        self.tree = tree
+        self.shape = checked_shape(tree) if "links" in tree.data else validated(SynthesisFile, tree)
+        self.block = checked(tree)
+        self.searches: bool = getattr(block(self.block.task), "SEARCH", False)
+        with placed_in(tree):
+            self.units = unit_system(self.shape.units, extended=extended)
+            self.kinds = self._kinds()
+            self.names = self._names()
+            raw, found = self.shape.parameters, self.stand_ins()
+            resting = self._resting(set(found))
+            self.late = {name: raw[name] for name in raw if name in resting}
+            self.early = parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
+            self._not_on_late()
+
+    def _kinds(self) -> dict[str, str]:
+        """Names and kinds of what the task finds; they may depend on what is asked."""
+        own = getattr(block(self.block.task), "parameters", None)
+        return dict(solver(self.block.task).PARAMETERS if own is None else own(self.block))
+
+    def _names(self) -> dict[str, str]:
+        """Standard names of what is found, and those that the file gives them."""
+        raw, own, task = self.shape.parameters, self.block.names, self.block.task
+        for name, other in own.items():
+            path = ("synthesis", "names", name)
+            if name not in self.kinds:
+                raise ProblemError(
+                    _("the synthesis {task} finds nothing of that name").format(task=task), path=path,
+                    found=quote(name), allowed=", ".join(self.kinds) or _("it finds no parameters"),
+                    near=nearest(name, self.kinds), key=True,
+                )  # fmt: skip
+            check_parameter(other, path, key=False)
+        names = {name: own.get(name, name) for name in self.kinds}
+        for name, other in names.items():
+            first = next(one for one in names if names[one] == other)
+            if first != name:
+                raise ProblemError(
+                    _("{first} and {second} of the synthesis have the same name").format(first=first, second=name),
+                    path=("synthesis", "names"), found=quote(other), allowed=_("different names"),
+                )  # fmt: skip
+            if other in raw:
+                raise ProblemError(
+                    _("the parameter {name} is given by hand, and the synthesis {task} finds it (its {own})").format(
+                        name=other, task=task, own=name
+                    ),
+                    path=("parameters", other), found=quote(raw[other]), key=True,
+                    allowed=_("one of the two; another name: synthesis: {{names: {{{name}: ...}}}}").format(name=name),
+                )  # fmt: skip
+        return names
+
+    def stand_ins(self) -> Parameters:
+        """Values in place of those to be found, no two in a simple ratio. A search does not tell its kinds before."""
+        return {
+            name: PhysicalValue(1 + k * GOLDEN % 1, None if self.searches else KINDS[self.kinds[own]].dimension)
+            for k, (own, name) in enumerate(self.names.items())
+        }
+
+    def _resting(self, found: set[str]) -> set[str]:
+        """Parameters given by hand that rest on what is found, at first hand or through others."""
+        raw = self.shape.parameters
+        known = dict.fromkeys([*raw, *found], PhysicalValue(0.0))
+        needs = {name: set(Parser(plain_text(source[:200]), known, self.units).names())
+                 for name, source in raw.items() if isinstance(source, str)}  # fmt: skip
+        late: set[str] = set()
+        while more := {name for name, used in needs.items() if used & (found | late)} - late:
+            late |= more
+        return late
+
+    def _not_on_late(self) -> None:
+        """What is asked cannot rest on what is found."""
+        known = dict.fromkeys(self.late, PhysicalValue(0.0))
+        for path, text in _texts(self.block):
+            used = Parser(plain_text(text[:200]), known, self.units).names()
+            if path[0] not in ("task", "names") and used:
+                raise ProblemError(
+                    _("this rests on what the synthesis finds"), path=("synthesis", *path),
+                    found=", ".join(map(quote, used)), allowed=_("parameters that do not"),
+                )  # fmt: skip
+
+    @cached_property
+    def task(self) -> Any:
+        """What is asked, in the record of the task."""
+        return self.read(self.block)
+
+    def read(self, given: Any) -> Any:
+        """A block in the record of its task. Raises ProblemError."""
+        read = block(given.task).read
+        try:
+            with under("synthesis"):
+                if not self.searches:
+                    return read(given, Bounded(self.early, self.units))
+                if "links" not in self.tree.data:
+                    raise ProblemError(
+                        _("there is no linkage whose parameters could vary"), allowed=_("links and a driver")
+                    )
+                return read(given, ValueReader(self.early, self.units), self.tried)
+        except Infeasible as error:
+            raise refusal(error, given, self.units).at("synthesis") from None
+        except OfTheFile as error:
+            raise error.error from None
+
+    def tried(self, found: Parameters, units: UnitSystem) -> Problem:
+        """The linkage with other values of what is to be found, for a search. Raises OfTheFile."""
+        try:
+            return self.with_values(found, units)
+        except ProblemError as error:
+            raise OfTheFile(error) from None
+
+    def with_values(self, found: Parameters, units: UnitSystem) -> Problem:
+        """The linkage with these values of what is to be found."""
+        assert isinstance(self.shape, schema.File)
+        known = self.early | found
+        everything = known | parameters(self.late, units, known)
+        return Builder(self.shape, self.tree, ValueReader(everything, units)).problem()
+
+    def synthesised(self) -> Synthesised:
+        """What the task finds. Raises ProblemError."""
+        task = self.task
+        try:
+            with under("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
+                outcome = sound(solver(self.block.task).solve(task))
+        except Infeasible as error:
+            helps = not isinstance(error.suggestion, tuple) or self.helps(error)
+            raise refusal(error, self.block, self.units, alone=helps).at("synthesis") from None
+        except OfTheFile as error:
+            raise error.error from None
+        return Synthesised(self.block.task, outcome, self.names)
+
+    def helps(self, error: Infeasible) -> bool:
+        """Whether the task is solved with what a refusal suggests, as it is printed, in the place of what is wrong."""
+        (key, *inside), text = error.path, suggested(error, self.units)
+        here = getattr(self.block, str(key))
+        changed = [text if n in inside else item for n, item in enumerate(here)] if inside else text
+        try:
+            with np.errstate(all="ignore"):
+                sound(solver(self.block.task).solve(self.read(self.block.model_copy(update={str(key): changed}))))
+        except (ProblemError, Infeasible):
+            return False
+        return True
+
+    def values(self, outcome: Outcome) -> Parameters:
+        """The parameters that were found, under the names that the file gives them."""
+        return {
+            self.names[name]: PhysicalValue(_plain(value.value), KINDS[value.kind].dimension)
+            for name, value in outcome.parameters.items() if name in self.names
+        }  # fmt: skip
+
+
+def _found(file: TaskFile) -> Problem:
+    """The problem with what its task finds."""
+    with placed_in(file.tree):
+        return _whole(file, file.synthesised())
+
+
+def _whole(file: TaskFile, synthesised: Synthesised) -> Problem:
+    problem = file.with_values(file.values(synthesised.outcome), file.units)
+    sketch = synthesised.outcome.sketch or problem.linkage.sketch
+    return replace(
+        problem, linkage=replace(problem.linkage, sketch=sketch), synthesis=synthesised,
+        extended=partial(_extended, file.tree, synthesised),
+    )  # fmt: skip
+
+
+def _extended(tree: Tree, synthesised: Synthesised) -> Problem:
+    """The same with numbers in longdouble; what a search found stays as it is."""
+    file = TaskFile(tree, extended=True)
+    with placed_in(tree):
+        return _whole(file, synthesised if file.searches else file.synthesised())
+
+
+def _draft(file: TaskFile) -> Problem | None:
+    """Links and pairs with other numbers for what is to be found; None where the file refuses these."""
+    try:
+        return file.with_values(file.stand_ins(), file.units)
+    except ProblemError:
+        return None
+
+
+def _texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
+    """Every text of a block with its place in it."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list | tuple):
+        for number, item in enumerate(value):
+            yield from _texts(item, (*path, number))
+    elif isinstance(value, dict | BaseModel):
+        for key, item in value.items() if isinstance(value, dict) else value:
+            yield from _texts(item, (*path, key))
+
+
+def _plain(value: Any) -> Any:
+    """A Python float, or a number of more digits as it is."""
+    number = np.asarray(value)[()]
+    return float(number) if number.dtype == np.float64 else number

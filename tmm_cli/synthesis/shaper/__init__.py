@@ -1,0 +1,1 @@
+"""Crank shaper by its stroke and k."""

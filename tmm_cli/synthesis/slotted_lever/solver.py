@@ -1,0 +1,189 @@
+"""Slotted lever by k and the extreme positions of its end B: the crank's pin touches both from O on their bisector.
+
+In an extreme position OA is square to CB, so that the lever swings by theta = pi (k - 1)/(k + 1) = B1CB2, and
+    CB = B1B2/(2 sin(theta/2)),  OA = OC sin(theta/2);
+the stone moves between OC - OA and OC + OA from C. OC is free. The force on the stone is the lever's moment over its
+distance from C, so the longest OC that leaves the stone on CB gives the least force: OC (1 + sin(theta/2)) = CB.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.synthesis.mean_ratio import k_of, theta_of
+from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.slotted_lever.drawing import construction, family
+from tmm_cli.vectors import settled
+
+PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
+STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
+
+
+QUICK_RETURN: Final = _(
+    "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
+
+    k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
+    lever clockwise from b1 to b2. OC (m), or the crank OA (m), or bounds of OC and which is chosen: force (the longest
+    with the stone on CB) or shortest.
+    """
+
+    b1: Any = None
+    b2: Any = None
+    length: Any = None
+    c: Any = 0j
+    axis: Any = 0.0
+    side: int = -1
+    k: Any = None
+    swing: Any = None
+    frame: Any = None
+    crank: Any = None
+    within: tuple[Any, Any] | None = None
+    choose: str = "force"
+
+    @property
+    def theta(self) -> Any:
+        return theta_of(self.k) if self.swing is None else np.asarray(self.swing)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths (m), places O and C (m), angles of CB1 and CB2 (rad); longest: OC that leaves the stone on CB."""
+
+    crank: Any
+    frame: Any
+    lever: Any
+    o: Any
+    c: Any
+    psi1: Any
+    psi2: Any
+    theta: Any
+    longest: Any
+
+
+def find(task: Task) -> Found:
+    """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    theta = task.theta
+    sine = np.sin(theta / 2)
+    if task.length is None:
+        way = np.asarray(task.b2) - task.b1
+        lever = np.abs(way) / 2 / sine
+        c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * way / 2 / np.tan(theta / 2)
+        along = -task.side * 1j * way / np.abs(way)
+        psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
+    else:
+        lever, c = np.asarray(task.length), task.c
+        along = np.cos(task.axis) + 1j * np.sin(task.axis)
+        psi1, psi2 = task.axis - task.side * theta / 2, task.axis + task.side * theta / 2
+    longest = lever / (1 + sine)
+    if task.crank is not None:
+        frame = np.asarray(task.crank) / sine
+    elif task.within is None:
+        frame = np.asarray(task.frame)
+    elif task.choose == "force":
+        frame = np.minimum(task.within[1], longest)
+    else:
+        frame = np.asarray(task.within[0])
+    size = lever + frame + np.abs(c)
+    along, c = settled(along, 1.0), settled(c, size)
+    return Found(frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest)
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason and what could be met."""
+    straight = _("the lever of a crank that turns fully swings by less than 180 deg")
+    if task.k is not None and not task.k > 1:
+        raise Infeasible("k", QUICK_RETURN, (1.0, "number", "above"))
+    if task.k is not None and not np.pi - task.theta > STRAIGHT:
+        raise Infeasible("k", straight, (float(k_of(np.pi - STRAIGHT)), "number", "below"))
+    if task.swing is not None and not task.swing < np.pi - STRAIGHT:
+        raise Infeasible("swing", straight, (np.pi - STRAIGHT, "angle", "below"))
+    if task.swing is not None and not task.swing > 0:
+        raise Infeasible("swing", _("a lever that does not swing has no strokes"), (SMALLEST, "angle", "least"))
+    for name, value in (("OC", task.frame), ("OA", task.crank), ("CB", task.length)):
+        if value is not None and not value > 0:
+            on_it = 0.0 if task.within is None else float(task.within[0]) * (1 + float(np.sin(task.theta / 2)))
+            least = on_it if name == "CB" and on_it > SMALLEST else SMALLEST
+            raise Infeasible(name, _("there is no such link"), (least, "length", "least"))
+    if task.length is None and abs(task.b2 - task.b1) == 0:
+        raise Infeasible("B2", _("B1 and B2 are the same place"), _("any place other than B1"))
+    if task.within is not None:
+        if not 0 < task.within[0] <= task.within[1]:
+            raise Infeasible("within", _("these are no bounds of a distance"),
+                             _("two lengths above zero, the smaller one first"))  # fmt: skip
+        longest = float(find(task).longest)
+        if task.within[0] > longest:
+            raise Infeasible(("within", 0), _("within these bounds the stone always passes B"),
+                             (longest, "length", "most"))  # fmt: skip
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    refuse(task)
+    f = find(task)
+    demands = (
+        Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
+        Demand(_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
+        *(Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+          for text, v in ((_("angle of CB1"), f.psi1), (_("angle of CB2"), f.psi2))),
+    )  # fmt: skip
+    notes = (_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
+    free = family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
+    drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
+    source = _("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
+               "on the bisector, OA = OC sin(theta/2)")  # fmt: skip
+    return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings)
+
+
+def _given(task: Task) -> tuple[Value, ...]:
+    given = []
+    if task.length is None:
+        for x, y, place in ((_("B1, x"), _("B1, y"), task.b1), (_("B2, x"), _("B2, y"), task.b2)):
+            given += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
+    kinds = {
+        "length": ("length", _("lever CB")), "k": ("number", _("k")), "swing": ("angle", _("swing of the lever")),
+        "frame": ("length", _("frame OC")), "crank": ("length", _("crank OA")),
+    }  # fmt: skip
+    given += [Value(n, getattr(task, n), *what) for n, what in kinds.items() if getattr(task, n) is not None]
+    if task.within is not None:
+        force = _("least force: the longest that leaves the stone on CB")
+        given += [
+            Value("", task.within[0], "length", _("frame OC, at least")),
+            Value("", task.within[1], "length", _("frame OC, at most")),
+            Value("", force if task.choose == "force" else _("the shortest"), "word", _("choice of OC")),
+        ]
+    return tuple(given)
+
+
+def _found(task: Task, f: Found) -> tuple[Value, ...]:
+    away = f.o - f.c
+    return (
+        Value("OA", f.crank, "length", _("crank OA")),
+        Value("OC", f.frame, "length", _("frame OC")),
+        Value("CB", f.lever, "length", _("lever CB")),
+        Value("xO", np.real(f.o), "length", _("hinge O of the crank, x")),
+        Value("yO", np.imag(f.o), "length", _("hinge O of the crank, y")),
+        Value("xC", np.real(f.c), "length", _("hinge C of the lever, x")),
+        Value("yC", np.imag(f.c), "length", _("hinge C of the lever, y")),
+        Value("phi", np.arctan2(np.imag(away), np.real(away)), "angle",
+              _("direction from C to O, of crank and lever when they are in line")),
+        Value("", f.theta, "angle", _("theta = B1CB2")),
+        Value("", f.frame - f.crank, "length", _("stone from C, at least")),
+        Value("", f.frame + f.crank, "length", _("stone from C, at most")),
+        Value("", f.longest, "length", _("longest OC that leaves the stone on CB")),
+        # in the slow stroke the crank turns as the lever does
+        Value("", _("counterclockwise") if task.side > 0 else _("clockwise"), "word",
+              _("crank for a slow stroke from B1 to B2")),
+    )  # fmt: skip

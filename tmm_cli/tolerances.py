@@ -1,0 +1,48 @@
+"""Numbers that decide: what counts as dead, near, converged, equal, parallel, redundant or at rest.
+
+Each has a dimension and a reason. What decides in one file only stands there. Two that mean the same are one; two that
+have the same size for different reasons are two. Margins are without dimension: the sine of a transmission angle, or
+the least singular value of a scaled Jacobian over the largest.
+"""
+
+from __future__ import annotations
+
+# Rounding, in units of the last place
+ROUNDINGS = 8.0  # of the data: a distance below so many of them cannot be told from zero
+CONSTRUCTION_ROUNDINGS = 16  # that a construction of a few steps may lose
+
+# Dead positions
+DEAD = 1e-6  # margin: the least of it is found to half the digits, 1e-8; a hundred times that is sure
+DEAD_SKETCH = 1e-7  # margin in the sketch: closer, the assembly it shows cannot be told
+SINGULAR = 1e-16  # margin: less is rounding of the matrix, and no velocity has a digit
+NEAR_DEAD = 0.05  # sine of the transmission angle, 3 deg: a warning is due
+NEAR_SINGULAR = 0.005  # singular values: likewise; a well-shaped triad has 0.1
+DEAD_COSINE = 5e-16  # of the terms of the cosine of a transmission angle in longdouble: 1 but for rounding
+DEAD_COSINE_DOUBLE = 4e-15  # of the same terms in float64
+
+# Newton's method, without dimension: sizes of the group, rad
+LAST_STEP = 1e-9  # a step below this squares to less than rounding: it was the last
+LAST_STEP_EXTENDED = 1e-11  # likewise in longdouble
+CONVERGED = 1e-6  # a last step, or a residual, above this has not converged
+CLOSED = 1e-9  # residual of a group that is closed, and is not so to half the digits only
+
+# Equal
+SAME_POSE = 1e-6  # sizes, rad: two assemblies are the same; found in a dead position they agree to half the digits
+MEET = 1e-4  # sizes, rad: two assemblies this near, both dead, are one
+CAME_BACK = 1e-6  # sizes of a group, or of a cycle: what is no farther off after a cycle is back where it was
+SAME_PLACE = 1e-9  # rad, m: places of the driver, and times of strokes, that differ by rounding of a search only
+SAME_RATIO = 1e-12  # relative: numbers that differ by what arithmetic on a file's numbers rounds (0.1 + 0.2 is not 0.3)
+PARALLEL = 1e-9  # sine: lines that meet under less do not meet
+
+# Redundant constraints: the least real singular value of a linkage was 1e-2, an idle one has 1e-16
+REDUNDANT = 1e-8  # of the largest singular value
+DEPENDENT = 1e-9  # of the largest singular value, or of a row, out of the plane; dependent rows are at 1e-15
+TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for nothing
+
+# At rest, or nothing
+RESTS = 1e-12  # of the longest run, of the largest speed: less is rounding
+NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for rounding has no largest place
+NO_MOMENT = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
+FRICTION_AGREES = 1e-13  # of the largest reaction: friction and the reactions that it comes from
+NO_VIOLATION = 1e-12  # of its scale: a smaller violation is none that could be shown
+MET = 1e-9  # relative: a wanted value is met when it is missed by less

@@ -1,0 +1,162 @@
+"""Many positions of a linkage, or many linkages of one kind, at once: the stages written on a tape and played back.
+
+The tape holds what the ordinary stages do for this linkage, without what its numbers and the wanted results make
+superfluous; it is worth its writing (some milliseconds) from thousands of positions on. Groups that are found by
+iteration cannot be written on a tape; linkages that have them are solved one after another by the ordinary stages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.selection import values
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import Reactions, react
+from tmm_cli.groups.base import Closed, Kernel
+from tmm_cli.groups.sequence import DriverMotion, drives_at
+from tmm_cli.groups.state import Drive
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.kinematics.strokes import Strokes
+from tmm_cli.linkage import Linkage
+from tmm_cli.quantities import ANGLE
+from tmm_cli.structure.assur import Structure
+from tmm_cli.tape import Outputs, Program, record
+from tmm_cli.variants.stack import changed, parts, varying
+from tmm_cli.vectors import Real
+
+Wanted = Callable[[Motion, Reactions | None], Mapping[str, Any]]
+CHECKS = ("placed", "moving", "margin")
+TIME = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
+
+
+def everything(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+    """Motion of all named points, centres of mass and links, all reactions, what balances the drivers.
+
+    Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's second
+    link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
+    """
+    found: dict[str, Any] = {}
+    for quantity, name, value in values(motion, reactions, first=True):
+        if quantity.dimension != ANGLE:  # of a link its points tell it
+            found[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{quantity.name}"] = value
+    return found
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Linkages of one kind, ready to be solved at places of their driver; all assembled as the first one is.
+
+    program is None where the groups are found by iteration; checks tells where they can be assembled. columns: what
+    varies, (variants, 1).
+    """
+
+    linkages: tuple[Linkage, ...]
+    structure: Structure
+    kernels: tuple[Kernel, ...]
+    wanted: Wanted
+    forces: bool
+    strokes: Strokes | None
+    program: Program | None
+    checks: Program | None = None
+    columns: tuple[Real, ...] = ()
+
+    def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
+        """What was wanted, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
+
+        Results are (variants, positions), or (positions,) of one linkage. Where `sound` says no they mean nothing.
+        """
+        return self._one_by_one(q) if self.program is None else self.program(*self.columns, q)
+
+    def sound(self, q: Real) -> Outputs | Mapping[str, Real]:
+        """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`.
+
+        `margin` is the least distance of a group from a dead position, 1 at best: a result has lost about as many of
+        its 16 digits as it has zeros. What these results are in truth is told by `solve`, with bounds, not here.
+        """
+        return self._one_by_one(q) if self.checks is None else self.checks(*self.columns, q)
+
+    def _one_by_one(self, q: Real) -> Mapping[str, Real]:
+        found = []
+        for k, linkage in enumerate(self.linkages):
+            kernels = self.kernels if k == 0 else assemble(linkage, self.structure)
+            here = q[k] if np.ndim(q) > 1 else q
+            found.append(solved(linkage, self.structure, kernels, here, self.wanted, self.forces, self.strokes))
+        if len(found) == 1:
+            return found[0]
+        return {name: np.stack([one[name] for one in found]) for name in found[0]}
+
+
+def prepare(
+    linkages: Sequence[Linkage] | Linkage, wanted: Wanted = everything, *, forces: bool = True,
+    own_places: bool = False, strokes: Strokes | None = None,
+) -> Batch:  # fmt: skip
+    """Linkages that differ in their numbers only, ready to be solved for what is asked.
+
+    forces: whether that needs reactions. own_places: whether each variant will be solved at places of its own.
+    strokes: those of a single linkage, if its loads act in them; without strokes such loads act always.
+    Raises NotAlikeError, ValueError (loads by the strokes of several linkages), and what assembly raises.
+    """
+    linkages = (linkages,) if isinstance(linkages, Linkage) else tuple(linkages)
+    first = linkages[0]
+    by_stroke = [x.name for x in first.loads if x.table is not None and x.table.against in ("stroke", "crank turn")]
+    if by_stroke and (strokes is None or len(linkages) > 1):
+        raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
+    structure = mobile(first)
+    kernels = assemble(first, structure)
+    # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+    apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
+    if apart or first.friction or not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in kernels):
+        return Batch(linkages, structure, kernels, wanted, forces, strokes, None)
+    columns, together = parts(varying(linkages))
+    if len(linkages) > 1 and not columns:  # all the same
+        columns = [np.zeros((len(linkages), 1))]
+
+    def stages(*data: Any) -> Mapping[str, Any]:
+        linkage = changed(first, together(*data[:-1])) if columns else first
+        own = tuple(kernel.rebind(linkage) for kernel in kernels) if columns else kernels
+        return solved(linkage, structure, own, data[-1], wanted, forces, strokes, blank=False)
+
+    axes = (*[1] * len(columns), 3 if own_places else 2)
+    whole = record(stages, *axes, data=dict(enumerate(columns)))
+    checks = whole.only(*CHECKS)
+    program = whole.only(*(name for name in whole.outputs if name not in CHECKS))
+    return Batch(linkages, structure, kernels, wanted, forces, strokes, program, checks, tuple(columns))
+
+
+def solved(
+    linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: Any, wanted: Wanted, forces: bool,
+    strokes: Strokes | None, *, blank: bool = True, start: Any = None,
+) -> Mapping[str, Any]:  # fmt: skip
+    """The stages with time as the parameter of the motion, so that no transfer function needs be scaled.
+
+    start: where the driver's law begins (rad or m); in the sketch when left out.
+    """
+    lead = linkage.driver
+    law = DriverMotion(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
+    speed = law.speed(q)
+    drives = {
+        link: Drive(d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration))
+        for link, d in drives_at(linkage, q).items()
+    }
+    motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
+    reactions = reactions_of(motion, structure, strokes) if forces else None
+    margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
+    return {**wanted(motion, reactions), "placed": motion.placed, "moving": motion.moving, "margin": margin}
+
+
+def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
+    """The force plan under all that acts, friction too."""
+    acting = applied(motion, strokes)
+    free = react(motion, structure, acting)
+    if not motion.linkage.friction:
+        return free
+    from tmm_cli.forces.friction import solve_friction
+
+    return solve_friction(motion, structure, acting, free).reactions

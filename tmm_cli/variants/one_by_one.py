@@ -1,0 +1,110 @@
+"""Variants of a linkage one after another, each as a file of its own: for whatever no tape can be written of.
+
+Groups that are found by iteration are followed anew for every variant: that takes a hundred times as long as by a tape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tmm_cli.analysis.inputs import Inputs
+from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import LinkageError
+from tmm_cli.kinematics.driver_range import cycle_of
+from tmm_cli.kinematics.strokes import places as places_of
+from tmm_cli.linkage import Sketch
+from tmm_cli.tape import DependsOnData
+from tmm_cli.variants.batch import Wanted, solved
+from tmm_cli.variants.taped import Taped
+from tmm_cli.variants.variant import DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
+from tmm_cli.vectors import Real
+
+KEPT = 30  # variants
+
+
+class OneByOne:
+    """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
+
+    All come round again after as many turns of the crank as the first one. A variant that cannot be assembled as it is
+    sketched, or not be moved, has nothing but nan. Raises what assembly raises, for the first linkage.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool = False) -> None:
+        self.make, self.wanted, self.forces = make, wanted, forces
+        self.variant = make(first)
+        self.linkage = self.variant.linkage
+        self.structure = mobile(self.linkage)
+        self.kernels = assemble(self.linkage, self.structure)
+        self.turns = cycle_of(self.linkage, self.kernels) or 1
+        self.by_strokes = forces and any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
+        self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
+        self.names = tuple(self._one(tuple(first), Places(np.zeros(1), np.zeros(0))))
+
+    def driver_range(self, columns: Real) -> DriverRanges:
+        """That of the first linkage, for each."""
+        return DriverRanges.of(self.variant, len(columns), self.turns)
+
+    def without(self, part: str) -> OneByOne:
+        """The same: what is not wanted costs little here."""
+        return self
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch. Raises what assembly raises."""
+        linkage = self.make([float(number) for number in numbers]).linkage
+        return sketch_of(linkage, assemble(linkage, self.structure.rebind(linkage)))
+
+    def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+        rows = []
+        for row in columns:
+            try:
+                rows.append(self._one(tuple(row.tolist()), places))
+            except LinkageError:
+                rows.append({})
+        lost = np.full(places.count, np.nan)
+        return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
+
+    def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
+        """A variant, which is moved once though it is looked at at several places in turn."""
+        if numbers not in self.known:
+            if len(self.known) > KEPT:
+                self.known.clear()
+            variant = self.make(list(numbers))
+            mechanism = Mechanism(Inputs(variant.linkage), self.structure.rebind(variant.linkage))
+            self.known[numbers] = variant, mechanism
+        return self.known[numbers]
+
+    def _one(self, numbers: tuple[float, ...], places: Places) -> dict[str, Real]:
+        variant, mechanism = self._moved(numbers)
+        linkage = variant.linkage
+        strokes = mechanism.strokes if self.by_strokes and mechanism.driver_range.full else None
+        start = None
+        if variant.accelerated:
+            begins = mechanism.strokes if isinstance(variant.request.start, str) else None
+            start = float(places_of(variant.request, mechanism.driver_range, begins, linkage.driver.sense)[0])
+        q = DriverRanges.of(variant, 1, self.turns, start).at(places)[0]
+        with np.errstate(all="ignore"):
+            found = solved(
+                linkage, mechanism.structure, mechanism.kernels, q, self.wanted, self.forces, strokes, blank=True,
+                start=start,
+            )  # fmt: skip
+        return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}
+
+
+def variants_of(
+    make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool, one_sense: bool
+) -> Taped | OneByOne:
+    """By the tape, else one after another.
+
+    one_sense: all drivers go the same way round, which a tape cannot tell. Raises what assembly raises, for the first
+    linkage.
+    """
+    if one_sense:
+        try:
+            return Taped(make, first, wanted, forces=forces)
+        except (NoTapeError, DependsOnData):
+            pass
+    return OneByOne(make, first, wanted, forces=forces)

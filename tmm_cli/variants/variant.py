@@ -1,0 +1,114 @@
+"""A variant of a linkage: its numbers, where its driver goes, how it looks at the place of the sketch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
+from tmm_cli.linkage import Linkage, Request, Sketch
+from tmm_cli.vectors import Real
+
+ALIKE = 1e-6  # of the farthest point: sketches that differ by no more are of one assembly
+
+
+class NoTapeError(ValueError):
+    """The stages cannot be written on a tape: iterated groups, friction, several drivers, loads by strokes."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A linkage, the positions that its file asks for, and where its driver goes.
+
+    ends: from and to (rad or m); None: it turns on and on, and all comes round again.
+    """
+
+    linkage: Linkage
+    request: Request = field(default_factory=Request)
+    ends: tuple[Any, Any] | None = None
+
+    @property
+    def accelerated(self) -> bool:
+        """Whether its speed depends on where it started."""
+        return bool(self.linkage.driver.acceleration) and not self.linkage.others
+
+    @property
+    def start(self) -> Any:
+        """The driver's place (rad or m) at position 0, as kinematics.strokes.places has it; None: it does not count.
+
+        Raises NoTapeError where the variant must be moved first, through its strokes or its whole range.
+        """
+        if not self.accelerated:
+            return None
+        request, driver = self.request, self.linkage.driver
+        if request.places:
+            return request.places[0]
+        if self.ends is None and not isinstance(request.start, str):
+            return request.start
+        if self.ends is not None and driver.stroke is not None:
+            return driver.stroke[0] if driver.sense > 0 else driver.stroke[1]
+        raise NoTapeError
+
+
+Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be TracedNumbers
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where variants are wanted: at shares of their driver ranges, then at places of the driver (rad or m), for all."""
+
+    shares: Real
+    driver: Real
+
+    @property
+    def count(self) -> int:
+        return len(self.shares) + len(self.driver)
+
+
+@dataclass(frozen=True)
+class DriverRanges:
+    """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again."""
+
+    low: Real
+    span: Real
+    closed: bool
+
+    @classmethod
+    def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
+        """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
+        ones = np.ones((variants, 1))
+        if variant.ends is None:
+            sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
+            low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True)
+        low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
+        return cls(low, high - low, False)
+
+    def at(self, places: Places) -> Real:
+        """Places of the driver, (variants, places)."""
+        fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
+        return np.concatenate([self.low + places.shares * self.span, fixed], axis=1)
+
+
+def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:
+    """All points and angles of the moving links where the sketch is, for groups whose assembly is known."""
+    at = linkage.sketch.at
+    poses = move(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
+    points = {
+        point: complex(poses[link].at(local)[0])
+        for link in linkage.moving for point, local in linkage.links[link].points.items()
+    }  # fmt: skip
+    driven = {driver.link for driver in linkage.cranks}
+    angles = {link: float(np.angle(poses[link].z)[0]) for link in linkage.moving if link not in driven}
+    return Sketch(at, points, angles)
+
+
+def alike(one: Sketch, other: Sketch) -> bool:
+    """Whether both show the same assembly."""
+    size = max((abs(place) for place in one.points.values()), default=1.0)
+    return all(abs(place - other.points[name]) <= ALIKE * size for name, place in one.points.items())
