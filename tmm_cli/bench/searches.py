@@ -14,7 +14,7 @@ import numpy as np
 from tmm_cli.bench.measured import CLOCK, Measured
 from tmm_cli.bench.speed import by_turns
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.solver import best
 from tmm_cli.synthesis.reading import task_of
 from tmm_cli.variants.taped import Taped
@@ -112,9 +112,9 @@ def known() -> dict[str, Any]:
     return found
 
 
-def prepared(name: str) -> Search:
+def prepared(name: str) -> Candidates:
     """The task of a problem by its name, ready for evaluation."""
-    return Search(task_of(read_text(text(name), f"{name}.yaml")))
+    return Candidates(task_of(read_text(text(name), f"{name}.yaml")))
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
@@ -149,12 +149,12 @@ def rate(name: str, reduced: bool) -> list[Rate]:
     return found
 
 
-def _operations(search: Search) -> int:
+def _operations(search: Candidates) -> int:
     """Of the tape, for all of a generation."""
     return search.coarse.program.operations if isinstance(search.coarse, Taped) else 0
 
 
-def searched(search: Search, seed: int, known: float) -> Found:
+def searched(search: Candidates, seed: int, known: float) -> Found:
     """Search and polish from a seed, at the ordinary settings of the task."""
     times = [CLOCK()]
 
