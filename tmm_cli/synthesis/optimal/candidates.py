@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -80,11 +81,8 @@ class Candidates:
             )
             for quantity in self.quantities
         )  # fmt: skip
-        self.exact, at = [], self.count + self.jumps  # places of the quantities after those over the range; else those
-        for n, quantity in enumerate(self.quantities):
-            own = len(quantity.places)
-            self.exact.append(slice(at, at + own) if own else self.along(n, self.count))
-            at += own
+        own = self.own_places(self.count + self.jumps)
+        self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
         wanted = np.concatenate([np.zeros(0), *(np.array(quantity.places) for quantity in self.quantities)])
         self.places = Places(self.over(self.count), self.with_sketch(wanted))
 
@@ -122,6 +120,11 @@ class Candidates:
     def along(self, n: int, count: int) -> slice:
         """Which of these shares count for a quantity."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
+
+    def own_places(self, count: int) -> list[slice | None]:
+        """Where a quantity has places of its own, after so many shares."""
+        ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
+        return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
 
     def with_sketch(self, driver: Real) -> Real:
         """Places of the driver, and that of the sketch, where it counts."""

@@ -49,21 +49,20 @@ class Choices:
         """Every candidate, best first."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
-        f, v = np.zeros(0), np.zeros(0)
-        stopped = False
+        found, stopped = np.zeros((2, 0)), False
         try:
             for first in range(0, self.count, BLOCK):
                 task.progress(first, self.count)
-                more = self(x[first : first + BLOCK])
-                f, v = np.append(f, more[0]), np.append(v, more[1])
+                found = np.hstack([found, self(x[first : first + BLOCK])])
         except KeyboardInterrupt:
-            if not len(f):
+            if not self.best:
                 raise
             stopped = True
         finally:
             task.progress(self.count, self.count)
-        order = np.lexsort((f, v))
-        return Evolved(x[order], f[order], v[order], np.stack([f, v], axis=1), stopped, every=True)
+        order = np.lexsort(found)
+        f, v = found[:, order]
+        return Evolved(x[order], f, v, found.T, stopped, every=True)
 
     def starts(self) -> list[Real]:
         """Of the choices that are nearest to keep all constraints, and of those with the least objectives beside."""

@@ -96,12 +96,8 @@ def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callab
             own.append((what, float(first), slice(at, at + WINDOW)))
             at += WINDOW
         parts.append(own)
-    blocks.append(np.zeros(1))
-    at, exact = at + 1, []
-    for quantity in candidates.quantities:
-        exact.append(slice(at, at + len(quantity.places)) if quantity.places else slice(at - 1, at))
-        at += len(quantity.places)
-    places = Places(np.concatenate(blocks), candidates.places.driver)
+    places = Places(np.concatenate([*blocks, np.zeros(1)]), candidates.places.driver)
+    exact = [own or slice(at, at + 1) for own in candidates.own_places(at + 1)]
 
     def pieces(some: Real) -> list[Real]:
         out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
