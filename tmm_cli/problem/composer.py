@@ -94,7 +94,8 @@ class Composer:
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
             found.append(self.node(event, (*path, len(found))))
         if start.flow_style:
-            written = self.text[start.start_mark.index : event.end_mark.index]
+            end: Any = event
+            written = self.text[start.start_mark.index : end.end_mark.index]
             pointed = _COMMA.sub(r"\1.\2", written)
             if pointed != written:
                 self.commas[path] = pointed if "," in pointed else pointed[1:-1]
