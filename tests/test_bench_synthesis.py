@@ -11,7 +11,7 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli.bench import speed
-from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, SearchRate, Searches, known, prepared, text
+from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, Searches, SearchRate, known, prepared, text
 from tmm_cli.synthesis.optimal.closely import exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND)
