@@ -1,6 +1,6 @@
 """Optimal synthesis: numbers of a linkage within bounds that make an objective least and keep constraints.
 
-    block.py        the block of a problem file as a Task (task.py); ranges.py: what varies; over.py: the driver's way
+    block.py        the block of a problem file as a Task (task.py); block_ranges.py, block_over.py: parts of it
     quantities/     what may be an objective or a constraint
     checks.py       what is said of a task before its search
     candidates.py   its linkages, a generation at once: objective and violation

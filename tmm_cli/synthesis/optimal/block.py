@@ -22,10 +22,10 @@ from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, KINDS, LENGTH
 from tmm_cli.synthesis.blocks import Block, OfTheFile
 from tmm_cli.synthesis.optimal import task
-from tmm_cli.synthesis.optimal.over import asked_over, driven, place_of
+from tmm_cli.synthesis.optimal.block_over import asked_over, driven, place_of
+from tmm_cli.synthesis.optimal.block_ranges import FileWith, Range, Two, read_ranges, two
 from tmm_cli.synthesis.optimal.quantities import QUANTITIES
 from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.ranges import FileWith, Range, Two, read_ranges, two
 from tmm_cli.synthesis.optimal.task import Parameter, Task, near
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.variant import Variant

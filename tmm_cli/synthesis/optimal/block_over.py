@@ -17,7 +17,7 @@ from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, Dimension
-from tmm_cli.synthesis.optimal.ranges import two
+from tmm_cli.synthesis.optimal.block_ranges import two
 from tmm_cli.variants.variant import Variant
 
 Ends = tuple[Any, Any] | None
