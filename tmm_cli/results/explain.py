@@ -131,7 +131,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     else:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
-    return load.name, load.link, place, size, _("working stroke") if load.working_stroke_only else _("always")
+    return load.name, load.link, place, size, load.when
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import NUMBER, Dimension
-
-if TYPE_CHECKING:
-    from tmm_cli.problem.units import UnitSystem
 
 
 @dataclass(frozen=True)
@@ -39,10 +37,8 @@ class Column:
     @property
     def array(self) -> Any:
         """Its values, nan where there is none."""
-        values = self.values
-        return (
-            np.array([np.nan if v is None else v for v in values]) if isinstance(values, list) else np.asarray(values)
-        )
+        listed = isinstance(self.values, list)
+        return np.asarray([np.nan if v is None else v for v in self.values] if listed else self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
         """Its values in the units of the file, nan where there is none."""

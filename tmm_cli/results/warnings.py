@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.assembly.sketch import sketch_deviations
 from tmm_cli.errors import _
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.loads import table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.linkage import Load
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.reports.synthesis import missed
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.vectors import dot
-
-if TYPE_CHECKING:
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.linkage import Load
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
@@ -28,9 +27,9 @@ MOST_IMPACTS = 6  # jumps of one cam that are named
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
-def warnings(results: Results) -> Iterable[str]:
+def warnings(results: Results | ChainResults) -> Iterable[str]:
     """One sentence each, in the units of the file."""
-    if results.motion is None or results.driver_range is None:
+    if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return
     yield from _range(results)
     yield from _sketch(results)
@@ -280,8 +279,6 @@ def _drives(motion: Motion, load: Applied) -> bool:
 
 def _short_table(results: Results, motion: Motion, load: Load) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
-    from tmm_cli.forces.loads import table_argument
-
     if load.table is None or not results.loads:
         return False
     acting = motion.placed
