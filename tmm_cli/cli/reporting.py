@@ -83,8 +83,7 @@ def checked(results: Results | ChainResults) -> int:
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
     """The content of result.json on standard output, as it comes."""
-    section = digits.json() if digits is not None and digits.full else None
-    sys.stdout.writelines(json_text(sections(results, section)))
+    sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 
 def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:

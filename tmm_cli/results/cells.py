@@ -16,7 +16,8 @@ from tmm_cli.results.reports import REPORTS
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
-COMPUTED = ("quality", "pressure", "cycle", "kinematics", "forces", "lever", "energy")  # reports of computed numbers
+MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
+COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name != "synthesis")  # a search has its own
 Cells = Mapping[Hashable, Real]
 
 

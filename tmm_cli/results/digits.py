@@ -107,8 +107,10 @@ class AccuracyReport:
         title = _("Digits to be trusted: the worst of each column, relative to its largest value")
         return Table("digits", title, tuple(columns), notes=(_scale(self.digits.mu),))
 
-    def json(self) -> dict[str, Any]:
-        """The section `digits` of result.json: bounds and sensitivities in the places of their values."""
+    def json(self) -> dict[str, Any] | None:
+        """The section `digits` of result.json: bounds and sensitivities in the places of their values; if wanted."""
+        if not self.full:
+            return None
         content = dict(numbers(self.there))
         named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.there.numbers)}
         for part in PARTS:

@@ -36,8 +36,8 @@ def write_results(
         for name, picture in more:
             staged.write(name, (picture,))
         names = sorted(staged.waiting)
-        section = digits.json() if digits is not None and digits.full else None
-        staged.write("result.json", json_text(chain(sections(results, section), [("files", names)])))
+        content = sections(results, None if digits is None else digits.json())
+        staged.write("result.json", json_text(chain(content, [("files", names)])))
     for name in earlier - set(names):
         (folder / name).unlink(missing_ok=True)
     return folder

@@ -54,6 +54,11 @@ class Column:
         return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
 
 
+def with_unit(units: UnitSystem, value: float, dimension: Dimension) -> str:
+    """A value (SI) in the unit of the file, to six digits: `110 mm`."""
+    return f"{units.from_si(value, dimension) + 0.0:.6g} {units.symbol(dimension)}"
+
+
 def true_digits(values: Any, bound: Any) -> Any:
     """How many figures of each value are true: half a unit of the last one is not below the bound; 0: none is."""
     values, bound = np.abs(values), np.maximum(bound, 2.0**-54 * np.abs(values))

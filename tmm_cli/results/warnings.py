@@ -18,12 +18,12 @@ from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import Load
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.reports.synthesis import missed
+from tmm_cli.results.table import with_unit
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.vectors import dot
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
-MOST_IMPACTS = 6  # jumps of one cam that are named
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
@@ -118,7 +118,7 @@ def _unreached(results: Results, motion: Motion) -> Iterable[str]:
         number, place = results.numbers[k], _place(results, float(motion.q[k]))
         for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
-                gap = f"{units.from_si(float(at.residual[k]), LENGTH):.6g} {units.symbol(LENGTH)}"
+                gap = with_unit(units, float(at.residual[k]), LENGTH)
                 yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
                     number=number, place=place, group=group, gap=gap
                 )
@@ -170,9 +170,7 @@ def _pressure(results: Results) -> Iterable[str]:
         said = limits_set[0 if pressure.slides else 1]
         if pressure.holds or not (chosen or said):
             continue
-        largest, allowed = (
-            f"{units.from_si(angle, ANGLE):.6g} {units.symbol(ANGLE)}" for angle in (pressure.largest, pressure.allowed)
-        )
+        largest, allowed = (with_unit(units, angle, ANGLE) for angle in (pressure.largest, pressure.allowed))
         text = (
             _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
             if said
@@ -237,12 +235,11 @@ def _impacts(results: Results) -> Iterable[str]:
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()
         if jumps:
-            places = [f"{units.from_si(a, ANGLE):.6g}" for a in jumps[:MOST_IMPACTS]]
-            places += ["..."] * (len(jumps) > MOST_IMPACTS)
+            places = ", ".join(f"{units.from_si(a, ANGLE):.6g}" for a in jumps)
             yield _(
                 "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
                 "a hard impact, the acceleration there is not finite and is not in the tables"
-            ).format(cam=mesh.i, follower=mesh.j, places=f"{', '.join(places)} {units.symbol(ANGLE)}")
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.symbol(ANGLE)}")
 
 
 def _loads(results: Results, motion: Motion) -> Iterable[str]:
