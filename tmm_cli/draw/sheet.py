@@ -24,9 +24,10 @@ POINTS = 72 * MM  # in a millimetre
 HINTED = 1.06  # pixels widen a text by up to this
 CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
+NAMES = "#7a3d99"  # of links, lines and angles
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
-    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
+    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": NAMES,
 }  # fmt: skip
 BETWEEN = 12  # places along an edge that are tried for the notes
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
@@ -42,10 +43,15 @@ mpl.rcParams["font.family"] = "DejaVu Sans"
 class Sheet:
     """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
 
-    def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = PAD) -> None:
+    def __init__(
+        self, title: str, caption: str, points: Iterable[complex] = (), *, pad: float = PAD,
+        paper: tuple[float, float] | None = None,
+    ) -> None:  # fmt: skip
+        """For these points (SI), upright or not as they are larger then; or of a given paper, scaled later."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         middle = extent(found)[3]
-        self.paper, self.mu = sheet_scale(found, pad)
+        best, self.mu = sheet_scale(found, pad)
+        self.paper = paper or best
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
@@ -80,10 +86,13 @@ class Sheet:
             parse_math=False, zorder=9,
         )  # fmt: skip
 
-    def label(self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal") -> None:
+    def label(
+        self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
+        far: bool = False,
+    ) -> None:  # fmt: skip
         """A text beside a place (mm); where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
-            self.labels.append(Label(text, anchor, size, colour, style))
+            self.labels.append(Label(text, anchor, size, colour, style, far=far))
 
     def line(
         self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: str = "-", z: float = 3, *,
