@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, aside, extent, row
+from tmm_cli.draw.labels import aside, extent, row
 from tmm_cli.draw.sheet import DARK, NAMES, THIN, Sheet
 from tmm_cli.vectors import Vector, cross, dot
 
@@ -27,7 +27,7 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
         return
     u = span / length
     crowd = sheet.ground.crowd
-    width, height = extent(Label(text, 0j, TEXT, DARK))
+    width, height = extent(text, TEXT)
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD

@@ -22,7 +22,6 @@ from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import PAD, balance_name
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
-from tmm_cli.vectors import Vector
 
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 SHOWN = 48  # positions drawn thin, at most
@@ -55,15 +54,19 @@ def place_of_driver(results: Results, q: float) -> str:
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 
-def measured(sheet: Sheet, scene: Scene) -> Rendered:
-    """One position to scale with all its symbols, names of points and centres of mass, numbers of links."""
+def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
+    """One position to scale with its symbols, names of points and centres of mass, numbers of links.
+
+    mark: of the position, after the names of moving points.
+    """
     linkage = scene.linkage
+    moving = moving_points(linkage)
     drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
     for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
         at = sheet.on(scene.point(name))
         if sum(name in link.points for link in linkage.links.values()) == 1:
             sheet.circle(at, 0.6, face=DARK)
-        sheet.label(name, at, 10)
+        sheet.label(name + mark if name in moving else name, at, 10, far=bool(mark) and name in moving)
     for link in linkage.moving:
         own = linkage.links[link]
         if np.any(own.mass != 0):
@@ -93,28 +96,26 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
             sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
 
 
-def trajectory(sheet: Sheet, places: Vector) -> None:
-    """The path of a point, m."""
-    sheet.line([sheet.on(complex(p)) for p in places], THIN, 0.7, "--", 1.5, blocks=False)
+def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
+    """A sheet with the paths of all moving points over the cycle."""
+    whole = at_positions(results, results.closely(DENSE), 0)
+    paths = [whole.spot(name) for name in moving_points(results.linkage)]
+    used = [*fixed_pivots(results.linkage), *(p for path in paths for p in path)]
+    sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
+    for path in paths:
+        sheet.line([sheet.on(complex(p)) for p in path], THIN, 0.7, "--", 1.5, blocks=False)
+    return sheet
 
 
 def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    whole = at_positions(results, results.closely(DENSE), 0)
-    points = moving_points(linkage)
     chosen = detailed(results)
     k = chosen[0].k if chosen else int(np.argmax(motion.placed))
     scene = Scene(linkage, results.structure, motion.poses, k)
-    used = [*fixed_pivots(linkage), *(p for name in points for p in whole.spot(name))]
-    sheet = Sheet(
-        results.problem.title,
-        _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers)),
-        to_scale(scene, used),
-    )
-    for name in points:
-        trajectory(sheet, whole.spot(name))
+    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    sheet = trajectories(results, scene, caption)
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
             skeleton(sheet, replace(scene, k=other))

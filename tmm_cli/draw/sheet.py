@@ -78,12 +78,12 @@ class Sheet:
 
     def text(
         self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: str = "left",
-        style: str = "normal",
+        style: str = "normal", turn: float = 0.0,
     ) -> None:  # fmt: skip
-        """A text at a place (mm); never read as mathematics."""
+        """A text at a place (mm), turned (deg) about it; never read as mathematics."""
         self.axes.text(
             at.real, at.imag, text, fontsize=size, color=colour, weight=weight, ha=ha, va="center", style=style,
-            parse_math=False, zorder=9,
+            rotation=turn, rotation_mode="anchor", parse_math=False, zorder=9,
         )  # fmt: skip
 
     def label(
@@ -106,11 +106,14 @@ class Sheet:
                 if np.isfinite(start) and np.isfinite(end):
                     self.ground.line(complex(start), complex(end))
 
-    def area(self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0) -> None:
+    def area(
+        self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
+        blocks: bool = True,
+    ) -> None:  # fmt: skip
         """A filled polygon."""
         shape = [(c.real, c.imag) for c in corners]
         self.axes.add_patch(Polygon(shape, facecolor=face, edgecolor=edge, lw=width, zorder=z))
-        for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        for start, end in pairwise([*corners, corners[0]]) if blocks else ():
             self.ground.line(start, end)
 
     def circle(
@@ -132,8 +135,7 @@ class Sheet:
         neck = end - head * along
         side = 1j * along * head * 0.27
         self.line([start, neck + 0.3 * head * along], colour, width, z=z)
-        shape = [(c.real, c.imag) for c in (end, neck + side, neck - side)]
-        self.axes.add_patch(Polygon(shape, facecolor=colour, edgecolor="none", zorder=z))
+        self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
         self.ground.line(neck, end)
 
     def note(self, text: str) -> None:
@@ -160,11 +162,8 @@ class Sheet:
         """A text along a unit vector, its middle at a place (mm); it is in the way of labels."""
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
-        self.axes.text(
-            at.real, at.imag, text, fontsize=size, color=DARK, rotation=turn, rotation_mode="anchor", ha="center",
-            va="center", parse_math=False, zorder=9,
-        )  # fmt: skip
-        width, height = label_extent(Label(text, at, size, DARK))
+        self.text(at, text, size, ha="center", turn=turn)
+        width, height = label_extent(text, size)
         self.ground.boxes += [about(place, height, height) for place in row(at, along, width, height)]
 
     def corner(self) -> None:
@@ -187,8 +186,7 @@ class Sheet:
 
         at = min(fields, key=covered)
         corners = [at, at + width, at + complex(width, height), at + 1j * height]
-        shape = [(c.real, c.imag) for c in corners]
-        self.axes.add_patch(Polygon(shape, facecolor="white", edgecolor=THIN, lw=0.6, zorder=8))
+        self.area(corners, "white", THIN, 0.6, 8, blocks=False)
         for k, text in enumerate(self.notes):
             self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
         self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))

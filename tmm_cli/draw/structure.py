@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.labels import extent
 from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.scene import Scene, fitted, scale_to
@@ -146,7 +146,7 @@ class Legend:
     def split(self, paper: float) -> tuple[float, list[str]]:
         """Where the right part begins (mm), and its lines."""
         width = paper - 2 * MARGIN
-        left = min(0.5 * width, 14 + max(extent(Label(self.words(part), 0j, 9, DARK))[0] for part in self.parts))
+        left = min(0.5 * width, 14 + max(extent(self.words(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
         wrapped = (textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4) for fact in self.facts)
         return left, [line for lines in wrapped for line in lines]
