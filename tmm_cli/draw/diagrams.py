@@ -115,24 +115,21 @@ def _energy(whole: Results, results: Results) -> list[Panel]:
     if curve is None or given is None:
         return []
     crank = results.linkage.driver.kind == "turn"
+    powers = {
+        _("drivers"): "drivers", _("weights"): "weights", _("loads"): "loads", _("friction"): "friction",
+        _("rate of T"): "rate",
+    }  # fmt: skip
     panels: list[Panel] = []
-
-    def panel(words: str, dimension: Dimension, *parts: tuple[str, str]) -> None:
-        lines = [
-            (label, getattr(curve, name), getattr(given, name))
-            for label, name in parts
-            if len(parts) == 1 or bool(np.any(np.nan_to_num(getattr(curve, name)) != 0))
-        ]
-        if any(bool(np.any(np.nan_to_num(values) != 0)) for __, values, __ in lines):
+    for words, dimension, parts in (
+        (_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, {"": "inertia"}),
+        (_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, {"": "moment"}),
+        (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}),
+        (_("power, W"), NUMBER, powers),
+    ):
+        lines = [(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
+        lines = [line for line in lines if np.any(np.nan_to_num(line[1]) != 0)]
+        if lines:
             panels.append((words, dimension, lines))
-
-    panel(_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, ("", "inertia"))
-    panel(_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, ("", "moment"))
-    panel(_("kinetic energy T, J"), NUMBER, ("", "kinetic"))
-    panel(
-        _("power, W"), NUMBER, (_("drivers"), "drivers"), (_("weights"), "weights"), (_("loads"), "loads"),
-        (_("friction"), "friction"), (_("rate of T"), "rate"),
-    )  # fmt: skip
     return panels
 
 
