@@ -183,7 +183,7 @@ def test_of_angles_and_places_one_is_told_that_is_solved(block, path):
     lambda r: pairs((200, 20), (150, 60), (700, 10), (30, 55)),
 ])  # fmt: skip
 def test_where_no_value_of_the_number_helps_that_is_said(block):
-    assert refused(block(np.random.default_rng(0))).allowed == "another task: no other value of this number was found to help"
+    assert refused(block(np.random.default_rng(0))).allowed == "another task: no other value of it was found to help"
 
 
 ROCKER = """

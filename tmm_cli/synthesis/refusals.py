@@ -29,7 +29,7 @@ BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
 ALONE: Final = 1e-3
-NONE: Final = _("another task: no other value of this number was found to help")
+NONE: Final = _("another task: no other value of it was found to help")
 
 
 def refusal(error: Infeasible, block: Block, units: UnitSystem, told: str = NONE) -> ProblemError:
