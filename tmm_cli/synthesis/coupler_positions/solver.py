@@ -18,9 +18,8 @@ from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, by_turn
 from tmm_cli.synthesis.coupler_positions.drawing import construction
 from tmm_cli.synthesis.coupler_positions.dyads import exists, guiding
-from tmm_cli.synthesis.coupler_positions.suggestion import suggested
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Side", "Task", "solve"]
@@ -47,8 +46,7 @@ DEFECTS: Final = (  # by their numbers in Marks
     _("order: the driver must turn back between positions"),
     _("circuit: the driver locks on the way"),
 )
-SOURCES: Final = {  # by the count of positions; 1: four of one angle
-    1: _("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
+SOURCES: Final = {  # by the count of positions
     2: _("pivots on the bisector of the two places of a pin, at the link's length"),
     3: _("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
          "coupler held (inversion)"),
@@ -58,14 +56,14 @@ SOURCES: Final = {  # by the count of positions; 1: four of one angle
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason where no four-bar guides the coupler."""
+    guiding(task)
+
+
 def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
-    try:
-        one, other, mark = guiding(task)
-    except Infeasible as error:
-        if error.suggestion is not None:
-            raise
-        raise suggested(task, error) from None
+    one, other, mark = guiding(task)
     numbers = _parameters(task, one, other)
     plain = np.longdouble if isinstance(task.angles[0], np.longdouble) else float
     values = [Value(name, plain(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
@@ -75,19 +73,14 @@ def solve(task: Task) -> Outcome:
         Value("", DEFECTS[int(mark.defect)], "word", _("defects")),
     ]
     count = len(task.places)
-    notes, listings = [], []
-    if task.still:
-        notes.append(_(
-            "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
-            "direction, taken across the arms in the middle of their way"
-        ))  # fmt: skip
-    elif count == 4:
+    listings = []
+    if count == 4:
         values += [*_on_curve(task, "AB", one), *_on_curve(task, "DC", other)]
         listings.append(_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
     drawn = construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
-    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, one, other, mark))
-    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings))
+    source, demands = SOURCES[count], tuple(_demands(task, one, other, mark))
+    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, listings=tuple(listings))
 
 
 def _parameters(task: Task, one: Dyads, other: Dyads) -> dict[str, Any]:

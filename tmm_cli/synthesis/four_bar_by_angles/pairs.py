@@ -12,7 +12,6 @@ from tmm_cli.synthesis.four_bar import FourBar, cosine, extreme_inputs, turning
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import Function
-from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
 from tmm_cli.tolerances import DEAD_COSINE_DOUBLE
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
@@ -87,8 +86,6 @@ def quality(found: Bars, task: Task) -> Quality:
 
 def through(task: Task) -> Bars:
     """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free."""
-    if len(task.phi) > 2 and (one := parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
-        return one.at(None)
     if task.free:
         found = _best_of_ratios(task)
     elif len(task.phi) == 2:
@@ -152,12 +149,10 @@ def real(found: Bars) -> Any:
 
 
 def chosen(task: Task, found: Bars) -> int:
-    """Which of the four-bars is taken, -1: none has no defect."""
+    """Which of the four-bars is taken; one at least must have no defect, or defects be put up with."""
     if task.choose.isdigit():
         return int(task.choose) - 1
     mark = quality(found, task)
-    fair = np.flatnonzero((mark.defect == "") | task.keep)
-    if not fair.size:
-        return -1
     crank = mark.crank & (task.choose == "crank")
+    fair = np.flatnonzero((mark.defect == "") | task.keep)
     return int(max(fair, key=lambda k: (mark.defect[k] == "", crank[k], not mark.reversed[k], mark.least[k])))
