@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import PurePath
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
@@ -19,7 +19,7 @@ from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.tree import Tree
+from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
@@ -122,8 +122,9 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:
     moving = [name for name in links if name != FRAME]
-    many = len(shape.output) > 1
+    outputs = cast("list[schema.Output]", shape.output)  # as its validator left it
+    paths: list[Path] = [("output", number) if len(outputs) > 1 else ("output",) for number in range(len(outputs))]
     return tuple(
-        Output(values.known(given.link, moving, ("output", number) if many else ("output",), "link"), given.working)
-        for number, given in enumerate(shape.output)
+        Output(values.known(given.link, moving, path, "link"), given.working)
+        for given, path in zip(outputs, paths, strict=True)
     )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError, WithJsonSchema
+from pydantic import BaseModel, ValidationError
 
 from tmm_cli.errors import (
     AmbiguousSketchError,
@@ -25,7 +24,6 @@ from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.reader import decimal_comma_hint
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.schema_parts import Strict
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.quantities import ANGLE, LENGTH
 
@@ -148,22 +146,16 @@ def _model(here: type[BaseModel] | None, path: Path) -> type[BaseModel] | None:
             named = False
             continue
         field = here.model_fields.get(step)
-        here = None if field is None else _inside([field.annotation, *field.metadata])
+        here = None if field is None else _inside([field.annotation])
         named = field is not None and get_origin(field.annotation) is dict
     return here
 
 
 def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
-    """The model among the parts of an annotation; where a validator stands for it, it is named in the JSON Schema."""
+    """The model among the parts of an annotation."""
     for part in parts:
-        if isinstance(part, type) and issubclass(part, BaseModel):
-            return part
-        if isinstance(part, WithJsonSchema):
-            named = re.search(r"'\$comment': '(\w+)'", str(part.json_schema))
-            inside: Iterable[Any] = [m for m in Strict.__subclasses__() if named and m.__name__ == named[1]]
-        else:
-            inside = get_args(part)
-        if found := _inside(inside):
+        found = part if isinstance(part, type) and issubclass(part, BaseModel) else _inside(get_args(part))
+        if found:
             return found
     return None
 
