@@ -61,7 +61,7 @@ def validated(model: type[Model], tree: Tree) -> Model:
     try:
         return model.model_validate(tree.data)
     except ValidationError as error:
-        from tmm_cli.problem.refusals import shape_error  # only a bad file needs its words
+        from tmm_cli.problem.shape_errors import shape_error  # only a bad file needs its words
 
         raise shape_error(error, tree, model) from None
 
