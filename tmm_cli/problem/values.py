@@ -39,12 +39,11 @@ class ValueReader:
         """A value in SI that must be above zero (or not below)."""
         number = self.number(value, want, path)
         if number < 0 or (number == 0 and not zero):
+            message = _("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")
             raise ProblemError(
-                (_("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")).format(want=want),
-                path=path,
-                found=quote(value) if isinstance(value, str) else str(value),
+                message.format(want=want), path=path, found=quote(value) if isinstance(value, str) else str(value),
                 allowed=_("zero or more") if zero else _("more than zero"),
-            )
+            )  # fmt: skip
         return number
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
@@ -71,13 +70,9 @@ class ValueReader:
         if name in names:
             return name
         raise ProblemError(
-            _("there is no {what} of that name").format(what=what),
-            path=path,
-            found=quote(name),
-            allowed=", ".join(names) or None,
-            near=nearest(name, names),
-            key=key,
-        )
+            _("there is no {what} of that name").format(what=what), path=path, found=quote(name),
+            allowed=", ".join(names) or None, near=nearest(name, names), key=key,
+        )  # fmt: skip
 
     @staticmethod
     def different(links: Sequence[str], path: Path) -> None:
