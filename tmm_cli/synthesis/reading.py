@@ -15,8 +15,8 @@ from pydantic import BaseModel
 from tmm_cli.errors import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser
-from tmm_cli.problem.build import checked_shape, parameters, build_shape, unit_system, validated
 from tmm_cli.problem.build import build as build_linkage
+from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
 from tmm_cli.problem.expressions import check_parameter
 from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
