@@ -10,7 +10,7 @@ from test_commands import ROOT
 
 from tmm_cli.linkage import Request
 from tmm_cli.problem import schema
-from tmm_cli.problem.build import Builder
+from tmm_cli.problem.build import build_shape
 from tmm_cli.problem.expressions import evaluate_quantity, resolve_parameters
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.reader import read_file
@@ -35,7 +35,7 @@ def maker(name, given):
         units = VariedUnits(units) if any(isinstance(x, TracedNumber) for x in numbers) else units
         varied = {key: PhysicalValue(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
         values = ValueReader(varied | resolve_parameters(rest, units, varied), units)
-        linkage = Builder(shape, tree, values).problem().linkage
+        linkage = build_shape(shape, tree, values).linkage
         always = tuple(replace(load, when="always") for load in linkage.loads if load.table is None)
         linkage = replace(linkage, loads=always)
         return Variant(linkage, Request(start=linkage.sketch.at))

@@ -15,8 +15,8 @@ from pydantic import BaseModel
 from tmm_cli.errors import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser
-from tmm_cli.problem.build import Builder, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.build import build as build_linkage
+from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
 from tmm_cli.problem.expressions import check_parameter
 from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
@@ -186,7 +186,7 @@ class TaskFile:
         assert isinstance(self.shape, schema.File)
         known = self.early | found
         everything = known | parameters(self.late, units, known)
-        return Builder(self.shape, self.tree, ValueReader(everything, units)).problem()
+        return build_shape(self.shape, self.tree, ValueReader(everything, units))
 
     def synthesised(self) -> Synthesised:
         """What the task finds. Raises ProblemError."""
