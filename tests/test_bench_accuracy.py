@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import subprocess
-import sys
 from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
 import pytest
+from test_commands import tmm
 from write_bench_references import BANK, DATA, answers, solved
 
 from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure, places
@@ -207,13 +205,6 @@ def test_rivals_are_measured_only_where_they_are_installed(monkeypatch):
 
 
 # the command
-
-
-def tmm(*arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "tmm_cli", *arguments], capture_output=True, text=True, check=False,
-        env=os.environ | {"PYTHONIOENCODING": "utf-8"},
-    )  # fmt: skip
 
 
 def test_bench_accuracy_prints_json_and_writes_a_table_and_a_chart(tmp_path):

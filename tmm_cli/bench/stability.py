@@ -10,19 +10,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
 from tmm_cli.accuracy.digits import bare, bounds
 from tmm_cli.bench.families import BY_NAME
-from tmm_cli.bench.measured import Measured
+from tmm_cli.bench.measured import Measured, cell, words
 from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.truths import Known, known
-from tmm_cli.errors import LinkageError
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 OURS = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
@@ -91,6 +95,8 @@ class Stability(Measured):
     rows: tuple[Row, ...]
     widths: tuple[float, ...]
 
+    met: ClassVar[str] = _("all targets met: every value within its bound or not given")
+
     @property
     def families(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(row.family for row in self.rows))
@@ -137,14 +143,33 @@ class Stability(Measured):
 
     def lines(self) -> list[Sequence[object]]:
         """A line a family, method and distance."""
-        lines: list[Sequence[object]] = [
-            ["family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound"]
-        ]
-        for row in self.rows:
-            found = ["" if np.isnan(e) else f"{e:.3g}" for e in (*(row.errors[q] for q in QUANTITIES), row.bound)]
-            counts = [row.scenes, row.right, row.said, row.wrong, row.astray]
-            lines.append([row.family, row.method, f"{row.distance:g}", *counts, *found])
-        return lines
+        header = ("family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound")
+        return [header, *(
+            (row.family, row.method, f"{row.distance:g}", row.scenes, row.right, row.said, row.wrong, row.astray,
+             *(cell(row.errors[quantity]) for quantity in QUANTITIES), cell(row.bound)) for row in self.rows
+        )]  # fmt: skip
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        def first(family: str, method: str) -> str:
+            if not self.of(family, method):
+                return "-"
+            distance = self.lies(family, method)
+            return _("never") if distance is None else f"{distance:.0e}".replace("e-0", "e-")
+
+        rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
+        title = _("Where each method first gives a wrong answer without saying so")
+        return (words("stability", title, (_("method"), *self.families), rows),)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        sharp = _("{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error")
+        return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{WIDE:g}")
+
+    def charts(self) -> dict[str, Figure]:
+        from tmm_cli.bench.chart_stability import charts
+
+        return {f"stability-{number}.png": sheet for number, sheet in enumerate(charts(self), 1)}
 
 
 def _plain(value: float) -> float | None:
