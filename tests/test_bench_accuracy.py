@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from functools import partial
 from itertools import pairwise
 
 import mpmath as mp
@@ -146,7 +147,7 @@ def test_what_is_drawn_to_half_a_millimetre_comes_within_the_five_percent_rule_o
 def test_a_finer_grid_makes_a_truer_drawing(name):
     fine, coarse = (error_of(f"board-{mm}", name) for mm in ("0.25", "0.50"))
     assert np.prod([coarse[q] / fine[q] for q in QUANTITIES]) > 1
-    finest = Method("", "", board.prepare(1e-6))
+    finest = Method("", "", partial(board.prepare, 1e-6))
     true = reference(name)
     assert max(errors(finest.solve(true.case, true.q), true.exact).values()) < 1e-6
 

@@ -166,6 +166,8 @@ def own():
 @pytest.mark.parametrize("family", [family.name for family in FAMILIES if family.name != "two-assemblies-lost"])
 def test_no_value_of_ours_is_outside_its_bound(family):
     for at in known(family, None, 7):
+        if at.seed < 2:
+            continue  # among those of `own`
         shot = ours(Case.of(at.scene.linkage), at)
         assert shot.verdict in ("right", "said"), (at.seed, at.distance, shot)
         assert shot.verdict == "said" or max(shot.errors.values()) <= WRONG
@@ -217,7 +219,7 @@ def test_bounds_hold_where_longdouble_is_no_wider_than_double_or_no_value_is_tol
     honest = stability.bounds
     monkeypatch.setattr(digits, "WIDER", False)
     monkeypatch.setattr(stability, "bounds", lambda results: honest(results, wider=False))
-    for at in known(family, 2):
+    for at in known(family, 1 if family == "two-assemblies-lost" else None):
         if at.distance == Decimal(distance):
             assert ours(Case.of(at.scene.linkage), at).verdict == "said"
 
@@ -230,7 +232,7 @@ def answering(place, name="x", family="x", setting=None):
     return Method(name, family, lambda case: lambda q: Answers({"B": np.array([place])}), setting)
 
 
-def test_an_answer_is_right_wrong_in_another_assembly_or_not_given():
+def test_an_answer_is_right_wrong_or_not_given():
     at = near("three-in-line", "0.1")
     true, size = complex(at.exact["positions"]), at.largest["positions"]
 
@@ -239,7 +241,7 @@ def test_an_answer_is_right_wrong_in_another_assembly_or_not_given():
 
     assert verdict(answering(true)) == "right"
     assert verdict(answering(true + 2 * WRONG * size)) == "wrong"
-    assert verdict(answering(complex(at.other))) == "astray"
+    assert verdict(answering(-true)) == "wrong"
     assert verdict(answering(complex("nan"))) == "said"
     assert verdict(answering(true + 0.05 * size, "newton-2", "newton", 1e-2)) == "right"
     assert verdict(answering(true + 0.2 * size, "newton-2", "newton", 1e-2)) == "wrong"
@@ -295,9 +297,10 @@ def test_the_command_meets_its_targets_and_writes_what_it_found(tmp_path):
     assert content["first_lie"]["dead-position"]["tmm"] is None
     assert content["first_lie"]["dead-position"]["newton-2"] >= 1e-9
     assert content["sharp"] >= 0.9 and content["failures"] == []
+    assert all(row["right"] + row["said"] + row["wrong"] == row["scenes"] for row in content["rows"])
     with (tmp_path / "stability.csv").open(encoding="utf-8") as stream:
-        lines = list(csv.DictReader(stream))
-    assert all(int(line["right"]) + int(line["said"]) + int(line["wrong"]) == int(line["scenes"]) for line in lines)
+        (product,) = [line for line in csv.DictReader(stream) if line["method"] == OURS]
+    assert product["dead-position"] == product["three-in-line"] == "never"
 
 
 def test_the_table_says_where_each_method_lies_first(own):

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_cli.accuracy.digits import bare, bounds
 from tmm_cli.bench.families import BY_NAME
-from tmm_cli.bench.measured import Measured, cell, words
+from tmm_cli.bench.measured import Measured, words
 from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
@@ -41,7 +41,7 @@ NAIVE = (
 )  # fmt: skip
 RIVALS: tuple[Method, ...] = (*METHODS, *NAIVE)
 
-Verdict = Literal["right", "said", "wrong", "astray"]
+Verdict = Literal["right", "said", "wrong"]
 Solver = Callable[[Real], Answers]
 
 
@@ -49,8 +49,7 @@ Solver = Callable[[Real], Answers]
 class Shot:
     """One method in one scene: the errors of its answers (shares of the largest), and what to think of it.
 
-    astray: wrong because it is in another assembly; why: how it said so. For ours, widths: bound over true error of
-    every number, nan where there is no bound.
+    why: how it said so. For ours, widths: bound over true error of every number, nan where there is no bound.
     """
 
     method: str
@@ -65,8 +64,7 @@ class Shot:
 class Row:
     """One method at one distance: of so many scenes how many it answers rightly, says that it cannot, gets wrong.
 
-    errors: the largest of the answers it gave; astray are among the wrong ones; bound: the largest of ours, a share
-    of the largest value.
+    errors: the largest of the answers it gave; bound: the largest of ours, a share of the largest value.
     """
 
     family: str
@@ -76,7 +74,6 @@ class Row:
     right: int
     said: int
     wrong: int
-    astray: int
     errors: dict[Compared, float]
     bound: float = float("nan")
     why: tuple[str, ...] = ()
@@ -140,14 +137,6 @@ class Stability(Measured):
             "rows": rows, "first_lie": lies, "bounds": len(self.widths), "sharp": _plain(self.sharp),
             "reduced": self.reduced, "absent": list(self.absent), "failures": list(self.failures),
         }  # fmt: skip
-
-    def lines(self) -> list[Sequence[object]]:
-        """A line a family, method and distance."""
-        header = ("family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound")
-        return [header, *(
-            (row.family, row.method, f"{row.distance:g}", row.scenes, row.right, row.said, row.wrong, row.astray,
-             *(cell(row.errors[quantity]) for quantity in QUANTITIES), cell(row.bound)) for row in self.rows
-        )]  # fmt: skip
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -246,11 +235,8 @@ def judged(method: Method, solver: Solver | Exception, at: Known) -> Shot:
         quantity: nothing[quantity] if value is None else _off(value, quantity, at)
         for quantity, value in values.items()
     }
-    if not max(error for error in errors.values() if not np.isnan(error)) > limit(method):
-        return Shot(method.name, "right", errors)
-    place, true = values["positions"], at.exact["positions"]
-    astray = place is not None and at.other is not None and abs(place - at.other) < abs(place - true)
-    return Shot(method.name, "astray" if astray else "wrong", errors)
+    wrong = max(error for error in errors.values() if not np.isnan(error)) > limit(method)
+    return Shot(method.name, "wrong" if wrong else "right", errors)
 
 
 def _off(value: Any, quantity: Compared, at: Known) -> float:
@@ -307,11 +293,8 @@ def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
         errors[quantity] = max(given, default=float("nan"))
-    count = {
-        verdict: sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong", "astray")
-    }
     wide = [shot.bound for shot in shots if not np.isnan(shot.bound)]
-    return Row(
-        family, method, distance, len(shots), count["right"], count["said"], count["wrong"] + count["astray"],
-        count["astray"], errors, max(wide, default=float("nan")), tuple(sorted({s.why for s in shots if s.why})),
-    )  # fmt: skip
+    right, said, wrong = (sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong"))
+    why = tuple(sorted({shot.why for shot in shots if shot.why}))
+    bound = max(wide, default=float("nan"))
+    return Row(family, method, distance, len(shots), right, said, wrong, errors, bound, why)
