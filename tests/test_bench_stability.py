@@ -320,7 +320,7 @@ def test_an_unknown_family_is_one_clear_error():
 def test_a_sheet_has_a_panel_a_family_and_a_row_a_method():
     some = [METHODS[name] for name in ("closed", "cosines")]
     found = measure(["long-rod", "size"], reduced=True, methods=some)
-    (figure,) = charts(found)
+    (figure,) = charts(found).values()
     assert len(figure.axes) == 4
     rows_of = [label.get_text() for label in figure.axes[1].get_yticklabels()]
     assert rows_of[0] == OURS and set(rows_of) <= set(found.methods)

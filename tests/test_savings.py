@@ -14,6 +14,7 @@ from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
 from tmm_cli import load, solve, structure_of
+from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
@@ -244,7 +245,7 @@ def test_what_saves_nothing_is_said_so():
     found = Savings("shaper", "A shaper", (spared, wasted))
     assert found.failures == ("closed form where there is one",)
     assert found.tables[0].columns[-1].values == ["", "saves nothing"]
-    figure = found.charts()["savings.png"]
+    figure = charts(found)["savings.png"]
     names = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     assert names == ["groups on the way only", "closed form where there is one"]
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.errors import _
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 NAMED: dict[Compared, str] = {
     "positions": _("Positions"), "velocities": _("Velocities"), "accelerations": _("Accelerations"),
@@ -95,11 +92,6 @@ class Accuracy(Measured):
                  for row in self.rows if row.linkage == name],
             ) for name in self.linkages
         )  # fmt: skip
-
-    def charts(self) -> dict[str, Figure]:
-        from tmm_cli.bench.chart_accuracy import chart
-
-        return {f"accuracy-{name}.png": chart(self, name) for name in self.linkages}
 
 
 def _plain(value: float) -> float | str | None:

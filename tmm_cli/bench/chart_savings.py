@@ -12,6 +12,11 @@ from tmm_cli.errors import _
 SHARE = 0.75  # of the height of a landscape sheet
 
 
+def charts(measured: Savings) -> dict[str, Figure]:
+    """By the names of their files."""
+    return dict.fromkeys(("savings.png", "savings.svg"), chart(measured))
+
+
 def chart(measured: Savings) -> Figure:
     """Bars of both shares, a pair a saving, with the numbers beside them."""
     shown = measured.found

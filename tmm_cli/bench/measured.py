@@ -8,16 +8,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from time import get_clock_info, perf_counter, process_time
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
 from tmm_cli import __version__
 from tmm_cli.errors import _
 from tmm_cli.results.table import Column, Table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SLACK_WHEN_REDUCED = 2.0
 TURNS, REDUCED_TURNS = 41, 15
@@ -61,10 +58,6 @@ class Measured(ABC):
     @abstractmethod
     def tables(self) -> tuple[Table, ...]:
         """What a terminal shows."""
-
-    @abstractmethod
-    def charts(self) -> dict[str, Figure]:
-        """Its charts by the names of their files."""
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results, at_positions, with_forces
@@ -25,9 +25,6 @@ from tmm_cli.problem.templates import template_text
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MEASURED = "shaper"  # the problem of `tmm new`
 NOTHING = 1e-300  # kg: a link so light carries all its loads, and they are nothing
@@ -86,11 +83,6 @@ class Savings(Measured):
             "problem": self.problem, "savings": [saving.to_dict() for saving in self.found],
             "holds": not self.failures,
         }  # fmt: skip
-
-    def charts(self) -> dict[str, Figure]:
-        from tmm_cli.bench.chart_savings import chart
-
-        return dict.fromkeys(("savings.png", "savings.svg"), chart(self))
 
     @property
     def tables(self) -> tuple[Table, ...]:

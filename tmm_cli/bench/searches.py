@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,9 +20,6 @@ from tmm_cli.synthesis.optimal.solver import best
 from tmm_cli.synthesis.reading import task_of
 from tmm_cli.variants.taped import Taped
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SEARCHED = "crank-rocker"  # whose search is measured, and whose speed has a target
 NAMES = (SEARCHED, "six-bar", "shaper")
@@ -104,11 +101,6 @@ class Searches(Measured):
         """JSON."""
         found = [asdict(one) | {"near": one.near} for one in self.found]
         return super().to_dict() | {"found": found, "near": self.near, "wanted": self.wanted}
-
-    def charts(self) -> dict[str, Figure]:
-        from tmm_cli.bench.chart_searches import chart
-
-        return {"synthesis.png": chart(self)}
 
     @property
     def tables(self) -> tuple[Table, ...]:

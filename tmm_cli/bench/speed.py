@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +21,6 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.results.table import Table
 from tmm_cli.variants.batch import Batch, prepare
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 POSITIONS = (12, 360, 36_000)
 VARIANTS = (100, 10_000)
@@ -127,11 +124,6 @@ class Speed(Measured):
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
             "rivals": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.rivals],
         }
-
-    def charts(self) -> dict[str, Figure]:
-        from tmm_cli.bench.chart_speed import chart
-
-        return {"speed.png": chart(self)}
 
     @property
     def tables(self) -> tuple[Table, ...]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -24,9 +24,6 @@ from tmm_cli.bench.truths import Known, known
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 OURS = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
@@ -154,11 +151,6 @@ class Stability(Measured):
     def remarks(self) -> tuple[str, ...]:
         sharp = _("{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error")
         return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{WIDE:g}")
-
-    def charts(self) -> dict[str, Figure]:
-        from tmm_cli.bench.chart_stability import charts
-
-        return {f"stability-{number}.png": sheet for number, sheet in enumerate(charts(self), 1)}
 
 
 def _plain(value: float) -> float | None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
 
 import typer
 
@@ -14,7 +14,13 @@ from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, Json, console, emit_
 from tmm_cli.errors import _
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from tmm_cli.bench.measured import Measured
+
+    Charts = Mapping[str, Figure]  # by the names of their files
+
+M = TypeVar("M", bound="Measured")
 
 app = typer.Typer(
     name="bench",
@@ -44,18 +50,20 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
     Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
     """
     from tmm_cli.bench.accuracy import measure
+    from tmm_cli.bench.chart_accuracy import charts
     from tmm_cli.bench.references import NAMES
 
     names = _chosen(linkage, NAMES, _("there is no reference linkage {name}; there are {names}"))
-    _finish("accuracy", measure(names, reduced=reduced, progress=say), out, as_json)
+    _finish("accuracy", measure(names, reduced=reduced, progress=say), charts, out, as_json)
 
 
 @app.command()
 def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
     """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
+    from tmm_cli.bench.chart_savings import charts
     from tmm_cli.bench.savings import measure
 
-    _finish("savings", measure(reduced=reduced, progress=say), out, as_json)
+    _finish("savings", measure(reduced=reduced, progress=say), charts, out, as_json)
 
 
 @app.command()
@@ -64,9 +72,10 @@ def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> N
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
+    from tmm_cli.bench.chart_speed import charts
     from tmm_cli.bench.speed import measure
 
-    _finish("speed", measure(reduced=reduced, progress=say), out, as_json)
+    _finish("speed", measure(reduced=reduced, progress=say), charts, out, as_json)
 
 
 @app.command()
@@ -76,11 +85,12 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
     are within 100 times the true error.
     """
+    from tmm_cli.bench.chart_stability import charts
     from tmm_cli.bench.families import BY_NAME
     from tmm_cli.bench.stability import measure
 
     names = _chosen(family, BY_NAME, _("there is no family {name}; there are {names}"))
-    _finish("stability", measure(names, reduced=reduced, progress=say), out, as_json)
+    _finish("stability", measure(names, reduced=reduced, progress=say), charts, out, as_json)
 
 
 @app.command()
@@ -89,9 +99,10 @@ def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) 
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
+    from tmm_cli.bench.chart_searches import charts
     from tmm_cli.bench.searches import measure
 
-    _finish("synthesis", measure(reduced=reduced, progress=say), out, as_json)
+    _finish("synthesis", measure(reduced=reduced, progress=say), charts, out, as_json)
 
 
 def _chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
@@ -105,7 +116,7 @@ def _chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> 
     return found
 
 
-def _finish(name: str, measured: Measured, out: Path | None, as_json: bool) -> NoReturn:
+def _finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
     """Show tables or JSON, write the files; then the verdict."""
     if as_json:
         emit_json(measured.to_dict())
@@ -117,7 +128,7 @@ def _finish(name: str, measured: Measured, out: Path | None, as_json: bool) -> N
             show(table, UnitSystem(), console())
     if out is not None:
         try:
-            say(_("written: {files}").format(files=_write(name, measured, out)))
+            say(_("written: {files}").format(files=_write(name, measured, charts(measured), out)))
         except OSError as error:
             say(f"error: {error.filename or out}: {error.strerror}")
             raise typer.Exit(BAD_INPUT) from None
@@ -130,7 +141,7 @@ def _finish(name: str, measured: Measured, out: Path | None, as_json: bool) -> N
     raise typer.Exit(CHECK_FAILED if measured.failures else OK)
 
 
-def _write(name: str, measured: Measured, folder: Path) -> str:
+def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
     """name.json, name.csv of the lines or of the one table, charts."""
     from tmm_cli.draw.formats import FORMATS
     from tmm_cli.problem.units import UnitSystem
@@ -144,7 +155,7 @@ def _write(name: str, measured: Measured, folder: Path) -> str:
         contents[f"{name}.csv"] = lines.getvalue().encode()
     elif len(measured.tables) == 1:
         contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
-    contents |= {file: FORMATS[file.rpartition(".")[2]](figure) for file, figure in measured.charts().items()}
+    contents |= {file: FORMATS[file.rpartition(".")[2]](figure) for file, figure in charts.items()}
     for file, content in contents.items():
         write_whole(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)
