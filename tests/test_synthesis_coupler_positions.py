@@ -14,8 +14,11 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.check import measured
 from tmm_cli.synthesis.coupler_positions import search
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses, beside, by_turn, centre, marks
+from tmm_cli.synthesis.coupler_positions.curve import curve
+from tmm_cli.synthesis.coupler_positions.dyads import guiding
 from tmm_cli.synthesis.coupler_positions.task import Task
 from tmm_cli.synthesis.reading import build
+from tmm_cli.synthesis.record import Infeasible
 from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
@@ -241,9 +244,36 @@ def test_a_four_bar_that_is_known_to_be_good_is_not_missed(positions, least):
     assert np.degrees(next(v.value for v in outcome.found if v.text == LEAST)) > least
 
 
+def test_three_positions_of_one_angle_leave_a_circle_of_pins_and_parallelograms_that_must_pass_their_change_point():
+    poses = exact([0, 0.05 + 0.025j, 0.095 + 0.06j, 0.13 + 0.11j], np.radians([0, 0, 0, 20]))
+    pins = curve(poses).at(0, np.linspace(0, 6, 50))
+    radii = np.abs(poses.on_frame(pins.pin) - pins.pivot[:, None])
+    assert np.ptp(radii, axis=1) == pytest.approx(0, abs=1e-15) and np.ptp(radii[:, 0]) == pytest.approx(0, abs=1e-15)
+    with pytest.raises(Infeasible, match="branch defect"):
+        guiding(Task(tuple(map(complex, poses.places)), tuple(map(float, poses.angles))))
+
+
+ON_CIRCLE = ", ".join(f"[100*cos({t} deg), 100*sin({t} deg), 15]" for t in (0, 30, 70, 100))
+
+
+@pytest.mark.parametrize("more", ["", ", AB_turn: 30", ", AB_turn: 30, DC_turn: 30"])
+def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallelogram(more):
+    found = problem(f"positions: [{ON_CIRCLE}]{more}")
+    outcome = found.synthesis.outcome
+    numbers = {name: float(v.value) for name, v in outcome.parameters.items()}
+    assert (numbers["l1"], numbers["l2"]) == pytest.approx((0.1, numbers["l4"])) and numbers["l3"] == pytest.approx(0.1)
+    assert outcome.notes[0].startswith("the coupler does not turn: any parallelogram with these arms does it")
+    assert next(v.value for v in outcome.found if v.text == LEAST) == pytest.approx(np.radians(40))
+    for m in measured(outcome, solve(found, "kinematics")):
+        assert m.difference <= MET, m
+
+
 REFUSED = {
-    "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 25]]":
-        "synthesis.positions: the coupler does not turn between three of these positions, or all: ",
+    f"positions: [{ON_CIRCLE}], AB_turn: 31":
+        "synthesis.AB_turn: the coupler does not turn: both links turn as its places do on their circle\n"
+        "  found:   31\n  allowed: 30 deg",
+    "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]":
+        "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long",
     f"positions: {FOUR}, AB_turn: 15":
         "synthesis.AB_turn: no link of sensible length turns by this angle",
     f"positions: {FOUR}, AB_turn: 15.0000001":

@@ -192,6 +192,21 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
         assert np.nanmin(np.abs(found.l1 / l1 - 1) + np.abs(found.l3 / l3 - 1)) < 1e-5
 
 
+@pytest.mark.parametrize("block", [
+    "[[30, 30], [60, 60], [90, 90]]", "[[30, 210], [60, 240], [90, 270]]",
+    "[[20, 40], [50, 70], [90, 110], [100, 120]]",
+    "[[0, 10], [20, 30], [40, 50], [60, 70], [90, 100]]", "[[30, 50], [60, 80], [90, 110]], psi0: -20",
+])  # fmt: skip
+def test_equal_angles_are_those_of_any_parallelogram(block):
+    found = problem(f"pairs: {block}, l4: 100")
+    outcome = found.synthesis.outcome
+    assert any("every parallelogram l1 = l3, l2 = l4 passes the pairs" in note for note in outcome.notes)
+    l1, l2, l3, l4 = (outcome.parameters[name].value for name in ("l1", "l2", "l3", "l4"))
+    assert (l1, l2) == (l3, l4)
+    for m in measured(outcome, solve(found, "kinematics")):
+        assert m.difference <= MET, m
+
+
 @pytest.mark.parametrize(("count", "zeros"), [(3, (0.0, 0.0)), (4, (None, 0.0)), (4, (0.0, None)), (5, (None, None))])
 def test_what_is_chosen_passes_all_pairs_on_one_assembly(count, zeros):
     drawn = zip(random_tasks(count, 7), random_tasks(count, 8), strict=True)
@@ -264,8 +279,6 @@ def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
 
 
 REFUSED = {
-    "pairs: [[30, 40], [80, 90], [120, 130]], l4: 100":
-        "synthesis.pairs: the output turns as the input does: that is any parallelogram l1 = l3, l2 = l4",
     "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100":
         "synthesis.pairs[2][0]: the input turns back: pair 3 cannot be reached after pair 2 in order\n"
         "  found:   70\n  allowed: the nearest is pairs[2][0]: ",

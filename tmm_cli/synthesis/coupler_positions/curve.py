@@ -2,7 +2,7 @@
 
 The closed four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the turns (see `by_turn`) has one loop of
 places where b2 turns fully, for each branch, or one or two where it rocks: b2 = middle + half cos(t), the branch being
-the sign of sin(t), passes from branch to branch without a stop.
+the sign of sin(t), passes from branch to branch without a stop. Three positions of one angle leave a circle of pins.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.roots import bisect
-from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, unit
+from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, centre, equal_angles, unit
 
 APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between
 HALF: Final = np.longdouble("1.57079632679489661923132169163975144")  # a right angle
@@ -43,6 +43,24 @@ class Loops:
 
 
 @dataclass(frozen=True)
+class Circle:
+    """Pins on a circle, all with the same arm (complex, m) in the position `of`: three positions of one angle."""
+
+    poses: Poses
+    of: int
+    arm: Any
+    middle: Any
+    radius: Any
+
+    def at(self, _: Any, t: Any) -> Dyads:
+        pin = self.middle + self.radius * unit(t)
+        return Dyads(self.poses.places[self.of] + pin * unit(self.poses.angles[self.of]) - self.arm, pin)
+
+    def __len__(self) -> int:
+        return 1
+
+
+@dataclass(frozen=True)
 class One:
     """A dyad that is given."""
 
@@ -55,7 +73,7 @@ class One:
         return 1
 
 
-Curve = Loops | One
+Curve = Loops | Circle | One
 
 
 @dataclass(frozen=True)
@@ -75,8 +93,12 @@ class Rows:
         return self.curve.at(self.loop[here], self.t[here] + (x - here) * (self.t[beyond] - self.t[here]))
 
 
-def curve(poses: Poses) -> Loops:
-    """Burmester's curve of four positions of which no three have one angle."""
+def curve(poses: Poses) -> Curve:
+    """Burmester's curve of four positions that do not all have one angle."""
+    for odd in range(4):
+        rest = [k for k in range(4) if k != odd]
+        if equal_angles(poses.angles[rest]):
+            return _circle(poses, rest, odd)
     d, a = poses.places[1:] - poses.places[0], unit(poses.angles[1:] - poses.angles[0]) - 1
     d2, d3, d4 = a[1] * d[2] - a[2] * d[1], a[2] * d[0] - a[0] * d[2], a[0] * d[1] - a[1] * d[0]
     total = d2 + d3 + d4
@@ -95,6 +117,15 @@ def curve(poses: Poses) -> Loops:
         rows = [(toward + side * (near + far) / 2, (far - near) / 2, 0) for side in (-1, 1)]
     middle, half, branch = (np.array(x) for x in zip(*rows, strict=True))
     return Loops(poses, middle.astype(EXACT), half.astype(EXACT), branch)
+
+
+def _circle(poses: Poses, equal: list[int], odd: int) -> Circle:
+    """|B - A| is the same in the odd position: |c + m g| = |arm| for the pin m."""
+    first = equal[0]
+    arm = poses.places[first] - centre(poses.places[equal])
+    turned = unit(poses.angles[[first, odd]])
+    g = turned[1] - turned[0]
+    return Circle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
 
 
 def scanned(found: Curve, size: float, first: int, rounds: int) -> list[Any]:
@@ -138,11 +169,11 @@ def parts(
     return Rows(found, np.concatenate([t for __, t in made]), loops, first, last)
 
 
-def _scanned(found: Loops, loop: int, size: float, first: int, rounds: int) -> Any:
+def _scanned(found: Curve, loop: int, size: float, first: int, rounds: int) -> Any:
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
         dyads = found.at(loop, t)
-        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size
+        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size  # type: ignore[union-attr]
         wide = (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART)
         wide &= np.diff(t) > 1e-12
         if not np.any(wide):

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.roots import least
-from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks
+from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
 from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
 from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
 from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
@@ -20,6 +20,7 @@ FINE: Final = 1440  # turns among which the pivot nearest to a place is sought
 SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
 FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
+ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 DEFECTS: Final = {  # by their numbers in Marks
     1: _("branch defect: some positions are on the other assembly of the four-bar"),
     2: _("order defect: AB does not reach the positions in order by turning one way"),
@@ -42,7 +43,7 @@ def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
 
 def _others(task: Task) -> str | None:
     """What is told where a link is free on Burmester's curves, which are searched only for what is asked."""
-    searched = len(task.places) == 4 and len(task.sides) < 2
+    searched = len(task.places) == 4 and len(task.sides) < 2 and not task.still
     return _("other positions, or links by AB_turn and DC_turn") if searched else None
 
 
@@ -57,9 +58,8 @@ def both(task: Task) -> tuple[Dyads, Dyads]:
     """Dyads AB and DC. Raises Infeasible."""
     if len(task.places) < 4:
         return dyad(task, "AB"), dyad(task, "DC")
-    if task.equal_angles:
-        reason = _("the coupler does not turn between three of these positions, or all: links would be parallel")
-        raise Infeasible("positions", reason, _("positions that differ by their angles"))
+    if task.still:
+        return parallel(task)
     given = given_on_curves(task)
     return (given["AB"], given["DC"]) if len(given) == 2 else best(task, given)
 
@@ -155,3 +155,48 @@ def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
         reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
         raise Infeasible("pivots_within", reason, _("another box, or other positions"))
     raise Infeasible("positions", NO_LINKS, _others(task))
+
+
+def parallel(task: Task) -> tuple[Dyads, Dyads]:
+    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
+
+    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
+    """
+    places, angles = task.poses.places, task.poses.angles
+    centres = [centre(np.delete(places, out)) for out in range(4)]
+    middle = min(centres, key=lambda z: float(np.nan_to_num(abs(z), nan=np.inf)))
+    arms = places - middle
+    radius = abs(arms[0])
+    if not (np.isfinite(radius) and radius < FAR * task.size):
+        raise Infeasible(
+            "positions",
+            _("the coupler does not turn, and its places lie on a line: links would be infinitely long"),
+            _("places on a circle, or a slider"),
+        )
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
+        raise Infeasible(
+            ("positions", 3),
+            _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
+              "through the others"),
+            _("a fourth place on that circle, or a coupler that turns"),
+        )  # fmt: skip
+    turn = float(np.angle(complex(arms[1] / arms[0])))
+    for name, side in task.sides.items():
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
+            reason = _("the coupler does not turn: both links turn as its places do on their circle")
+            raise Infeasible(f"{name}_turn", reason, "{turn}", {"turn": (turn, "angle", "exact")})
+    steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
+    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
+    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, task.size)
+    if task.within is not None:
+        low, high = task.within
+        frame *= min(1.0, ROOM * min(abs((high - low).real), abs((high - low).imag)) / float(abs(frame)))
+        middles = [(low + high) / 2 + sign * frame / 2 for sign in (-1, 1)]
+    else:
+        middles = [middle + sign * frame / 2 for sign in (-1, 1)]
+    pivots = [
+        task.sides[name].near if name in task.sides and task.sides[name].near is not None else at
+        for name, at in zip(("AB", "DC"), middles, strict=True)
+    ]
+    one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
+    return one, other

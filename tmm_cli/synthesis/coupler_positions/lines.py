@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Poses
+from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Poses, equal_angles
 from tmm_cli.synthesis.coupler_positions.curve import FULL, Curve, curve
 
 FIRST: Final = 721  # places of a loop that are looked at first;
@@ -25,7 +25,9 @@ Places = tuple[complex, ...]
 
 
 def lines(poses: Poses, about: Sequence[complex]) -> tuple[list[Places], list[Places]]:
-    """Centre points and circle points in position 1 (m), near places of a mechanism."""
+    """Centre points and circle points in position 1 (m), near places of a mechanism; none where all angles are one."""
+    if equal_angles(poses.angles):
+        return [], []
     found, box = curve(poses), np.array(about)
     middle = complex(box.real.max() + box.real.min(), box.imag.max() + box.imag.min()) / 2
     size = float(max(np.ptp(box.real), np.ptp(box.imag)))

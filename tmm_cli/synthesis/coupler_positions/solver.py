@@ -46,7 +46,8 @@ DEFECTS: Final = (  # by their numbers in Marks
     _("order: the driver must turn back between positions"),
     _("circuit: the driver locks on the way"),
 )
-SOURCES: Final = {  # by the count of positions
+SOURCES: Final = {  # by the count of positions; 1: four of one angle
+    1: _("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
     2: _("pivots on the bisector of the two places of a pin, at the link's length"),
     3: _("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
          "coupler held (inversion)"),
@@ -73,14 +74,19 @@ def solve(task: Task) -> Outcome:
         Value("", DEFECTS[int(mark.defect)], "word", _("defects")),
     ]
     count = len(task.places)
-    listings = []
-    if count == 4:
+    notes, listings = [], []
+    if task.still:
+        notes.append(_(
+            "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
+            "direction, taken across the arms in the middle of their way"
+        ))  # fmt: skip
+    elif count == 4:
         values += [*_on_curve(task, "AB", one), *_on_curve(task, "DC", other)]
         listings.append(_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
     drawn = construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
-    source, demands = SOURCES[count], tuple(_demands(task, one, other, mark))
-    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, listings=tuple(listings))
+    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, one, other, mark))
+    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings))
 
 
 def _parameters(task: Task, one: Dyads, other: Dyads) -> dict[str, Any]:

@@ -45,9 +45,9 @@ class Task:
         return Poses(np.asarray(self.places, np.clongdouble), np.asarray(self.angles, np.longdouble))
 
     @property
-    def equal_angles(self) -> bool:
-        """Whether the coupler does not turn between three of four positions."""
-        return any(equal_angles(np.delete(self.poses.angles, k)) for k in range(4))
+    def still(self) -> bool:
+        """Whether the coupler does not turn between four positions."""
+        return len(self.angles) == 4 and equal_angles(self.poses.angles)
 
     @property
     def size(self) -> float:

@@ -12,6 +12,7 @@ from tmm_cli.synthesis.four_bar import FourBar, cosine, extreme_inputs, turning
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import Function
+from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
 from tmm_cli.tolerances import DEAD_COSINE_DOUBLE
 
 SCAN: Final = 1500  # four-bars through two pairs that are compared, and
@@ -86,6 +87,8 @@ def quality(found: Bars, task: Task) -> Quality:
 
 def through(task: Task) -> Bars:
     """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free."""
+    if len(task.phi) > 2 and (one := parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
+        return one.at(None)
     if task.free:
         found = _best_of_ratios(task)
     elif len(task.phi) == 2:

@@ -18,6 +18,7 @@ from tmm_cli.synthesis.four_bar_by_angles.drawing import construction
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES
 from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, chosen, of_ratios, quality, real, through
+from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
@@ -49,7 +50,6 @@ COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
     ("transmission", _("least transmission angle"), "angle"),
 )
-EQUAL: Final = 1e-11  # rad: angles that are equal but for rounding
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
@@ -57,8 +57,10 @@ def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
     found, at = take(task)
     one, mark = found.at(at), quality(found.at(at), task)
+    any_one = parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
     values, demands = _values(task, one, mark), _demands(task, one, mark)
-    demands.append(Demand(_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
+    if not any_one:  # it has change points
+        demands.append(Demand(_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
     drawings: list[Any] = [construction(one, task.phi, task.psi, float(_size(task, one)))]
     listings = []
     if found.size > 1:
@@ -77,7 +79,7 @@ def solve(task: Task) -> Outcome:
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
-    notes = _notes(task, one, mark)
+    notes = _notes(task, one, mark, any_one)
     return Outcome(
         _given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
     )  # fmt: skip
@@ -104,7 +106,7 @@ def refuse(task: Task) -> None:
 
 
 def _refuse_inputs(task: Task) -> None:
-    """The input only grows, or only falls, by less than a turn, and the output not as it does. Raises Infeasible."""
+    """The input only grows, or only falls, by less than a turn. Raises Infeasible."""
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
     if back.size and not task.function:
@@ -113,10 +115,6 @@ def _refuse_inputs(task: Task) -> None:
     if back.size or abs(task.span[1] - task.span[0]) >= 2 * np.pi:
         key = ("input", 1) if task.function else ("pairs", len(task.phi) - 1, 0)
         raise Infeasible(key, _("the input has come round before the last pair"))
-    ahead = np.asarray(task.psi, dtype=float) - np.asarray(task.phi, dtype=float)
-    if len(ahead) > 2 and np.ptp(ahead) < EQUAL:
-        reason = _("the output turns as the input does: that is any parallelogram l1 = l3, l2 = l4, and none other")
-        raise Infeasible("output" if task.function else "pairs", reason, _("a parallelogram; or other angles"))
 
 
 def _size(task: Task, one: Bars) -> Any:
@@ -175,7 +173,12 @@ def _largest(one: Bars, task: Task, results: Any) -> float:
     return extremes(error, function)[1]
 
 
-def _notes(task: Task, one: Bars, mark: Quality) -> Iterable[str]:
+def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
+    if any_one:
+        yield _(
+            "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its transmission "
+            "angle is that of DC with AD; l1/l4 is free, 1/2 is taken"
+        )
     if mark.reversed:
         yield _("a zero angle is half a turn from the given one: in the given sense there is no such link")
     if task.choose == "crank" and not mark.crank:
