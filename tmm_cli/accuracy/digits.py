@@ -34,9 +34,9 @@ from tmm_cli.kinematics.motion import move
 from tmm_cli.kinematics.strokes import Strokes, output_run
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 
-U = 2.0**-53
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
 ROUNDINGS = 2  # of longdouble, in units of u_wide kappa
@@ -170,7 +170,7 @@ class _Judge:
         if exactly is not None:
             fine = float(np.finfo(np.longdouble).eps) / 2
             away = self.gap(values, rows if exactly is base else self.rows(self.of(exactly))).astype(float)
-            bound = 2 * away + U * np.abs(values.astype(float)) + ROUNDINGS * fine * kappa
+            bound = 2 * away + ROUNDOFF * np.abs(values.astype(float)) + ROUNDINGS * fine * kappa
         else:
             bound = self.by_trials(rows, [gap(at(base, *shaken(base.linkage, q, k), first)) for k in range(TRIALS)])
         bound = bound + np.where(blur > 0, by_q * blur, 0.0)
@@ -204,7 +204,7 @@ class _Judge:
         for kind, row in zip(kinds, np.abs(rows).astype(float), strict=True):
             largest[kind] = np.fmax(largest.get(kind, 0.0), row)
         size, spread = np.stack([largest[kind] for kind in kinds]), np.max(gaps, axis=0)
-        return np.where(spread > LOST * size, np.nan, SPREAD * spread + 4 * U * size)
+        return np.where(spread > LOST * size, np.nan, SPREAD * spread + 4 * ROUNDOFF * size)
 
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""

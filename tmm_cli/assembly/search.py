@@ -25,7 +25,7 @@ from tmm_cli.groups.state import Drives, Placement, Pose, State
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group
 from tmm_cli.structure.cycle import turns_of_cycle
-from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, SAME_POSE
+from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, LAST_STEP_AFAR, SAME_ASSEMBLY
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
@@ -94,7 +94,7 @@ def close_from_afar(
             size = np.max(np.abs(step), axis=-1, keepdims=True)
             step = step * np.minimum(1.0, STRIDE / size)
             state = state.moved(step, kernel.size)
-            if bool(np.all((size < 1e-12) | ~np.isfinite(size))):
+            if bool(np.all((size < LAST_STEP_AFAR) | ~np.isfinite(size))):
                 break
         state, last = kernel.close(state, known, drives)
         everything = {**known, **kernel.poses_of(state)}
@@ -133,7 +133,7 @@ def all_assemblies(
 
 def _alike(kernel: Newton, one: State, other: State) -> bool:
     turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
-    return bool(np.max(turned) < SAME_POSE and np.max(np.abs(one.x - other.x)) < SAME_POSE * kernel.size)
+    return bool(np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(one.x - other.x)) < SAME_ASSEMBLY * kernel.size)
 
 
 def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:

@@ -11,6 +11,7 @@ from tmm_cli.forces.springs import spring_loads
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import Strokes, output_place
 from tmm_cli.linkage import Load
+from tmm_cli.tolerances import SEAM
 from tmm_cli.vectors import Real, pi
 
 
@@ -69,7 +70,7 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi
-        return np.mod(driver.sense * (motion.q - start) + 1e-12, cycle) - 1e-12
+        return np.mod(driver.sense * (motion.q - start) + SEAM, cycle) - SEAM
     assert strokes is not None and first is not None
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
