@@ -11,10 +11,10 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli.bench import speed
-from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, Rate, Searches, known, prepared, text
+from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, Searches, SearchRate, known, prepared, text
 from tmm_cli.synthesis.optimal.closely import exactly
 
-RATE = Rate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND)
+RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND)
 FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
 
 

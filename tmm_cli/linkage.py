@@ -136,7 +136,7 @@ class Friction:
 
 
 @dataclass(frozen=True)
-class Table:
+class LoadTable:
     """A load's size, tabulated: linear between the given arguments, constant beyond the first and the last."""
 
     against: Literal["stroke", "crank angle", "crank turn"]
@@ -176,7 +176,7 @@ class Load:
     moment: float = 0.0
     follows: bool = False
     when: str = "always"
-    table: Table | None = None
+    table: LoadTable | None = None
     point: str = ""
 
     @property

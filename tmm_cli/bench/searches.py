@@ -28,7 +28,7 @@ SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
 
 
 @dataclass(frozen=True)
-class Rate:
+class SearchRate:
     """Candidates a second in generations of a size, in the least time of several turns."""
 
     problem: str
@@ -67,7 +67,7 @@ class Found:
 class Searches(Measured):
     """The whole measurement. known: what the long runs found (`known`)."""
 
-    rates: tuple[Rate, ...]
+    rates: tuple[SearchRate, ...]
     found: tuple[Found, ...]
     known: dict[str, Any]
 
@@ -119,7 +119,7 @@ def prepared(name: str) -> Search:
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
     """Speed of evaluation on every problem, then the search from several seeds on one."""
-    rates: list[Rate] = []
+    rates: list[SearchRate] = []
     for name in NAMES:
         progress(name)
         rates += rate(name, reduced)
@@ -132,7 +132,7 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
     return Searches(tuple(rates), tuple(found), reference, reduced=reduced)
 
 
-def rate(name: str, reduced: bool) -> list[Rate]:
+def rate(name: str, reduced: bool) -> list[SearchRate]:
     """Candidates a second, evenly spread over the bounds, by the size of generations."""
     search = prepared(name)
     parameters, sizes = len(search.low), (search.population, *GENERATIONS[: 2 if reduced else None])
@@ -143,7 +143,7 @@ def rate(name: str, reduced: bool) -> list[Rate]:
         seconds = by_turns({"": lambda: search.evaluate(x)}, reduced)[""]  # noqa: B023
         target = PER_SECOND if name == SEARCHED and size == search.population else None
         found.append(
-            Rate(name, parameters, len(search.constraints) - 1, search.task.positions, _operations(search), size,
+            SearchRate(name, parameters, len(search.constraints) - 1, search.task.positions, _operations(search), size,
                  size / seconds, target)
         )  # fmt: skip
     return found

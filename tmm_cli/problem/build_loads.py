@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from tmm_cli.errors import _
-from tmm_cli.linkage import Linkage, Load, Table
+from tmm_cli.linkage import Linkage, Load, LoadTable
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.tree import Path
@@ -87,7 +87,7 @@ def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tu
 
 def _component(
     given: Any, want: Dimension, linkage: Linkage, values: ValueReader, path: Path
-) -> tuple[Any, Table | None]:
+) -> tuple[Any, LoadTable | None]:
     """A force (complex) or a moment in SI; of a table the direction, or one, and the table."""
     force = want == FORCE
     if given is None:
@@ -109,7 +109,7 @@ def _component(
     return along, _table(given, want, linkage, values, path)
 
 
-def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path) -> Table:
+def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path) -> LoadTable:
     argument = ANGLE
     if given.against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
@@ -121,4 +121,4 @@ def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: V
     for k in range(1, len(arguments)):
         if arguments[k] <= arguments[k - 1]:
             raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
-    return Table(given.against or "stroke", tuple(arguments), tuple(sizes))
+    return LoadTable(given.against or "stroke", tuple(arguments), tuple(sizes))

@@ -16,7 +16,7 @@ ROUNDING = 1e-12  # relative: what is smaller is zero
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredDemand:
     """A demand, its value on the mechanism (SI, rad; nan: there is none), and the relative difference.
 
     open: by how much of it rounding leaves the value open, where that is more than is tolerated.
@@ -33,7 +33,7 @@ class Measured:
 
 
 @lru_cache(maxsize=1)
-def measured_on(results: Results) -> tuple[Measured, ...]:
+def measured_on(results: Results) -> tuple[MeasuredDemand, ...]:
     """What a problem's synthesis asked and foretold, on its mechanism; nothing where there is none, or no motion."""
     synthesis = results.problem.synthesis
     if synthesis is None or results.of or results.motion is None:
@@ -41,13 +41,13 @@ def measured_on(results: Results) -> tuple[Measured, ...]:
     return measured(synthesis.outcome, results)
 
 
-def measured(outcome: Outcome, results: Results) -> tuple[Measured, ...]:
+def measured(outcome: Outcome, results: Results) -> tuple[MeasuredDemand, ...]:
     """Every demand on the mechanism."""
     found = []
     for demand in outcome.demands:
         value = _settled(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
-        found.append(Measured(demand, value, demand.difference(value), left if left > MET else 0.0))
+        found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > MET else 0.0))
     return tuple(found)
 
 

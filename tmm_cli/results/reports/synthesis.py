@@ -15,7 +15,7 @@ from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
 from tmm_cli.results.table import Column, Table
-from tmm_cli.synthesis.check import Measured, measured_on
+from tmm_cli.synthesis.check import MeasuredDemand, measured_on
 from tmm_cli.synthesis.record import Kind, Listing, Value
 
 DIGITS = 10  # on a terminal; files have 15
@@ -37,7 +37,7 @@ def tables(results: Results) -> Iterable[Table]:
 
 
 def tables_of(
-    found: Synthesised, measured: Sequence[Measured] | None, units: UnitSystem, digits: int = DIGITS
+    found: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
 ) -> Iterable[Table]:
     """Asked, found, measured (None: there is no linkage)."""
     outcome = found.outcome
@@ -59,7 +59,7 @@ def parameters(found: Synthesised, units: UnitSystem) -> Table:
     return _table(listing, units, DIGITS, (note.format(task=found.task),))
 
 
-def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
+def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
     """What is not met, and what rounding leaves open, in words."""
     for m in measured:
         if m.open:
@@ -73,7 +73,7 @@ def missed(measured: Sequence[Measured], units: UnitSystem) -> Iterable[str]:
             )
 
 
-def to_json(found: Synthesised, measured: Sequence[Measured] | None, *, long: bool = True) -> dict[str, Any]:
+def to_json(found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True) -> dict[str, Any]:
     """Everything in SI and radians; long: tables for files too."""
     outcome = found.outcome
     plain = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
@@ -98,7 +98,7 @@ def _values(name: str, title: str, values: Sequence[Value], names: Mapping[str, 
     return Listing(name, title, (("name", _("parameter"), "word"), *VALUE), named)
 
 
-def _measured(measured: Sequence[Measured]) -> Listing:
+def _measured(measured: Sequence[MeasuredDemand]) -> Listing:
     rows = tuple(
         (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
         for m in measured
