@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tmm_cli.analysis.inputs import Inputs
-from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.errors import LinkageError
