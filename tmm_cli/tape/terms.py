@@ -178,12 +178,18 @@ def _gathered(tape: Tape, a: Any, b: Any) -> Any:
     for one, other in ((a, b), (b, a)):
         if isinstance(one, Term) and isinstance(other, Term) and one.op == "divide" and one.args[1] is other:
             return one.args[0]  # (x / y) y
+    if isinstance(a, Term) and a is b and a.op == "absolute":
+        return tape.apply("multiply", a.args[0], a.args[0])
     for one, other in ((a, b), (b, a)):
         if isinstance(one, Term) and one.op == "multiply" and axes_of(other) < one.axes:
             for x, factor in (one.args, one.args[::-1]):
                 if axes_of(factor) < one.axes and axes_of(x) == one.axes and axes_of(factor) | axes_of(other) != x.axes:
                     return tape.apply("multiply", x, tape.apply("multiply", factor, other))
     return None
+
+
+def _sqrt(tape: Tape, a: Any) -> Any:
+    return tape.apply("absolute", a.args[0]) if a.op == "multiply" and a.args[0] is a.args[1] else None
 
 
 def _divide(tape: Tape, a: Any, b: Any) -> Any:
@@ -219,8 +225,12 @@ def _joined(settles: bool) -> Callable[[Tape, Any, Any], Any]:
     return joined
 
 
+def _absolute(tape: Tape, a: Any) -> Any:
+    return tape.apply("absolute", a.args[0]) if a.op == "negative" else a if a.op in ("absolute", "sqrt") else None
+
+
 SIMPLER = {
     "add": _add, "subtract": _subtract, "multiply": _multiply, "divide": _divide, "negative": _negative,
-    "bitwise_and": _joined(False), "logical_and": _joined(False),
+    "absolute": _absolute, "sqrt": _sqrt, "bitwise_and": _joined(False), "logical_and": _joined(False),
     "bitwise_or": _joined(True), "logical_or": _joined(True),
 }  # fmt: skip
