@@ -71,7 +71,7 @@ STRUCTURE = record(
     "links, pairs and Assur groups",
     Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
     Field("links", list_of(LINK), "moving links",
-          lambda results: [LinkInRole(results.linkage.links[n], results.roles[n]) for n in results.structure.links]),
+          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n]) for n in r.structure.links]),
     Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
     Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
           lambda results: results.structure.mobility + results.structure.redundant),
