@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.quantities import ANGLE
 from tmm_cli.results.as_json import LARGE, numbers
-from tmm_cli.results.reports import REPORTS
+from tmm_cli.results.reports import REPORTS, tables_of
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
@@ -59,11 +58,8 @@ def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
 
 
 def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:
-    """Tables with computed numbers, of these reports."""
-    for name, part, __ in REPORTS:
-        wanted = name == "kinematics" or not results.of  # else the rest is not there
-        if name in reports and wanted and getattr(results, part) is not None:
-            yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
+    """Tables with computed numbers, of these reports; of chosen points and links there is their motion alone."""
+    return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 
 def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
