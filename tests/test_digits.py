@@ -11,6 +11,7 @@ import cmath
 import csv
 import json
 import re
+from collections import defaultdict
 from dataclasses import replace
 
 import mpmath as mp
@@ -22,7 +23,7 @@ from test_commands import ROOT, SHAPER, described, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.accuracy.data import changed, lengths
-from tmm_cli.accuracy.digits import at, bare, bounds, exact
+from tmm_cli.accuracy.digits import Digits, at, bare, bounds, exact, quantities
 from tmm_cli.accuracy.margins import relative, sizes
 from tmm_cli.accuracy.searches import searched
 from tmm_cli.accuracy.wide import Wide
@@ -131,17 +132,18 @@ def truth(body, it, structure, k):
     return found
 
 
-def judged(it, q):
+def judged(it, q, kernels):
     """(value, true error, bound) of every quantity at every place that is not refused."""
-    (rows,), results = judged_both(it, q, (WIDER,))
+    (rows,), results = judged_both(it, q, kernels, (WIDER,))
     return rows, results
 
 
-def judged_both(it, q, both=(WIDER, False)):
-    """The same for several kinds of machines: with a wider float, and without one."""
+def judged_both(it, q, kernels, both=(WIDER, False)):
+    """The same for several kinds of machines: with a wider float, and without one; without bounds for `None`."""
     structure = analyse(it)
-    results = bare(it, q, structure, assemble(it, structure))
-    found = [bounds(results, wider=wider) for wider in both]
+    results = bare(it, q, structure, kernels)
+    nothing = Digits(defaultdict(lambda: np.full(len(q), np.nan)))
+    found = [(quantities(results), nothing) if wider is None else bounds(results, wider=wider) for wider in both]
     body = multibody.Multibody(it, structure, results.motion)
     rows = [[] for _ in both]
     for k in np.flatnonzero(results.motion.moving):
@@ -166,13 +168,19 @@ def judged_both(it, q, both=(WIDER, False)):
     return rows, results
 
 
+def assembled(it):
+    """The groups of a linkage, and how far its driver can go."""
+    kernels = assemble(it, analyse(it))
+    return kernels, find_range(it, kernels)
+
+
 def widths(rows):
     return [bound / max(error, U / 4 * size) for _, size, error, bound in rows if error > 0]
 
 
 def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_narrow():
     linkages = [made(seed, kinds) for seed, kinds in CLASSES]
-    told = [judged_both(it, it.sketch.at + np.array([0.0, 0.01]))[0] for it in linkages]
+    told = [judged_both(it, it.sketch.at + np.array([0.0, 0.01]), assembled(it)[0])[0] for it in linkages]
     for wider, parts in zip((WIDER, False), zip(*told, strict=True), strict=True):
         rows = [row for part in parts for row in part]
         assert len(rows) > 1000
@@ -183,9 +191,9 @@ def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_na
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
 def test_bounds_hold_on_the_way_to_a_dead_position_or_the_position_is_refused(size, many_digits):
     it = four_bar(size)
-    way = find_range(it, assemble(it, analyse(it)))
+    kernels, way = assembled(it)
     q = np.append(way.end - 10.0 ** -np.arange(1, 15), way.end)
-    rows, results = judged(it, q)
+    rows, results = judged(it, q, kernels)
     assert results.motion.moving.tolist() == [True] * 14 + [False]
     assert [row for row in rows if not row[2] <= row[3]] == []
     worst = max(bound / size for _, size, _, bound in rows if size > 0 and bound < size)
@@ -197,9 +205,9 @@ def test_bounds_hold_near_the_ends_of_the_way_of_every_class(kinds, many_digits)
     rows, number = [], np.random.default_rng(7)
     for seed in range(3):
         it = any_linkage(seed, kinds)
-        way = find_range(it, assemble(it, analyse(it)))
+        kernels, way = assembled(it)
         if not way.full:
-            rows += judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)))[0]
+            rows += judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)), kernels)[0]
     assert len(rows) > 50
     assert [row for row in rows if not row[2] <= row[3]] == []
 
@@ -209,9 +217,9 @@ def test_nine_of_ten_bounds_are_narrow_near_dead_positions(many_digits):
     for kinds in (("RRR",), ("RRP",), ("RPR",), ("IV",)):
         for seed in range(4):
             it = any_linkage(seed, kinds)
-            way = find_range(it, assemble(it, analyse(it)))
+            kernels, way = assembled(it)
             if not way.full:
-                found += widths(judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)))[0])
+                found += widths(judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)), kernels)[0])
     assert np.mean(np.array(found) <= 100) >= 0.9
 
 
@@ -225,9 +233,9 @@ DIMENSIONS = {
 def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kinds):
     for seed in range(6):
         it = made(seed, kinds)
-        way = find_range(it, assemble(it, analyse(it)))
+        kernels, way = assembled(it)
         near = [] if way.full else way.end - 10.0 ** -np.random.default_rng(seed).uniform(1, 12, 3)
-        rows, results = judged(it, np.array([*(it.sketch.at + np.array([0.0, 0.02])), *near]))
+        (rows,), results = judged_both(it, np.array([*(it.sketch.at + np.array([0.0, 0.02])), *near]), kernels, (None,))
         share, size = relative(results), sizes(results)
         places = np.repeat(np.flatnonzero(results.motion.moving), len(rows) // np.sum(results.motion.moving))
         for place, (key, _, error, _) in zip(places, rows, strict=True):

@@ -23,8 +23,7 @@ import numpy as np
 
 from tmm_cli.accuracy.data import angles, changed, lengths, shaken, widened
 from tmm_cli.analysis.extended import WIDER, near_dead, refined
-from tmm_cli.analysis.inputs import Inputs
-from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
 from tmm_cli.analysis.selection import values as leading_values
 from tmm_cli.groups.base import Kernel

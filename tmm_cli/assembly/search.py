@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.assembly.continuation import Walker
+from tmm_cli.assembly.neighbour import corrected
 from tmm_cli.assembly.sketch import nearest_to_sketch, sketch_distance, sketchable
 from tmm_cli.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError
 from tmm_cli.groups.base import Kernel, reach
@@ -38,9 +39,10 @@ CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is t
 
 
 def assembled(
-    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
-) -> tuple[Newton, Placement]:
-    """The group in the assembly that the sketch shows, followed along the driver's way.
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    like: Kernel | None = None,
+) -> tuple[Newton, Placement]:  # fmt: skip
+    """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
 
     Raises GroupTooLargeError, AssemblyError, AmbiguousSketchError.
     """
@@ -54,11 +56,13 @@ def assembled(
         raise AmbiguousSketchError(group, {})
     kernel = replace(kernel, start=state)
     if not kernel.by_angle:
-        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state))
+        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state, like))
     return kernel, kernel.place(poses, q, drives)
 
 
-def _traced(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State) -> BranchTrace | None:
+def _traced(
+    kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State, like: Kernel | None
+) -> BranchTrace | None:
     before = towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
 
     def source(q: Real, order: int) -> LinkStates:
@@ -66,7 +70,9 @@ def _traced(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state:
 
     turns = linkage.driver.kind == "turn"
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
-    trace = Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    known = like.followed if like is not None else None
+    trace = corrected(kernel, source, known, linkage.sketch.at, state) if known is not None else None
+    trace = trace or Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return trace if trace is None or turns else replace(trace, unit=kernel.size)
 
 
