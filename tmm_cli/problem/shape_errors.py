@@ -107,8 +107,8 @@ def _refusal(
     described = field.description if field else None
     if kind == "extra_forbidden":
         key = str(path[-1])
-        word = nearest(key, words := {word: own for word, own in FOREIGN.items() if own in known})
-        near = words[word] if word else nearest(key, known)
+        foreign = nearest(key, [word for word, own in FOREIGN.items() if own in known])
+        near = FOREIGN[foreign] if foreign else nearest(key, known)
         return ProblemError(
             _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
         )

@@ -13,7 +13,7 @@ Path = tuple[str | int, ...]
 class WrittenNumber(float):
     """A number of a file, and the decimals that it was written with: a float keeps 16 of them."""
 
-    __slots__ = ("written",)
+    written: str
 
     def __new__(cls, written: str) -> Self:
         number = super().__new__(cls, written)
