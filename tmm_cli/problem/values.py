@@ -143,7 +143,7 @@ def unjoined(link: str, base: str, hinges: Iterable[Hinge], slides: Iterable[Sli
 
 
 def planar(x: float, y: float) -> complex:
-    """x + iy in the precision of its parts (a longdouble is no float)."""
+    """x + iy in the precision of its parts (a double-double is no float)."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 

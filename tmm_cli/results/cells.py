@@ -41,7 +41,7 @@ def all_numbers(
     for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
         if isinstance(value, float):
             searched[(False, *path)] = np.array([value])
-        elif isinstance(value, np.ndarray) and value.shape == (count,) and value.dtype.kind == "f":
+        elif getattr(value, "shape", None) == (count,) and value.dtype.kind == "f":
             angle = path[-1] in ("angle", "angles") or (turns and path == ("positions", "driver"))
             at_positions[(angle, *path)] = value
     return at_positions, searched

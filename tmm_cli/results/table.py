@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_cli.double_double import array
 from tmm_cli.quantities import NUMBER, Dimension
 
 if TYPE_CHECKING:
@@ -39,10 +40,9 @@ class Column:
     @property
     def array(self) -> Any:
         """Its values, nan where there is none."""
-        values = self.values
-        return (
-            np.array([np.nan if v is None else v for v in values]) if isinstance(values, list) else np.asarray(values)
-        )
+        if isinstance(self.values, list):
+            return array([np.nan if v is None else v for v in self.values])
+        return array(self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
         """Its values in the units of the file, nan where there is none."""
