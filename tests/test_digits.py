@@ -30,6 +30,8 @@ from tmm_cli.analysis.extended import WIDER
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.kinematics.driver_range import find_range
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,
@@ -45,6 +47,16 @@ from tmm_cli.results.digits import accuracy
 from tmm_cli.results.table import true_digits
 from tmm_cli.structure.assur import analyse
 
+BARRED = """tmm: 1
+units: {length: m, angle: rad}
+points: {O: [0, 0], D: [1, 0]}
+links:
+  1: {points: [O, A], length: 0.8}
+  2: {points: [A, B], length: 0.7}
+  3: {points: [D, B], length: 0.6}
+driver: {link: 1, speed: 10}
+sketch: {at: 1, B: [1.05, 0.6]}
+"""
 U = 2.0**-53
 NOTHING = 1e-22  # of a value: less is what 60 digits and their differences leave
 CLASSES = [
@@ -261,6 +273,16 @@ def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
     for key, value, true in (("H", results.strokes.travel, mp.mpf("0.12")), ("k", results.strokes.k, mp.mpf(1))):
         assert abs(mp.mpf(value) - true) <= found.bound[key][0] < 1e-14
     assert found.lengths["H"][0] == pytest.approx(2 * 0.06e-3), "H = 2 r"
+
+
+def test_an_end_of_the_way_moves_with_the_lengths_as_the_stretched_rod_and_rocker_say():
+    a, b, c, d = 0.8, 0.7, 0.6, 1.0
+    results = solve(build(read_text(BARRED, "barred.yaml")), "kinematics")
+    found = searched(results, lambda r: {"end": np.array([r.driver_range.end])}, Wide(results), 0.001)
+    cosine = (a**2 + d**2 - (b + c) ** 2) / (2 * a * d)
+    slopes = [1 / d - cosine / a, (b + c) / (a * d), (b + c) / (a * d), 1 / a - cosine / d]
+    by_lengths = sum(abs(slope) * x for slope, x in zip(slopes, (a, b, c, d), strict=True))
+    assert found.lengths["end"][0] == pytest.approx(1e-3 * by_lengths / np.sqrt(1 - cosine**2), rel=1e-4)
 
 
 def test_sensitivity_is_that_of_a_larger_change_of_the_data():

@@ -20,7 +20,7 @@ from tmm_cli.problem.tree import Mark
 @pytest.fixture(params=[name for name in ("CSafeLoader", "SafeLoader") if hasattr(yaml, name)])
 def parser(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each of PyYAML's parsers that are here: the C one is not in every build."""
-    monkeypatch.setattr(composer, "_LOADER", getattr(yaml, request.param))
+    monkeypatch.setattr(composer, "LOADER", getattr(yaml, request.param))
 
 
 def refused(text: str) -> str:

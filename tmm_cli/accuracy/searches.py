@@ -8,28 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from tmm_cli.accuracy.data import Length, changed, lengths
-from tmm_cli.accuracy.digits import PAPER, SHARE, STEP, Digits, U
-from tmm_cli.accuracy.places import Changed
+from tmm_cli.accuracy.digits import PAPER, SHARE, Digits, U
 from tmm_cli.accuracy.wide import Wide
+from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.analysis.pipeline import CYCLE, Results, cycle_losses
-from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.driver_range import DriverRange
-from tmm_cli.kinematics.motion import Motion, move
-from tmm_cli.kinematics.pressure import pressure_at
-from tmm_cli.kinematics.strokes import Strokes, output_run
-from tmm_cli.linkage import Linkage
-from tmm_cli.tolerances import RESTS
 from tmm_cli.vectors import Real, mapped
 
 Cells = Mapping[Hashable, Real]
 
 LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
 SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
+SHARE_ANEW = 1e-5  # of a length: the change with which everything is searched for anew
 
 
 class Found(NamedTuple):
@@ -135,103 +130,32 @@ def blur(results: Results, wide: Wide) -> float:
 
 
 def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
-    """The results with what was searched for as it is when one length is changed, by how much, and which one.
+    """The results with everything searched for anew when one length is changed, by how much, and which one.
 
-    At an extreme the place does not matter to first order, so values there are taken where they were found. Places that
-    are no roots of anything known have no such answer: nan.
+    A full turn stays one, and free of dead positions if it is. A length that passive constraints do not leave free
+    tells nothing.
     """
-    driver_range, linkage = results.driver_range, results.linkage
+    driver_range, data = results.driver_range, lengths(results.linkage)
     if driver_range is None:
         return
-    span = driver_range.end - driver_range.start if linkage.driver.kind == "slide" else 1.0
-    data = lengths(linkage)
     for length in data:
-        by = STEP * max(abs(other.value) for other in data if other.link == length.link)
-        moved = changed(linkage, length, by)
-        both = (results.kernels, tuple(kernel.rebind(moved) for kernel in results.kernels))
-
-        def motions(places: Any, both: Any = both, moved: Linkage = moved) -> tuple[Motion, Motion]:
-            q = np.atleast_1d(np.array(places, dtype=float))
-            law = DriverMotion(0.0, 1.0, 0.0, 1)
-            return move(linkage, both[0], q, law), move(moved, both[1], q, law)
-
-        after = Changed(motions, both, span)
-        ends = {"start": driver_range.start, "end": driver_range.end}
-        moved_ends: dict[str, Any] = {name: at + after.limit(at, _limit(results, at)) for name, at in ends.items()}
-        further = tuple(_strokes_after(strokes, motions) for strokes in results.further)
-        travels = []
-        for travel in results.travels:
-            runs = [output_run(m, travel.link)[0] for m in motions([travel.low_at, travel.high_at])]
-            low, high = np.remainder(runs[1] - runs[0] + np.pi, 2 * np.pi) - np.pi
-            at = [
-                _inner(results, place) * after.extreme(place, travel.link) for place in (travel.low_at, travel.high_at)
-            ]
-            travels.append(
-                replace(travel, low=travel.low + low, high=travel.high + high, low_at=travel.low_at + at[0],
-                        high_at=travel.high_at + at[1])
-            )  # fmt: skip
-        pressure = []
-        for p in results.pressure:
-            one, other = (float(pressure_at(m, p.group, p.link)[0]) for m in motions(p.place))
-            there = p.place + after.pressure(p.place, p.group, p.link)
-            pressure.append(replace(p, largest=p.largest + other - one, place=there))
-        dead = tuple(replace(d, place=d.place + after.dead(d.place, d.group)) for d in results.dead)
-        strokes = results.strokes and _strokes_after(results.strokes, motions)
-        yield (
-            _changed(
-                results,
-                driver_range=driver_range if driver_range.full else replace(driver_range, **moved_ends),
-                dead=dead,
-                strokes=strokes,
-                further=further,
-                travels=tuple(travels),
-                pressure=tuple(pressure),
-            ),
-            by,
-            length,
-        )
-
-
-def _changed(results: Results, **parts: Any) -> Results:
-    """The results with other parts of the mechanism."""
-    return replace(results, mechanism=results.mechanism.changed(**parts))
-
-
-def _inner(results: Results, place: float) -> bool:
-    """Whether a place lies between those asked for."""
-    return bool(np.min(results.asked) < place < np.max(results.asked))
-
-
-def _strokes_after(strokes: Strokes, motions: Callable[[Any], tuple[Motion, Motion]]) -> Strokes:
-    """Strokes after a small change of the linkage: by the rate at which the output's speed passes zero."""
-    if not strokes.strokes:
-        return strokes
-    before, after = (output_run(m, strokes.link) for m in motions([s.start for s in strokes.strokes]))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        moved = -(after[1] - before[1]) / np.where(
-            np.abs(before[2]) > RESTS * np.max(np.abs(before[2])), before[2], np.nan
-        )
-    low = np.remainder(after[0] - before[0] + np.pi, 2 * np.pi) - np.pi
-    sense = np.sign(strokes.strokes[1].start - strokes.strokes[0].start)
-    ahead = np.mod(
-        strokes.strokes[0].length * sense - (strokes.strokes[1].start - strokes.strokes[0].start), strokes.cycle
-    )
-    sense = sense if min(ahead, strokes.cycle - ahead) < 1e-6 else -sense
-    return replace(
-        strokes,
-        strokes=tuple(
-            replace(s, start=s.start + moved[k], length=s.length + sense * (np.roll(moved, -1) - moved)[k],
-                    low=s.low + low[k], run=s.run + (np.roll(low, -1) - low)[k])
-            for k, s in enumerate(strokes.strokes)
-        ),
-    )  # fmt: skip
+        by = SHARE_ANEW * max(abs(other.value) for other in data if other.link == length.link)
+        moved = changed(results.linkage, length, by)
+        inputs, structure = replace(results.inputs, linkage=moved), results.structure.rebind(moved)
+        mechanism = Mechanism(inputs, structure)
+        if driver_range.full:
+            kernels = tuple(kernel.rebind(moved) for kernel in results.kernels)
+            dead = {} if results.dead else {"dead": ()}
+            mechanism = mechanism.known(kernels=kernels, driver_range=driver_range, **dead)
+        if mechanism.assembles:
+            yield replace(results, inputs=inputs, structure=structure, mechanism=mechanism), by, length
 
 
 def _shifted(results: Results, path: str, by: float) -> Results:
     """The results with one number of the mechanism shifted; path: travels[0].low, as in vectors.mapped."""
     part = path.partition(".")[0].partition("[")[0]
     moved = mapped(lambda at, value: value + by if at == path else value, getattr(results, part), path=part)
-    return _changed(results, **{part: moved})
+    return replace(results, mechanism=results.mechanism.changed(**{part: moved}))
 
 
 def _limit(results: Results, place: float) -> str | None:

@@ -1,9 +1,7 @@
 """Mobility, pairs and Assur groups of a linkage, from who is joined to whom alone.
 
-Class and order after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class
-II; otherwise the class is the number of sides of its largest closed contour of inner pairs, or of the inner pairs of
-its richest link when it has no contour; the order is the number of outer pairs. A pair that is passive as a
-whole (an idle wheel in a ring) holds nothing, and gives a group no higher class.
+The order of a group is the number of its outer pairs; its class see group_class. A pair that is passive as a whole (an
+idle wheel in a ring) holds nothing, and gives a group no higher class.
 """
 
 from __future__ import annotations
@@ -14,11 +12,10 @@ from itertools import pairwise
 from typing import Literal
 
 from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Mesh, Slide
-from tmm_cli.structure.graph import Count, Tie, components, count
+from tmm_cli.structure.graph import Tie, components, count
+from tmm_cli.structure.group_class import group_class
 
 ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
-
-
 HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
 LOWER = ("R", "P")  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
 
@@ -231,9 +228,14 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     cranks = {(driver.link,) for driver in linkage.cranks}
     parts_left = [part for part in solved if part not in cranks] if sound else []
     groups = tuple(_group(part, pairs, rank, linkage, redundant_pairs) for part in parts_left)
+    order = {name: k for k, name in enumerate(linkage.links)}
+    over_held = undriven.redundant_pairs or driven.redundant_pairs
     return Structure(
-        linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free, *_faults(linkage, undriven, driven)
-    )
+        linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free,
+        # with the driver in, a link is loose when it moves on its own; without it, every link may move with the crank
+        tuple(sorted(driven.under_constrained, key=order.__getitem__)),
+        tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in over_held),
+    )  # fmt: skip
 
 
 def _pin(hinge: Hinge) -> str:
@@ -290,62 +292,4 @@ def _group(
     kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
     within, leads = ([p for p in some if p.name not in redundant_pairs] for some in (inner, outer))
     passive = tuple(p.name for p in (*inner, *outer) if p.name in redundant_pairs)
-    return Group(links, inner, tuple(outer), _group_class(links, within, leads, drivers), kind, drivers, passive)
-
-
-def _group_class(links: tuple[str, ...], inner: list[Pair], outer: list[Pair], drivers: tuple[Driver, ...]) -> int:
-    """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link."""
-    one = {name: name for name in links}
-    for driver in drivers:
-        if driver.base in one:
-            keep, gone = one[driver.base], one[driver.link]
-            one = {name: keep if as_one == gone else as_one for name, as_one in one.items()}
-    bodies = list(dict.fromkeys(one.values()))
-    joints: list[tuple[str, str]] = []
-    for pair in inner:
-        i, j = one[pair.i], one[pair.j]
-        if pair.lower and i != j:
-            joints.append((i, j))
-        elif not pair.lower:
-            bodies.append(f"tooth {pair.name}")
-            joints += [(i, bodies[-1]), (bodies[-1], j)]
-    for pair in outer:
-        if not pair.lower:
-            bodies.append(f"tooth {pair.name}")
-            joints.append((one[pair.i] if pair.i in one else one[pair.j], bodies[-1]))
-    if len(bodies) <= 2:
-        return 2
-    return max(3, _largest_contour(bodies, joints), *(sum(body in joint for joint in joints) for body in bodies))
-
-
-def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
-    """Sides of the largest closed contour of inner pairs (groups are small: a plain search of all simple cycles)."""
-    joined: dict[str, list[str]] = {link: [] for link in links}
-    for i, j in inner:
-        joined[i].append(j)
-        joined[j].append(i)
-    best, budget = 0, 20_000
-    stack: list[tuple[str, tuple[str, ...]]] = [(link, (link,)) for link in links]
-    while stack and budget:
-        budget -= 1
-        link, path = stack.pop()
-        for after in joined[link]:
-            if after == path[0] and len(path) > 2:
-                best = max(best, len(path))
-            elif after not in path and links.index(after) > links.index(path[0]):
-                stack.append((after, (*path, after)))
-    return best
-
-
-def _faults(
-    linkage: Linkage, undriven: Count, driven: Count
-) -> tuple[tuple[str, ...], tuple[tuple[str, tuple[str, ...]], ...]]:
-    """Loose links and over-held pairs, in the words of the file."""
-    order = {name: k for k, name in enumerate(linkage.links)}
-
-    def named(count_: Count) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        return tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in count_.redundant_pairs)
-
-    # With the driver in, a link is loose when it moves on its own; without it, every link may move with the crank.
-    under_constrained = tuple(sorted(driven.under_constrained, key=order.__getitem__))
-    return under_constrained, named(undriven) or named(driven)
+    return Group(links, inner, tuple(outer), group_class(links, within, leads, drivers), kind, drivers, passive)

@@ -26,7 +26,8 @@ def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) ->
     for driver in linkage.others:
         if driver.kind != "turn" or not lead.rate or driver.acceleration or lead.acceleration:
             return None
-        turns = math.lcm(turns, _denominator(driver.rate / lead.rate) or MOST + 1)
+        share = _fraction(driver.rate / lead.rate)
+        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
     return turns if turns <= MOST else None
 
 
@@ -72,8 +73,3 @@ def _fraction(ratio: float) -> Fraction | None:
     """The ratio of two whole numbers that it is, if it is one."""
     near = Fraction(ratio).limit_denominator(TEETH)
     return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None
-
-
-def _denominator(ratio: float) -> int | None:
-    near = _fraction(ratio)
-    return None if near is None else near.denominator

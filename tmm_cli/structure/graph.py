@@ -43,6 +43,17 @@ class Count:
     under_constrained: tuple[str, ...]
 
 
+def reach(out: Mapping[str, Iterable[str]], *starts: str) -> dict[str, None]:
+    """All that the given bodies depend on, themselves included."""
+    seen = dict.fromkeys(starts)
+    todo = list(starts)
+    while todo:
+        new = [target for target in out[todo.pop()] if target not in seen]
+        seen |= dict.fromkeys(new)
+        todo += new
+    return seen
+
+
 class PebbleGame:
     """The (3, 3) pebble game with one root that never moves, and pins that have two pebbles."""
 
@@ -53,29 +64,25 @@ class PebbleGame:
 
     def bring(self, to: str, reserved: Mapping[str, int]) -> bool:
         """Move one free pebble to a body along a path of dependence; `reserved` pebbles stay where they are."""
-        seen = {to}
-        stack = [(to, iter(self.out[to]))]
-        path = [to]
-        while stack:
-            targets = stack[-1][1]
-            for target in targets:
-                if target in seen:
-                    continue
+        path = self.path(to, reserved, {to})
+        if path is None:
+            return False
+        self.pebbles[path[-1]] -= 1
+        self.pebbles[to] += 1
+        for tail, head in pairwise(path):
+            self.out[tail].remove(head)
+            self.out[head].append(tail)
+        return True
+
+    def path(self, start: str, reserved: Mapping[str, int], seen: set[str]) -> list[str] | None:
+        """The bodies from this one to a free pebble."""
+        for target in self.out[start]:
+            if target not in seen:
                 seen.add(target)
-                path.append(target)
-                if self.pebbles[target] > reserved.get(target, 0):
-                    self.pebbles[target] -= 1
-                    self.pebbles[to] += 1
-                    for tail, head in pairwise(path):
-                        self.out[tail].remove(head)
-                        self.out[head].append(tail)
-                    return True
-                stack.append((target, iter(self.out[target])))
-                break
-            else:
-                stack.pop()
-                path.pop()
-        return False
+                rest = [target] if self.pebbles[target] > reserved.get(target, 0) else None
+                if rest := rest or self.path(target, reserved, seen):
+                    return [start, *rest]
+        return None
 
     def add(self, a: str, b: str) -> bool:
         """Add one condition between a and b; False when it repeats what already holds."""
@@ -87,17 +94,6 @@ class PebbleGame:
         self.pebbles[tail] -= 1
         self.out[tail].append(head)
         return True
-
-    def reach(self, *starts: str) -> tuple[str, ...]:
-        """All that the given bodies depend on, themselves included."""
-        seen = dict.fromkeys(starts)
-        todo = list(starts)
-        while todo:
-            for target in self.out[todo.pop()]:
-                if target not in seen:
-                    seen[target] = None
-                    todo.append(target)
-        return tuple(seen)
 
     def settle(self) -> None:
         """Give the root its three pebbles back: it depends on nothing."""
@@ -113,47 +109,31 @@ def count(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[
     for tie in ties:
         added = [game.add(tie.a, tie.b) for _ in range(tie.constraints)]
         if not all(added):
-            redundant_pairs.append((tie, tuple(b for b in game.reach(tie.a, tie.b) if b not in pins)))
+            redundant_pairs.append((tie, tuple(b for b in reach(game.out, tie.a, tie.b) if b not in pins)))
     game.settle()
     free = sum(game.pebbles.values()) - FREEDOMS
     under_constrained = tuple(
-        body for body in bodies if body != root and any(game.pebbles[b] for b in game.reach(body) if b != root)
+        body for body in bodies if body != root and any(game.pebbles[b] for b in reach(game.out, body) if b != root)
     )
     depends = {body: tuple(dict.fromkeys(targets)) for body, targets in game.out.items()}
     return Count(free, depends, tuple(redundant_pairs), under_constrained)
 
 
 def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
-    """Strongly connected components, each after all that it depends on (R. Tarjan 1972), without recursion."""
-    index: dict[str, int] = {}
-    low: dict[str, int] = {}
-    held: list[str] = []
-    on_hold: set[str] = set()
-    for start in depends:
-        if start in index:
-            continue
-        work = [(start, iter(depends[start]))]
-        index[start] = low[start] = len(index)
-        held.append(start)
-        on_hold.add(start)
-        while work:
-            body, targets = work[-1]
-            for target in targets:
-                if target not in index:
-                    index[target] = low[target] = len(index)
-                    held.append(target)
-                    on_hold.add(target)
-                    work.append((target, iter(depends[target])))
-                    break
-                if target in on_hold:
-                    low[body] = min(low[body], index[target])
-            else:
-                work.pop()
-                if work:
-                    low[work[-1][0]] = min(low[work[-1][0]], low[body])
-                if low[body] == index[body]:
-                    at = held.index(body)
-                    found = tuple(held[at:])
-                    del held[at:]
-                    on_hold.difference_update(found)
-                    yield found
+    """Bodies that depend on one another, part by part, each part after all that it depends on."""
+    seen: set[str] = set()
+
+    def visit(body: str) -> Iterator[tuple[str, ...]]:
+        alone = seen.isdisjoint(parts[body])
+        seen.add(body)
+        for target in depends[body]:
+            if target not in seen:
+                yield from visit(target)
+        if alone:  # the first of its part to be met is the last to be left
+            yield parts[body]
+
+    needs = {body: reach(depends, body) for body in depends}
+    parts = {body: tuple(other for other in needs[body] if body in needs[other]) for body in depends}
+    for body in depends:
+        if body not in seen:
+            yield from visit(body)

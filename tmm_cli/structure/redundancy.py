@@ -220,64 +220,30 @@ def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pin
     floating = tuple(link for link in links if link not in on_frame)
     pairs = [p for p in own if p.lower and FRAME not in (p.i, p.j)]
     blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in CHOICES[p.kind]}
-    best: tuple[tuple[int, int], dict[str, str]] | None = None
-    for first in range(min(len(pairs), MOST_TRIES)):
-        kinds = _keep(blocks, [pairs[first], *pairs[:first], *pairs[first + 1 :]], CONDITIONS * len(floating))
-        if kinds is None:
-            return None
-        kinds = _hold(blocks, sorted(pairs, key=lambda p: p.name not in pins), kinds, CONDITIONS * len(floating))
-        matrix = _stacked((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
-        if matrix.shape[1] - len(matrix) != _local(matrix):
-            continue  # something other than single links is left free
-        changed = [kind for p in pairs if (kind := kinds[p.name]) != CHOICES[p.kind][0]]
-        score = (len(changed), sum(KINDS[kind] for kind in changed))
-        if best is None or score < best[0]:
-            best = (score, kinds)
-    return best[1] if best else {} if not pairs else None
 
+    def matrix(kinds: Mapping[str, str]) -> Real:
+        return _stacked((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
 
-def _keep(blocks: Mapping[tuple[str, str], Real], order: Sequence[Pair], columns: int) -> dict[str, str] | None:
-    """The freest kinds, but as they were for as many pairs as stay independent; None if the freest already do not."""
-    basis: list[Real] = []
-    kinds = {p.name: CHOICES[p.kind][2] for p in order}
-    if not all(_extend(basis, blocks[p.name, kinds[p.name]], columns) for p in order):
-        return None
-    for pair in order:
-        more = len(basis)
-        # what a pair was asks for all that its freest kind asks, and two conditions more
-        whole = blocks[pair.name, CHOICES[pair.kind][0]]
-        if _extend(basis, whole[1:] if pair.kind == "R" else whole[:2], columns):
-            kinds[pair.name] = CHOICES[pair.kind][0]
-        else:
-            del basis[more:]
-    return kinds
-
-
-def _hold(
-    blocks: Mapping[tuple[str, str], Real], order: Sequence[Pair], kinds: dict[str, str], columns: int
-) -> dict[str, str]:
-    """Make pairs cylindrical one after another while that holds something that was free."""
-    for pair in order:
-        if kinds[pair.name] == CHOICES[pair.kind][2]:
-            trial = kinds | {pair.name: CHOICES[pair.kind][1]}
-            matrix = _stacked((blocks[item] for item in trial.items()), columns)
-            if len(matrix) <= columns and _rank(matrix) == len(matrix):
+    def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
+        """The freest pairs made what CHOICES says, one after another, while that holds something that was free."""
+        for pair in order:
+            trial = kinds | {pair.name: CHOICES[pair.kind][choice]}
+            if kinds[pair.name] == CHOICES[pair.kind][2] and _independent(matrix(trial)):
                 kinds = trial
-    return kinds
+        return kinds
 
-
-def _extend(basis: list[Real], rows: Iterable[Real], columns: int) -> bool:
-    """Add rows to an orthonormal basis; False at the first that depends on it."""
-    for row in rows:
-        size = float(np.linalg.norm(row))
-        rest = np.asarray(row)
-        for _ in range(2):  # twice: once leaves rounding of the first
-            rest = rest - (np.array(basis).T @ (np.array(basis) @ rest) if basis else 0.0)
-        length = float(np.linalg.norm(rest))
-        if len(basis) == columns or length <= DEPENDENT * size:
-            return False
-        basis.append(rest / length)
-    return True
+    freest = {p.name: CHOICES[p.kind][2] for p in pairs}
+    if not _independent(matrix(freest)):
+        return None
+    proposals = []
+    for first in range(min(len(pairs), MOST_TRIES)):
+        kinds = held(freest, [pairs[first], *pairs[:first], *pairs[first + 1 :]], 0)
+        kinds = held(kinds, sorted(pairs, key=lambda p: p.name not in pins), 1)
+        found = matrix(kinds)
+        if found.shape[1] - len(found) == _local(found):  # nothing but single links is left free
+            changed = [kind for p in pairs if (kind := kinds[p.name]) != CHOICES[p.kind][0]]
+            proposals.append(((len(changed), sum(KINDS[kind] for kind in changed)), kinds))
+    return min(proposals, key=lambda proposal: proposal[0])[1] if proposals else {} if not pairs else None
 
 
 def _stacked(blocks: Iterable[Real], columns: int) -> Real:
@@ -289,6 +255,10 @@ def _rank(matrix: Real) -> int:
         return 0
     values = np.linalg.svd(matrix, compute_uv=False)
     return int(np.sum(values > DEPENDENT * values[0]))
+
+
+def _independent(matrix: Real) -> bool:
+    return len(matrix) <= matrix.shape[1] and _rank(matrix) == len(matrix)
 
 
 def _local(matrix: Real) -> int:
