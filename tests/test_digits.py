@@ -26,8 +26,8 @@ from tmm_cli.accuracy.digits import at, bare, bounds, exact
 from tmm_cli.accuracy.margins import relative, sizes
 from tmm_cli.accuracy.searches import searched
 from tmm_cli.accuracy.wide import Wide
-from tmm_cli.analysis.extended import WIDER
 from tmm_cli.assembly.choose import assemble
+from tmm_cli.double_double import exactly, rounded
 from tmm_cli.kinematics.driver_range import find_range
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
 from tmm_cli.problem.build import build
@@ -133,17 +133,11 @@ def truth(body, it, structure, k):
 
 def judged(it, q):
     """(value, true error, bound) of every quantity at every place that is not refused."""
-    (rows,), results = judged_both(it, q, (WIDER,))
-    return rows, results
-
-
-def judged_both(it, q, both=(WIDER, False)):
-    """The same for several kinds of machines: with a wider float, and without one."""
     structure = analyse(it)
     results = bare(it, q, structure, assemble(it, structure))
-    found = [bounds(results, wider=wider) for wider in both]
+    values, digits = bounds(results)
     body = multibody.Multibody(it, structure, results.motion)
-    rows = [[] for _ in both]
+    rows = []
     for k in np.flatnonzero(results.motion.moving):
         X = np.zeros(body.size)
         for name, i in body.at_row.items():
@@ -157,12 +151,11 @@ def judged_both(it, q, both=(WIDER, False)):
                 name, on = name
                 sign = 1 if results.reactions.of(name).on == on else -1
             key = quantity, name, component
-            for told, (values, digits) in zip(rows, found, strict=True):
-                error = abs(sign * mp.mpf(float(values[key][k])) - true)
-                if quantity == "angle":
-                    error = abs(error - 2 * mp.pi * mp.nint(error / (2 * mp.pi)))
-                error = float(error) if error > NOTHING * max(abs(true), 1e-3) else 0.0
-                told.append((key, float(abs(true)), error, float(digits.bound[key][k])))
+            error = abs(sign * mp.mpf(float(values[key][k])) - true)
+            if quantity == "angle":
+                error = abs(error - 2 * mp.pi * mp.nint(error / (2 * mp.pi)))
+            error = float(error) if error > NOTHING * max(abs(true), 1e-3) else 0.0
+            rows.append((key, float(abs(true)), error, float(digits.bound[key][k])))
     return rows, results
 
 
@@ -172,12 +165,10 @@ def widths(rows):
 
 def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_narrow():
     linkages = [made(seed, kinds) for seed, kinds in CLASSES]
-    told = [judged_both(it, it.sketch.at + np.array([0.0, 0.01]))[0] for it in linkages]
-    for wider, parts in zip((WIDER, False), zip(*told, strict=True), strict=True):
-        rows = [row for part in parts for row in part]
-        assert len(rows) > 1000
-        assert [row for row in rows if not row[2] <= row[3]] == []
-        assert np.mean(np.array(widths(rows)) <= 100) >= (0.9 if wider else 0.75)
+    rows = [row for it in linkages for row in judged(it, it.sketch.at + np.array([0.0, 0.01]))[0]]
+    assert len(rows) > 1000
+    assert [row for row in rows if not row[2] <= row[3]] == []
+    assert np.mean(np.array(widths(rows)) <= 100) >= 0.95
 
 
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
@@ -235,17 +226,17 @@ def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kin
 
 
 @pytest.mark.parametrize("name", ["shaper", "excavator", "five-point-line", "clamp"])
-def test_what_an_ordinary_run_says_of_its_digits_holds_in_extended_precision(name):
+def test_what_an_ordinary_run_says_of_its_digits_holds_in_double_doubles(name):
     results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
     found, size = accuracy(results), len(results.numbers)
     assert not found.chosen.size, "no position needs to be judged"
-    wide = cells(at(results, exact(results), results.motion.q.astype(np.longdouble), results.start))
+    wide = cells(at(results, exact(results), exactly(results.motion.q), results.start))
     for table in computed_tables(results):
         keys = keys_of(table, size)
         for k, column in enumerate(found.table(table).columns if keys else ()):
             if column.dimension is not None:
                 true = np.stack([wide[key] for key in keys[k]], axis=1).ravel()
-                error = np.abs(column.values - true)
+                error = rounded(np.abs(column.values - true))
                 error = np.minimum(error, np.abs(2 * np.pi - error)) if column.dimension == ANGLE else error
                 assert np.all((error <= column.bound) | np.isnan(error)), (table.name, column.header)
 
@@ -353,7 +344,7 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)
-    wide = cells(at(results, exact(results), results.motion.q.astype(np.longdouble), results.start))
+    wide = cells(at(results, exact(results), exactly(results.motion.q), results.start))
     for header in ("s", "v relative", "a relative"):
         column = next(c for c in told.columns if c.header == header)
         expected = [wide[False, "slides", header, 0, name, 0] for name in ("A'", "x")]

@@ -166,7 +166,7 @@ def _each(args: Any, part: int) -> Any:
 
 def exactly(values: Any) -> Any:
     """Plain numbers as double-doubles, in the place of an array."""
-    return DoubleDouble(values)
+    return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
 
 
 def array(values: Any) -> Any:
@@ -305,7 +305,7 @@ def _power(x: Any, n: Any) -> DoubleDouble:
     if number == 0.5:
         return _sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:
-        return DoubleDouble(np.power(float(x), number))
+        return DoubleDouble(np.power(x.hi, number))
     found = reduce(_multiply, [x] * int(abs(number)), DoubleDouble(np.ones(np.shape(x))))
     return found if number >= 0 else _divide(1.0, found)
 

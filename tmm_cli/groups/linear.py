@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.double_double import rounded
+from tmm_cli.double_double import exactly, rounded
 from tmm_cli.tolerances import TRUNCATED
 from tmm_cli.vectors import Real
 
@@ -33,7 +33,7 @@ def solve(matrix: Real, right: Real) -> Real:
 def _refined(matrix: Real, right: Real) -> Real:
     """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
     near = rounded(matrix)
-    found = solve(near, rounded(right))
+    found = exactly(solve(near, rounded(right)))
     for _ in range(ROUNDS):
         rest = right - np.sum(matrix * found[..., None, :], axis=-1)
         found = found + solve(near, rounded(rest))

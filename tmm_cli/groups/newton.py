@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.double_double import DoubleDouble, rounded
+from tmm_cli.double_double import DoubleDouble, exactly, rounded
 from tmm_cli.groups.base import Accels, Kernel, Poses, Rates, reach, spread
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
@@ -162,6 +162,8 @@ class Newton(Kernel):
     def close(self, start: State, poses: Poses, drives: Drives, rounds: int = ROUNDS) -> tuple[State, Real]:
         """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
         state = start
+        if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
+            state = State(exactly(start.x), exactly(start.unwrapped))
         size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
             near = size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)

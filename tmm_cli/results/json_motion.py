@@ -153,7 +153,7 @@ def _pins(results: Results) -> dict[str, dict[str, Vector]]:
         pairs = [r for r in results.reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
         if len(hinge.links) > 2:
             found[hinge.point] = {
-                link: np.sum([r.onto(link) for r in pairs if link in (r.on, r.by)], axis=0) for link in hinge.links
+                link: sum(r.onto(link) for r in pairs if link in (r.on, r.by)) for link in hinge.links
             }
     return found
 
