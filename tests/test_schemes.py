@@ -16,8 +16,7 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.cli.scheme_files import skeleton
-from tmm_cli.cli.schemes import named_types
+from tmm_cli.cli.scheme_files import named_types, skeleton
 from tmm_cli.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -15,10 +15,6 @@ from tmm_cli.errors import _
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from tmm_cli.analysis.pipeline import Results, Stage
-    from tmm_cli.analysis.spatial_chain import ChainResults
-    from tmm_cli.results.digits import AccuracyReport
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 
@@ -61,7 +57,7 @@ def each(
     worst = OK
     if out is not None:
         _refuse_one_name(files)
-    for file in _progress(files):
+    for file in progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")
         try:
@@ -99,19 +95,14 @@ def _refuse_one_name(files: Sequence[str]) -> None:
 
     first: dict[str, str] = {}
     for file in files:
-        folder = folder_name(Path(file).stem)
-        if folder in first and Path(first[folder]).resolve() != Path(file).resolve():
-            say(
-                _(
-                    "error: {first} and {second} have one name, so that the results of both would go to the folder "
-                    "{folder}: name them differently, or compute them one by one"
-                ).format(first=first[folder], second=file, folder=folder)
-            )
+        other = first.setdefault(folder_name(Path(file).stem), file)
+        if Path(other).resolve() != Path(file).resolve():
+            say(_("error: {first} and {second} have one name, and so one folder").format(first=other, second=file))
             raise typer.Exit(BAD_INPUT)
-        first[folder] = file
 
 
-def _progress(files: Sequence[Any]) -> Iterable[Any]:
+def progress(files: Sequence[Any]) -> Iterable[Any]:
+    """The same, counted by a bar when there are several."""
     if len(files) < 2:
         return files
     from rich.console import Console
@@ -120,100 +111,6 @@ def _progress(files: Sequence[Any]) -> Iterable[Any]:
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
-def solved(file: str, stage: Stage, positions: Sequence[int] | None, of: Sequence[str] = ()) -> Results:
-    """Read and compute one file. Raises ProblemError."""
-    from tmm_cli import load, solve
-
-    return solve(load(file), stage, positions, of)
-
-
 def emit_json(content: dict[str, Any]) -> None:
     """Pure JSON on standard output, one document a file."""
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
-
-
-def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
-    """The content of result.json on standard output, as it comes."""
-    from tmm_cli.results.as_json import sections
-    from tmm_cli.results.text import json_text
-
-    sys.stdout.writelines(json_text(sections(results, digits)))
-
-
-def bounds_of(results: Results, digits: bool) -> AccuracyReport | None:
-    """How far each number is to be trusted, with `digits` in full; None where nothing moves."""
-    if results.motion is None:
-        return None
-    from tmm_cli.results.digits import accuracy
-
-    return accuracy(results, digits)
-
-
-def report(results: Results, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False) -> int:
-    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
-
-    digits: show bounds and sensitivities beside the values.
-    """
-    found = bounds_of(results, digits)
-    if as_json:
-        emit_results(results, found)
-    else:
-        show(results, names, found)
-    if out is not None:
-        from tmm_cli.results.output import write_results
-
-        say(_("written: {folder}").format(folder=write_results(results, out, digits=found)))
-    if results.motion is not None:
-        from tmm_cli.results.warnings import warnings
-
-        for warning in warnings(results):
-            say(_("warning: {warning}").format(warning=warning))
-    return checked(results)
-
-
-def checked(results: Results) -> int:
-    """The exit code: whether the lever holds, and what a synthesis asked."""
-    if results.motion is None:
-        return OK  # of the structure alone there is nothing to check
-    from tmm_cli.synthesis.check import measured_on
-
-    return OK if results.lever_holds and all(m.met for m in measured_on(results)) else CHECK_FAILED
-
-
-def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:
-    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
-    from tmm_cli.results.files import folder_name, write_whole
-    from tmm_cli.results.output import write_results
-
-    if out is not None:
-        say(_("written: {folder}").format(folder=write_results(results, out, pictures.items())))
-    elif pictures:
-        folder = Path("outputs") / folder_name(results.problem.name)
-        for name, content in pictures.items():
-            write_whole(folder / name, content)
-        say(_("written: {folder}").format(folder=folder))
-
-
-def show(results: Results, names: Iterable[str], found: AccuracyReport | None = None) -> None:
-    """Tables of these names; of long ones the positions in detail (all of them when few were computed)."""
-    from tmm_cli.results.reports import walk
-    from tmm_cli.results.terminal import show as print_table
-
-    screen = console()
-    shown = walk(results, set(names))
-    if found is not None:
-        from tmm_cli.results.digits import beside, with_bounds
-
-        shown = with_bounds(shown, found)
-        shown = map(beside, shown) if found.full else shown
-    for table in shown:
-        print_table(table, results.problem.units, screen, detailed_rows(results, table) if table.long else None)
-
-
-def detailed_rows(results: Results, table: Any) -> set[int]:
-    """Rows of a long table that belong to positions in detail; the first position when there are none."""
-    chosen = {results.numbers.index(n) for n in results.problem.request.detail if n in results.numbers}
-    if len(results.numbers) == 1 or not chosen:
-        chosen = {0}
-    per = table.rows // max(len(results.numbers), 1)
-    return {k * per + i for k in chosen for i in range(per)}

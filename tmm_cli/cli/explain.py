@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import OK, Files, console, each, solved
+from tmm_cli.cli.common import OK, Files, console, each
 
 
 def explain(files: Files) -> None:
     """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why."""
 
     def work(file: str) -> int:
+        from tmm_cli import load, solve
         from tmm_cli.results.explain import explain as tables
         from tmm_cli.results.terminal import show
 
-        results = solved(file, "structure", None)
+        results = solve(load(file), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
         for table in tables(results):

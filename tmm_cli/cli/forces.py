@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, report, solved
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each
 
 
 def forces(
@@ -12,6 +12,9 @@ def forces(
     names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
-        return report(solved(file, "forces", position), names, as_json, out, digits)
+        from tmm_cli import load, solve
+        from tmm_cli.cli.reporting import report
+
+        return report(solve(load(file), "forces", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, report, solved
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, say
+from tmm_cli.errors import _
 
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
 ]
-
-
 Of = Annotated[
     str,
     typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
@@ -33,10 +34,33 @@ def kinematics(
     names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
-        if assemblies:
-            from tmm_cli.cli.assemblies import list_assemblies
+        from tmm_cli import load, solve
+        from tmm_cli.cli.reporting import report
 
-            return list_assemblies(file, as_json, out, position)
-        return report(solved(file, "kinematics", position, asked), names, as_json, out, digits)
+        if assemblies:
+            return _list_assemblies(file, as_json, out, position)
+        return report(solve(load(file), "kinematics", position, asked), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)
+
+
+def _list_assemblies(file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None) -> int:
+    """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
+    from tmm_cli import assemblies, load
+    from tmm_cli.assembly.enumerate import listed
+    from tmm_cli.cli.reporting import report, write_pictures
+    from tmm_cli.draw.assemblies import sheets
+    from tmm_cli.draw.formats import files
+
+    results = assemblies(load(file), positions)
+    code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
+    for here in results.assemblies or ():
+        if here.undecided is not None:
+            text = _("the sketch does not decide which assembly {group} has; all of them are listed")
+            say(text.format(group=here.undecided.title))
+            if positions and here.number is None:
+                say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
+        for group in here.lost:
+            say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
+    write_pictures(results, out, dict(files(sheets(results))))
+    return code

@@ -1,4 +1,4 @@
-"""Problem files of schemes: the first good pose of each, tried as `tmm run` would, and written whole."""
+"""Schemes and chains that are asked for; their problem files: the first good pose of each, tried as by `tmm run`."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from pathlib import Path
 from tmm_cli import solve
 from tmm_cli.errors import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.files import write_whole
 from tmm_cli.results.schemes import Written
 from tmm_cli.results.warnings import warnings
+from tmm_cli.schemes.chains import MOST_LINKS as MOST_CHAIN_LINKS
+from tmm_cli.schemes.chains import KinematicChain, chains
 from tmm_cli.schemes.layout import layouts
-from tmm_cli.schemes.schemes import Scheme
+from tmm_cli.schemes.schemes import CLASSES, MOST_CRANKS, MOST_LINKS, MOST_SCHEMES, TYPES, Scheme, TooManySchemes
+from tmm_cli.schemes.schemes import schemes as all_schemes
 from tmm_cli.schemes.skeleton import problem_text
 
 CANDIDATES = 24  # poses that are solved before the best of them is taken
@@ -91,3 +94,51 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     for path, text in texts.items():
         write_whole(path, text.encode())
     return written
+
+
+def named_types(text: str) -> tuple[str, ...]:
+    """Types of groups from a list of types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
+    found: list[str] = []
+    for word in text.split(","):
+        name = word.strip().upper()
+        if name not in TYPES and name not in CLASSES:
+            known = [*CLASSES, *(name for name in TYPES if name not in CLASSES)]
+            raise ProblemError(
+                _("there is no such group"), path=("--groups",), found=quote(word.strip()), allowed=", ".join(known),
+                near=nearest(name, known),
+            )  # fmt: skip
+        found += CLASSES.get(name, (name,))
+    return tuple(dict.fromkeys(found))
+
+
+def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
+    """The schemes, or a ProblemError that says what can be asked for."""
+    _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS + 1, 2))
+    try:
+        return all_schemes(links, mobility, types)
+    except TooManySchemes:
+        raise ProblemError(
+            _("these are too many schemes: more than {most}").format(most=MOST_SCHEMES), path=("--links",),
+            found=str(links), allowed=_("fewer links, or fewer types of groups (--groups)"),
+        ) from None  # fmt: skip
+
+
+def wanted_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
+    """The chains, or a ProblemError that says what can be asked for."""
+    _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
+    return chains(links, mobility)
+
+
+def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: range) -> None:
+    """Refuse a mobility above the most, and numbers of links that no structure of this mobility has."""
+    if not 1 <= mobility <= most:
+        raise ProblemError(
+            _("structures of this mobility are not built"), path=("--mobility",), found=str(mobility),
+            allowed=_("1 to {most}").format(most=most),
+        )  # fmt: skip
+    if links not in allowed:
+        raise ProblemError(
+            _("no structure of mobility {mobility} has so many links").format(mobility=mobility), path=(option,),
+            found=str(links),
+            allowed=_("for W = {mobility}: {links}").format(mobility=mobility, links=", ".join(map(str, allowed))),
+        )  # fmt: skip

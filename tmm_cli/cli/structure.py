@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.chains import report_chain, solved_any
-from tmm_cli.cli.common import Files, Json, Out, each, report, say, write_pictures
+from tmm_cli.cli.common import Files, Json, Out, each, say
 from tmm_cli.errors import _
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.pipeline import Results
 
 Drawings = Annotated[
     bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")
 ]
-
-
 Driver = Annotated[
     str | None,
     typer.Option("--driver", metavar="LINK", help="Drive this link instead: other groups.", show_default=False),
@@ -33,26 +26,19 @@ def structure(
 
     def work(file: str) -> int:
         from tmm_cli.analysis.spatial_chain import ChainResults
+        from tmm_cli.cli.reporting import computed, report, write_pictures
 
-        results = solved_any(file, "structure", None, driver, drafted=not drawings)
-        if isinstance(results, ChainResults):
-            return report_chain(results, as_json, out)
-        code = report(results, names, as_json, None if drawings else out)
-        if drawings:
-            _draw(results, out)
+        results = computed(file, "structure", driver=driver, drafted=not drawings)
+        if isinstance(results, ChainResults) or not drawings:
+            return report(results, names, as_json, out)
+        from tmm_cli.draw import files as drawn
+
+        code = report(results, names, as_json, None)
+        pictures = dict(drawn(results))
+        if not pictures:
+            text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
+            say(text.format(problem=results.problem.name))
+        write_pictures(results, out, pictures)
         return code
 
     each(files, work, as_json=as_json, out=out)
-
-
-def _draw(results: Results, out: Path | None) -> None:
-    from tmm_cli.draw import files as drawn
-
-    pictures = dict(drawn(results))
-    if not pictures:
-        say(
-            _("not drawn: the groups of {problem} cannot be assembled at the sketch").format(
-                problem=results.problem.name
-            )
-        )
-    write_pictures(results, out, pictures)

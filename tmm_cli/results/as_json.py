@@ -1,57 +1,29 @@
 """result.json: everything that was found, in SI and radians, and its schema.
 
 Arrays have one entry a position, null where a position cannot be reached or is dead. Vectors are two arrays, x and y.
-A further part is a description (json_motion, json_structure) and a line here.
+A further part is a line in MOTION_PARTS (json_motion) or here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.results.json_motion import (
-    DEAD,
-    DRIVER,
-    FORCES,
-    KINEMATICS,
-    LEVER,
-    MECHANISM_ENERGY,
-    OUTPUT,
-    POSITIONS,
-    PRESSURE,
-    TRAVEL,
-)  # fmt: skip
+from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
-from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, Field, Shape, list_of, optional, properties, record
+from tmm_cli.results.reports.synthesis import to_json as synthesis_json
+from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, Field, Shape, contents, list_of, properties, record
 from tmm_cli.results.text import plain
 from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.redundancy import space
-
-if TYPE_CHECKING:
-    from tmm_cli.results.digits import AccuracyReport
+from tmm_cli.synthesis.check import measured_on
 
 FORMAT = 1
 
 
-def _moves(results: Results) -> bool:
-    return results.motion is not None
-
-
-def _whole(results: Results) -> bool:
-    """Whether all is asked for, not some points and links only."""
-    return results.motion is not None and not results.of
-
-
-def _forced(results: Results) -> bool:
-    return results.reactions is not None and results.lever is not None
-
-
 def _synthesis(results: Results) -> dict[str, Any]:
-    from tmm_cli.results.reports.synthesis import to_json as synthesis_json
-    from tmm_cli.synthesis.check import measured_on
-
     assert results.problem.synthesis is not None
     return synthesis_json(results.problem.synthesis, measured_on(results), long=False)
 
@@ -62,62 +34,42 @@ FIRST = (
     Field("synthesis", Shape({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
           lambda r: r.problem.synthesis is not None and r.motion is not None),
 )  # fmt: skip
-COMPUTED = (
-    Field("driver", DRIVER, "the input", lambda r: r, _moves),
-    Field("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", _moves),
-    Field("pressure", list_of(PRESSURE), "driven links of the groups", there=_whole),
-    Field("dead_positions", list_of(DEAD), "inside the range of the driver", "dead", _whole),
-    Field("output", optional(OUTPUT), "strokes of the output; null when no link of the last group is on the frame",
-          "strokes", _whole),
-    Field("further_outputs", list_of(OUTPUT), "of the others, as the first one", "further", _whole),
-    Field("travels", list_of(TRAVEL), "outputs where the driver does not turn fully, over the positions asked",
-          there=_whole),
-    Field("positions", POSITIONS, "which positions", lambda r: r, _moves),
-    Field("kinematics", KINEMATICS, "motion", lambda r: r, _moves),
-    Field("forces", FORCES, "force plan", lambda r: r, _forced),
-    Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, _forced),
-    Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
-          lambda r: r.energy is not None),
-)  # fmt: skip
 LAST = (
     Field("assemblies", list_of(ASSEMBLIES),
-          "with --assemblies: real assemblies of the groups, by places of the driver",
-          there=lambda r: r.assemblies is not None),
+          "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
     Field("warnings", NAMES, "sentences", warnings),
 )  # fmt: skip
 LARGE = ("kinematics", "forces")
 
 
-def to_json(results: Results | ChainResults, digits: AccuracyReport | None = None) -> dict[str, Any]:
-    """The whole content of result.json as plain data; with the section `digits` when all digits are asked for."""
-    return {key: plain(part) for key, part in sections(results, digits)}
+def to_json(results: Results | ChainResults) -> dict[str, Any]:
+    """The whole content of result.json as plain data."""
+    return {key: plain(part) for key, part in sections(results)}
 
 
-def sections(results: Results | ChainResults, digits: AccuracyReport | None = None) -> Iterator[tuple[str, Any]]:
-    """The parts of result.json one after the other, with arrays as they are."""
+def sections(results: Results | ChainResults, digits: dict[str, Any] | None = None) -> Iterator[tuple[str, Any]]:
+    """The parts of result.json one after the other, with arrays as they are. digits: the section of that name."""
     yield "tmm", FORMAT
     yield "problem", PROBLEM.content(results.problem)
     if isinstance(results, ChainResults):
         yield "chain", SPATIAL.content(results.chain)
         yield "warnings", []
         return
-    yield from ((field.key, field.content(results)) for field in FIRST if field.there(results))
+    yield from contents(FIRST, results)
     yield from numbers(results)
-    if digits is not None and digits.full:
-        yield "digits", digits.json()
-    yield from ((field.key, field.content(results)) for field in LAST if field.there(results))
+    if digits is not None:
+        yield "digits", digits
+    yield from contents(LAST, results)
 
 
 def numbers(results: Results, parts: Collection[str] = LARGE) -> Iterator[tuple[str, Any]]:
     """What was computed, part by part, as arrays; of the large parts those named alone."""
-    for field in COMPUTED:
-        if field.there(results) and (field.key in parts or field.key not in LARGE):
-            yield field.key, field.content(results)
+    return contents([part for part in MOTION_PARTS if part.key in parts or part.key not in LARGE], results)
 
 
 def schema() -> dict[str, Any]:
     """A JSON Schema (draft 2020-12). SI and radians throughout; forces of pairs act on link `on`."""
-    computed = {"type": "object", "properties": properties(COMPUTED)}
+    computed = {"type": "object", "properties": properties(MOTION_PARTS)}
     digits = record(
         "", Field("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
         Field("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
@@ -130,7 +82,7 @@ def schema() -> dict[str, Any]:
         Field("problem", PROBLEM, "what was computed"),
         *FIRST,
         Field("chain", SPATIAL, "a chain given by pairs alone"),
-        *COMPUTED,
+        *MOTION_PARTS,
         Field("digits", digits, "how far the numbers of this file, which are float64 in full, are to be trusted: in "
               "their places and units"),
         *LAST,

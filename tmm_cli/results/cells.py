@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
-from importlib import import_module
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,11 +11,12 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.quantities import ANGLE
 from tmm_cli.results.as_json import LARGE, numbers
-from tmm_cli.results.reports import REPORTS
+from tmm_cli.results.reports import REPORTS, tables_of
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
-COMPUTED = ("quality", "pressure", "cycle", "kinematics", "forces", "lever", "energy")  # reports of computed numbers
+MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
+COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name != "synthesis")  # a search has its own
 Cells = Mapping[Hashable, Real]
 
 
@@ -59,35 +58,20 @@ def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
 
 
 def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:
-    """Tables with computed numbers, of these reports."""
-    for name, part, __ in REPORTS:
-        wanted = name == "kinematics" or not results.of  # else the rest is not there
-        if name in reports and wanted and getattr(results, part) is not None:
-            yield from import_module(f"tmm_cli.results.reports.{name}").tables(results)
+    """Tables with computed numbers, of these reports; of chosen points and links there is their motion alone."""
+    return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 
 def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
     """For each column the keys of its rows at one position; None when the rows are no positions."""
     if not count or not table.columns or table.columns[0].header != _("position") or table.rows % count:
         return None
-    per = table.rows // count
-    words = [c.values[:per] for c in table.columns[1:] if c.dimension is None] if per > 1 else []
-    rows, headers = Counter[Hashable](), Counter[str]()
-    told = []
-    for row in range(per):
-        name = tuple(column[row] for column in words)
-        told.append((*name, rows[name]))
-        rows[name] += 1
-    keys: list[list[Hashable]] = []
-    for column in table.columns:
-        which = (column.dimension == ANGLE, table.name, column.header, headers[column.header])
-        headers[column.header] += 1
-        keys.append([(*which, *name) for name in told])
-    return keys
+    rows = range(table.rows // count)
+    return [[(c.dimension == ANGLE, table.name, k, row) for row in rows] for k, c in enumerate(table.columns)]
 
 
 def _leaves(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """Numbers and arrays of nested content with their paths; items of lists are known by name and link."""
+    """Numbers and arrays of nested content with their paths; items of lists are known by their number."""
     for name, part in _parts(value):
         if isinstance(part, dict | list):
             yield from _leaves(part, (*path, name))
@@ -95,15 +79,8 @@ def _leaves(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...]
             yield (*path, name), float(part) if isinstance(part, float | np.floating) else part
 
 
-def _parts(value: Any) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, dict):
-        yield from value.items()
-        return
-    seen = Counter[str]()
-    for part in value:
-        name = " ".join(str(part.get(key, "")) for key in ("name", "link", "group")) if isinstance(part, dict) else ""
-        yield f"{name} {seen[name]}", part
-        seen[name] += 1
+def _parts(value: Any) -> Iterable[tuple[str, Any]]:
+    return value.items() if isinstance(value, dict) else ((str(k), part) for k, part in enumerate(value))
 
 
 def parallel(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:

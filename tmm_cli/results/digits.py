@@ -56,6 +56,15 @@ class AccuracyReport:
     digits: Digits
     full: bool
 
+    def with_bounds(self, tables: Iterable[Table]) -> Iterator[Table]:
+        """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
+        worst: list[tuple[str | float, ...]] = []
+        for table in map(self.table, tables):
+            worst += [(table.name, *row) for row in _worst(table)] if self.full else []
+            yield table
+        if self.full:
+            yield self.summary(worst)
+
     def table(self, table: Table) -> Table:
         """The same table, its numbers with their bounds and sensitivities, and a note of the worst of them."""
         keys = keys_of(table, len(self.relative))
@@ -98,26 +107,16 @@ class AccuracyReport:
         title = _("Digits to be trusted: the worst of each column, relative to its largest value")
         return Table("digits", title, tuple(columns), notes=(_scale(self.digits.mu),))
 
-    def json(self) -> dict[str, Any]:
-        """The section `digits` of result.json: bounds and sensitivities in the places of their values."""
+    def json(self) -> dict[str, Any] | None:
+        """The section `digits` of result.json: bounds and sensitivities in the places of their values; if wanted."""
+        if not self.full:
+            return None
         content = dict(numbers(self.there))
         named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.there.numbers)}
         for part in PARTS:
             values = {**getattr(self.digits, part), **getattr(self.found(), part)}
             named[part] = parallel(content, {key[1:]: v for key, v in values.items()}) or {}
         return named
-
-
-def with_bounds(tables: Iterable[Table], found: AccuracyReport) -> Iterator[Table]:
-    """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
-    worst: list[tuple[str | float, ...]] = []
-    for table in tables:
-        told = found.table(table)
-        if found.full:
-            worst += [(table.name, *row) for row in _worst(told)]
-        yield told
-    if found.full:
-        yield found.summary(worst)
 
 
 def taken(record: Record, chosen: Real, count: int) -> Record:

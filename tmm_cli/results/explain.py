@@ -26,16 +26,15 @@ from tmm_cli.quantities import (
     Dimension,
     place_dimension,
 )  # fmt: skip
+from tmm_cli.results.reports.synthesis import parameters
 from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, steps
-from tmm_cli.results.table import Table, table_of_words
+from tmm_cli.results.table import Table, table_of_words, with_unit
 
 
 def explain(results: Results) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation."""
     problem = results.problem
     if problem.synthesis is not None and problem.synthesis.names:
-        from tmm_cli.results.reports.synthesis import parameters
-
         yield parameters(problem.synthesis, problem.units)
     yield _points(problem)
     if problem.linkage.slides:
@@ -131,13 +130,12 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     else:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
-    return load.name, load.link, place, size, _("working stroke") if load.working_stroke_only else _("always")
+    return load.name, load.link, place, size, load.when
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:
     """A value with its unit, of the file where it has one for this dimension."""
-    number = problem.units.from_si(float(np.ravel(value)[0]), dimension)
-    return f"{number + 0.0:.6g} {problem.units.symbol(dimension)}"
+    return with_unit(problem.units, float(np.ravel(value)[0]), dimension)
 
 
 def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links, moving_centres, moving_points
 from tmm_cli.kinematics.motion import Sliding
@@ -40,7 +38,7 @@ DRIVER = record(
     Field("acceleration", NUMBER, "rad/s2 or m/s2, in its sense", "linkage.driver.acceleration"),
     Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
     Field("range", list_of(NUMBER), "from, to: places of the driver",
-          lambda results: (results.driver_range.start, results.driver_range.end)),
+          lambda r: (r.driver_range.start, r.driver_range.end)),
     Field("limits", list_of(LIMIT), "where it is stopped", "driver_range.limits"),
 )  # fmt: skip
 
@@ -203,8 +201,31 @@ LEVER = record(
 MECHANISM_ENERGY = record(
     "power balance, and the mechanism reduced to its first driver",
     *inside("energy", fields_of(ENERGY)),
-    Field("locked", FLAGS, "locked by friction", "friction.locked", lambda r: r.friction is not None),
-    Field("efficiency", NUMBER, "with friction: over the cycle", "losses.efficiency", lambda r: r.losses is not None),
-    Field("friction_work", map_of(NUMBER), "work of friction over the cycle, J, by pair", "losses.pairs",
-          lambda r: r.losses is not None),
+    Field("locked", FLAGS, "locked by friction", "friction.locked", "friction"),
+    Field("efficiency", NUMBER, "with friction: over the cycle", "losses.efficiency", "losses"),
+    Field("friction_work", map_of(NUMBER), "work of friction over the cycle, J, by pair", "losses.pairs", "losses"),
+)  # fmt: skip
+
+
+def _whole(results: Results) -> bool:
+    """Whether all is asked for, not some points and links only."""
+    return results.motion is not None and not results.of
+
+
+MOTION_PARTS = (
+    Field("driver", DRIVER, "the input", lambda r: r, "motion"),
+    Field("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", "motion"),
+    Field("pressure", list_of(PRESSURE), "driven links of the groups", there=_whole),
+    Field("dead_positions", list_of(DEAD), "inside the range of the driver", "dead", _whole),
+    Field("output", optional(OUTPUT), "strokes of the output; null when no link of the last group is on the frame",
+          "strokes", _whole),
+    Field("further_outputs", list_of(OUTPUT), "of the others, as the first one", "further", _whole),
+    Field("travels", list_of(TRAVEL), "outputs where the driver does not turn fully, over the positions asked",
+          there=_whole),
+    Field("positions", POSITIONS, "which positions", lambda r: r, "motion"),
+    Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
+    Field("forces", FORCES, "force plan", lambda r: r, "lever"),
+    Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
+    Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
+          "energy"),
 )  # fmt: skip

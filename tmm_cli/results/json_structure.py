@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import methodcaller
 from typing import NamedTuple
 
 from tmm_cli.linkage import Link
@@ -71,7 +72,7 @@ STRUCTURE = record(
     "links, pairs and Assur groups",
     Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
     Field("links", list_of(LINK), "moving links",
-          lambda results: [LinkInRole(results.linkage.links[n], results.roles[n]) for n in results.structure.links]),
+          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n]) for n in r.structure.links]),
     Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
     Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
           lambda results: results.structure.mobility + results.structure.redundant),
@@ -98,10 +99,7 @@ CHAIN = (
     Field("mobility", NUMBER, "Somov-Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5"),
     Field("n", NUMBER, "moving links", lambda chain: len(chain.links)),
     Field("p1", NUMBER, "pairs with 1 freedom", lambda chain: chain.p(1)),
-    Field("p2", NUMBER, "pairs with 2 freedoms", lambda chain: chain.p(2)),
-    Field("p3", NUMBER, "pairs with 3 freedoms", lambda chain: chain.p(3)),
-    Field("p4", NUMBER, "pairs with 4 freedoms", lambda chain: chain.p(4)),
-    Field("p5", NUMBER, "pairs with 5 freedoms", lambda chain: chain.p(5)),
+    *(Field(f"p{k}", NUMBER, f"pairs with {k} freedoms", methodcaller("p", k)) for k in range(2, 6)),
     Field("K", NUMBER, "independent contours", lambda chain: len(chain.pairs) - len(chain.links)),
 )
 REPLACEMENT = record(

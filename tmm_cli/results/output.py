@@ -14,27 +14,21 @@ from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.reports import walk
 from tmm_cli.results.text import csv_text, json_text
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # a structure alone has no digits, and does not wait for what finds them
     from tmm_cli.results.digits import AccuracyReport
 
 
 def write_results(
-    results: Results | ChainResults,
-    out: Path,
-    more: Iterable[tuple[str, bytes]] = (),
+    results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = (),
     digits: AccuracyReport | None = None,
-) -> Path:
+) -> Path:  # fmt: skip
     """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
 
     Each table is dropped when it is written. Nothing is renamed to its name before all is there: a refusal or an
     interruption before the end leaves the folder as it was.
     """
     folder = out / folder_name(results.problem.name)
-    shown = walk(results)
-    if digits is not None:
-        from tmm_cli.results.digits import with_bounds
-
-        shown = with_bounds(shown, digits)
+    shown = walk(results) if digits is None else digits.with_bounds(walk(results))
     earlier = listed(folder)
     with Staged(folder) as staged:
         for table in shown:
@@ -42,7 +36,8 @@ def write_results(
         for name, picture in more:
             staged.write(name, (picture,))
         names = sorted(staged.waiting)
-        staged.write("result.json", json_text(chain(sections(results, digits), [("files", names)])))
+        content = sections(results, None if digits is None else digits.json())
+        staged.write("result.json", json_text(chain(content, [("files", names)])))
     for name in earlier - set(names):
         (folder / name).unlink(missing_ok=True)
     return folder

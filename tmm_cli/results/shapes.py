@@ -52,21 +52,29 @@ def optional(shape: Shape) -> Shape:
 
 @dataclass(frozen=True)
 class Field:
-    """A key of a record. there: whether a record has it, if not always."""
+    """A key of a record. there: whether a record has it, if not always, or what it then has that is not None."""
 
     key: str
     shape: Shape
     text: str
     read: str | Callable[[Any], Any] = ""
-    there: Callable[[Any], bool] = lambda found: True
+    there: str | Callable[[Any], bool] = lambda found: True
 
     @property
     def schema(self) -> dict[str, Any]:
         return {**self.shape.schema, "description": self.text + self.shape.note}
 
+    def is_there(self, found: Any) -> bool:
+        return self.there(found) if callable(self.there) else getattr(found, self.there) is not None
+
     def content(self, found: Any) -> Any:
         read = self.read if callable(self.read) else attrgetter(self.read or self.key)
         return self.shape.content(read(found))
+
+
+def contents(fields: Iterable[Field], found: Any) -> Iterator[tuple[str, Any]]:
+    """What was found, field by field; fields that it has not are left out."""
+    return ((field.key, field.content(found)) for field in fields if field.is_there(found))
 
 
 def properties(fields: Iterable[Field]) -> dict[str, Any]:
@@ -83,7 +91,7 @@ def inside(attribute: str, fields: Iterable[Field]) -> tuple[Field, ...]:
 def record(text: str, *fields: Field) -> Shape:
     """An object with these keys. text: what it is, where it stands in a list or a map."""
     schema = {"description": text, "type": "object", "properties": properties(fields)}
-    return Shape(schema, lambda found: {field.key: field.content(found) for field in fields if field.there(found)})
+    return Shape(schema, lambda found: dict(contents(fields, found)))
 
 
 NAMES = list_of(TEXT)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.double_double import array
+from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import NUMBER, Dimension
-
-if TYPE_CHECKING:
-    from tmm_cli.problem.units import UnitSystem
 
 
 @dataclass(frozen=True)
@@ -40,9 +38,8 @@ class Column:
     @property
     def array(self) -> Any:
         """Its values, nan where there is none."""
-        if isinstance(self.values, list):
-            return array([np.nan if v is None else v for v in self.values])
-        return array(self.values)
+        listed = isinstance(self.values, list)
+        return array([np.nan if v is None else v for v in self.values] if listed else self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
         """Its values in the units of the file, nan where there is none."""
@@ -56,6 +53,11 @@ class Column:
         numbers, bound = self.numbers(units), np.asarray(self.bound) * units.unit(self.dimension).from_si(1.0)
         known = np.isfinite(numbers) & np.isfinite(bound)
         return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
+
+
+def with_unit(units: UnitSystem, value: float, dimension: Dimension) -> str:
+    """A value (SI) in the unit of the file, to six digits: `110 mm`."""
+    return f"{units.from_si(value, dimension) + 0.0:.6g} {units.symbol(dimension)}"
 
 
 def true_digits(values: Any, bound: Any) -> Any:

@@ -59,33 +59,33 @@ def json_bytes(content: Any) -> bytes:
 
 def json_text(parts: Iterable[tuple[str, Any]]) -> Iterator[str]:
     """The same of a record that is given part by part; arrays become text as they are, nan and infinity null."""
-    opening = "{\n "
-    for key, part in parts:
-        yield f"{opening}{json.dumps(key, ensure_ascii=False)}: "
-        yield from _lines(part, " ")
-        opening = ",\n "
-    yield "\n}\n"
+    yield from _block("{", ((_label(key), part) for key, part in parts), "}", "")
+    yield "\n"
 
 
 def _lines(value: Any, indent: str) -> Iterator[str]:
     if isinstance(value, np.ndarray) and value.ndim == 1:
         yield from _series(value)
     elif isinstance(value, dict) and value:
-        yield "{\n"
-        for k, (key, part) in enumerate(value.items()):
-            yield f"{indent} {json.dumps(key, ensure_ascii=False)}: "
-            yield from _lines(part, indent + " ")
-            yield ",\n" if k < len(value) - 1 else "\n"
-        yield indent + "}"
+        yield from _block("{", ((_label(key), part) for key, part in value.items()), "}", indent)
     elif isinstance(value, list | tuple) and any(isinstance(part, dict | list | tuple | np.ndarray) for part in value):
-        yield "[\n"
-        for k, part in enumerate(value):
-            yield indent + " "
-            yield from _lines(part, indent + " ")
-            yield ",\n" if k < len(value) - 1 else "\n"
-        yield indent + "]"
+        yield from _block("[", (("", part) for part in value), "]", indent)
     else:
         yield json.dumps(plain(value), ensure_ascii=False, allow_nan=False)
+
+
+def _label(key: str) -> str:
+    return f"{json.dumps(key, ensure_ascii=False)}: "
+
+
+def _block(opening: str, parts: Iterable[tuple[str, Any]], closing: str, indent: str) -> Iterator[str]:
+    """Parts of an object or of a list, each on its own lines after its label."""
+    separator = opening
+    for label, part in parts:
+        yield f"{separator}\n{indent} {label}"
+        yield from _lines(part, indent + " ")
+        separator = ","
+    yield f"\n{indent}{closing}"
 
 
 def _series(values: Any) -> Iterator[str]:

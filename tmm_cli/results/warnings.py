@@ -3,34 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.assembly.sketch import sketch_deviations
 from tmm_cli.errors import _
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.loads import table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.linkage import Load
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.reports.synthesis import missed
+from tmm_cli.results.table import with_unit
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.vectors import dot
 
-if TYPE_CHECKING:
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.linkage import Load
-
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
-MOST_IMPACTS = 6  # jumps of one cam that are named
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
-def warnings(results: Results) -> Iterable[str]:
+def warnings(results: Results | ChainResults) -> Iterable[str]:
     """One sentence each, in the units of the file."""
-    if results.motion is None or results.driver_range is None:
+    if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return
     yield from _range(results)
     yield from _sketch(results)
@@ -119,7 +118,7 @@ def _unreached(results: Results, motion: Motion) -> Iterable[str]:
         number, place = results.numbers[k], _place(results, float(motion.q[k]))
         for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
-                gap = f"{units.from_si(float(at.residual[k]), LENGTH):.6g} {units.symbol(LENGTH)}"
+                gap = with_unit(units, float(at.residual[k]), LENGTH)
                 yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
                     number=number, place=place, group=group, gap=gap
                 )
@@ -171,9 +170,7 @@ def _pressure(results: Results) -> Iterable[str]:
         said = limits_set[0 if pressure.slides else 1]
         if pressure.holds or not (chosen or said):
             continue
-        largest, allowed = (
-            f"{units.from_si(angle, ANGLE):.6g} {units.symbol(ANGLE)}" for angle in (pressure.largest, pressure.allowed)
-        )
+        largest, allowed = (with_unit(units, angle, ANGLE) for angle in (pressure.largest, pressure.allowed))
         text = (
             _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
             if said
@@ -238,12 +235,11 @@ def _impacts(results: Results) -> Iterable[str]:
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()
         if jumps:
-            places = [f"{units.from_si(a, ANGLE):.6g}" for a in jumps[:MOST_IMPACTS]]
-            places += ["..."] * (len(jumps) > MOST_IMPACTS)
+            places = ", ".join(f"{units.from_si(a, ANGLE):.6g}" for a in jumps)
             yield _(
                 "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
                 "a hard impact, the acceleration there is not finite and is not in the tables"
-            ).format(cam=mesh.i, follower=mesh.j, places=f"{', '.join(places)} {units.symbol(ANGLE)}")
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.symbol(ANGLE)}")
 
 
 def _loads(results: Results, motion: Motion) -> Iterable[str]:
@@ -280,8 +276,6 @@ def _drives(motion: Motion, load: Applied) -> bool:
 
 def _short_table(results: Results, motion: Motion, load: Load) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
-    from tmm_cli.forces.loads import table_argument
-
     if load.table is None or not results.loads:
         return False
     acting = motion.placed

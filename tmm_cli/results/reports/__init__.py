@@ -37,9 +37,12 @@ def tables(results: Results | ChainResults) -> tuple[Table, ...]:
 
 def walk(results: Results | ChainResults, wanted: Collection[str] = ()) -> Iterator[Table]:
     """Every table of the results, or those wanted by name, made one after the other."""
-    for name, part, given in REPORTS:
-        if getattr(results, part, None) is None or (wanted and given and not set(given) & set(wanted)):
-            continue
-        for table in import_module(f"{__name__}.{name}").tables(results):
-            if not wanted or table.name in wanted:
-                yield table
+    chosen = [name for name, __, given in REPORTS if not (wanted and given) or set(given) & set(wanted)]
+    return (table for table in tables_of(results, chosen) if not wanted or table.name in wanted)
+
+
+def tables_of(results: Results | ChainResults, reports: Collection[str]) -> Iterator[Table]:
+    """The tables of these reports, as far as the stages that they need have run."""
+    for name, part, __ in REPORTS:
+        if name in reports and getattr(results, part, None) is not None:
+            yield from import_module(f"{__name__}.{name}").tables(results)

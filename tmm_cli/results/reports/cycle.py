@@ -44,8 +44,7 @@ def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
 def tables(results: Results) -> Iterable[Table]:
     """One table; positions that cannot be reached or are dead are said so in the last column."""
     motion = results.motion
-    if motion is None:
-        return
+    assert motion is not None
     columns = driver_columns(results)
     for driver in results.linkage.others:
         name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")

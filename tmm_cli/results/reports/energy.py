@@ -15,11 +15,9 @@ from tmm_cli.results.table import Column, Table
 
 def tables(results: Results) -> Iterable[Table]:
     """The balance, and where there is friction what it takes."""
-    found, motion = results.energy, results.motion
-    if found is None or motion is None:
-        return
-    left_out = () if results.friction is not None else ("friction",)
-    quantities = [quantity for quantity in ENERGY if quantity.name not in left_out]
+    found = results.energy
+    assert found is not None
+    quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
     columns_of = columns(quantities, found, results.linkage.driver.kind == "slide")
     table = [
         *driver_columns(results),
@@ -35,13 +33,9 @@ def _friction(results: Results) -> Table:
     rubbed, lost = results.friction, results.losses
     assert rubbed is not None
     given = results.linkage.friction
-    notes = []
-    share = None if lost is None else lost.efficiency
-    notes.append(
-        _("no efficiency over the cycle: the driver is locked somewhere, or does no work")
-        if share is None
-        else _("efficiency over the cycle: {share} %").format(share=f"{100 * share:.4g}")
-    )
+    notes = [_("no efficiency over the cycle: the driver is locked somewhere, or does no work")]
+    if lost is not None and lost.efficiency is not None:
+        notes = [_("efficiency over the cycle: {share} %").format(share=f"{100 * lost.efficiency:.4g}")]
     locked = [str(n) for n, lost in zip(results.numbers, rubbed.locked, strict=True) if lost]
     if locked:
         notes.append(_("locked in positions {numbers}").format(numbers=", ".join(locked)))

@@ -21,8 +21,7 @@ def label(by: str, on: str) -> str:
 def tables(results: Results) -> Iterable[Table]:
     """Reactions, loads, and the driving link."""
     reactions = results.reactions
-    if reactions is None:
-        return
+    assert reactions is not None
     words = {
         _("pair"): [r.pair.name for r in reactions.all],
         _("name"): [label(r.by, r.on) for r in reactions.all],

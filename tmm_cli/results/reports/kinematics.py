@@ -21,8 +21,7 @@ from tmm_cli.vectors import pi
 def tables(results: Results) -> Iterable[Table]:
     """points, links, slides."""
     motion = results.motion
-    if motion is None:
-        return
+    assert motion is not None
     linkage, of = results.linkage, results.of
     points = dict(sorted(moving_points(linkage, motion, of).items())) | moving_centres(linkage, motion, of)
     if of:

@@ -15,7 +15,8 @@ from tmm_cli.results.table import Table
 def tables(results: Results) -> Iterable[Table]:
     """One table: forces with arms in length per unit turn of the crank, couples with the ratio of angular speeds."""
     lever = results.lever
-    if lever is None or not lever.items:
+    assert lever is not None
+    if not lever.items:
         return
     slider = results.linkage.driver.kind == "slide"
     words = {_("name"): [i.name for i in lever.items], _("link"): [i.link for i in lever.items]}

@@ -17,8 +17,7 @@ Row = tuple[str, Any, Dimension]
 def tables(results: Results) -> Iterable[Table]:
     """One row a fact; values keep their own dimension."""
     driver_range = results.driver_range
-    if results.motion is None or driver_range is None:
-        return
+    assert driver_range is not None
     place = place_dimension(results.linkage.driver.kind)
     rows: list[Row] = []
     if driver_range.turns > 1:

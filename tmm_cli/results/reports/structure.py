@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
@@ -35,6 +36,11 @@ PAIRS = {
     "G": _("toothed wheels (G)"),
     "K": _("wheel and rack (K)"),
     "C": _("cam and follower (C)"),
+}
+HIGHER = {
+    "G": _("{count} of toothed wheels"),
+    "K": _("{count} of wheel and rack"),
+    "C": _("{count} of cam and follower"),
 }
 CLASSES = {
     "open": _("open"),
@@ -81,7 +87,9 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         _("{all} ({r} turning, {p} sliding)").format(all=lower, r=turning, p=lower - turning),
     )
     if higher:
-        yield _("higher pairs p2"), f"{higher} ({', '.join(_higher(structure))})"
+        kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
+        told = ", ".join(text.format(count=kinds[kind]) for kind, text in HIGHER.items() if kinds[kind])
+        yield _("higher pairs p2"), f"{higher} ({told})"
         yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
     else:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
@@ -97,16 +105,3 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
     yield _("formula of structure"), structure.formula
     yield _("chain, and kind of structure"), ", ".join(CLASSES[word] for word in classification(structure))
     yield _("class of the mechanism"), ROMAN[min(structure.mechanism_class, 10)]
-
-
-def _higher(structure: Structure) -> Iterable[str]:
-    """How many higher pairs there are of each kind."""
-    kinds = (
-        ("G", _("{count} of toothed wheels")),
-        ("K", _("{count} of wheel and rack")),
-        ("C", _("{count} of cam and follower")),
-    )
-    for kind, text in kinds:
-        count = sum(p.kind == kind for p in structure.pairs)
-        if count:
-            yield text.format(count=count)

@@ -15,9 +15,11 @@ from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
 from tmm_cli.results.table import Column, Table
+from tmm_cli.results.text import plain
 from tmm_cli.synthesis.check import MeasuredDemand, measured_on
 from tmm_cli.synthesis.record import Kind, Listing, Value
 
+NUMERIC = (*KINDS, "share")
 DIGITS = 10  # on a terminal; files have 15
 # columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
 # what has no header is in result.json only
@@ -76,12 +78,12 @@ def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[st
 def to_json(found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True) -> dict[str, Any]:
     """Everything in SI and radians; long: tables for files too."""
     outcome = found.outcome
-    plain = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
+    keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
     return {
         "task": found.task,
-        "asked": _records(_values("asked", "", outcome.asked, plain)),
-        "found": _records(_values("found", "", outcome.found, plain)),
-        "parameters": {found.names[n]: _number(v.value) for n, v in outcome.parameters.items()},
+        "asked": _records(_values("asked", "", outcome.asked, keys)),
+        "found": _records(_values("found", "", outcome.found, keys)),
+        "parameters": {found.names[n]: plain(float(v.value)) for n, v in outcome.parameters.items()},
         "tables": {listing.name: _records(listing) for listing in outcome.listings if long or not listing.long},
         "source": outcome.source,
         "measured": None if measured is None else _records(_measured(measured)),
@@ -130,16 +132,10 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
 def _records(listing: Listing) -> list[dict[str, Any]]:
     """Rows by the names of their columns, SI and radians."""
     return [
-        {name: _plain(value, own if kind == "mixed" else kind)
+        {name: plain(float(value)) if value is not None and (own if kind == "mixed" else kind) in NUMERIC else value
          for (name, __, kind), value in zip(listing.columns, row, strict=True)}
         for row, own in zip(listing.rows, _kinds(listing), strict=True)
     ]  # fmt: skip
-
-
-def _plain(value: Any, kind: Kind) -> Any:
-    if value is None or kind in ("unit", "by"):
-        return value
-    return _number(value) if kind in KINDS or kind == "share" else value
 
 
 def _kinds(listing: Listing) -> list[Kind]:
@@ -157,7 +153,3 @@ def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
 
 def _unit(kind: Kind, units: UnitSystem) -> str:
     return units.symbol(KINDS[kind].dimension) if kind in KINDS else ""
-
-
-def _number(value: Any) -> float | None:
-    return float(value) if math.isfinite(float(value)) else None

@@ -1,0 +1,98 @@
+"""Problems computed again and compared with their golden runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
+
+from tmm_cli import __version__
+from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, console, say
+from tmm_cli.cli.reporting import computed
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.as_json import to_json
+from tmm_cli.results.compare import Difference, brief, difference_table, differences, recorded
+from tmm_cli.results.files import write_whole
+from tmm_cli.results.terminal import show
+from tmm_cli.results.text import json_bytes
+
+TOLERANCE = 1e-9
+
+
+class Outcome(NamedTuple):
+    """A problem, what is wrong with it as a whole, what differs, and the exit code of that."""
+
+    name: str
+    wrong: str = ""
+    different: Sequence[Difference] = ()
+    code: int = OK
+
+
+def compared(file: Path, update: bool) -> Outcome:
+    """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
+    expected_file = file.parent / "expected" / f"{file.stem}.json"
+    try:
+        found = to_json(computed(str(file), "forces"))
+    except ProblemError as error:
+        return Outcome(file.stem, wrong=str(error), code=BAD_INPUT)
+    expected = _read(expected_file)
+    known = isinstance(expected, dict)
+    if update:
+        if not known or expected["result"] != recorded(found):
+            golden = {
+                "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
+                "tolerance": expected["tolerance"] if known else TOLERANCE,
+                "result": recorded(found),
+            }
+            write_whole(expected_file, json_bytes(golden))
+        return Outcome(file.stem)
+    if not known:
+        return Outcome(file.stem, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
+    different = differences(expected["result"], found, float(expected["tolerance"]))
+    return Outcome(file.stem, different=different, code=CHECK_FAILED if different else OK)
+
+
+def _read(file: Path) -> Any:
+    """The expected values, or what is wrong with them."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        float(content["tolerance"])
+        content["result"].items()
+    except FileNotFoundError:
+        return _("there are no expected values; tmm check --update writes them")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        return _("this is not a file of expected values ({error})").format(error=error)
+    return content
+
+
+def show_outcomes(outcomes: Sequence[Outcome]) -> None:
+    """What differs as a table, and what is wrong with whole problems."""
+    table = difference_table({outcome.name: outcome.different for outcome in outcomes})
+    if table.rows:
+        show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
+    for outcome in outcomes:
+        if outcome.wrong:
+            say(_("error: {name}: {wrong}").format(name=outcome.name, wrong=outcome.wrong))
+
+
+def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
+    """The outcomes as a JUnit report."""
+    failures = sum(bool(outcome.different) for outcome in outcomes)
+    errors = sum(bool(outcome.wrong) for outcome in outcomes)
+    suite = ElementTree.Element(
+        "testsuite", name="tmm check", tests=str(len(outcomes)), failures=str(failures), errors=str(errors)
+    )
+    for name, wrong, different, __ in outcomes:
+        case = ElementTree.SubElement(suite, "testcase", classname="problems", name=name)
+        if wrong:
+            ElementTree.SubElement(case, "error", message=wrong)
+        elif different:
+            failure = ElementTree.SubElement(case, "failure", message=f"{len(different)} quantities differ")
+            failure.text = "\n".join(
+                f"{d.quantity}: expected {brief(d.expected)}, found {brief(d.found)}" for d in different[:50]
+            )
+    write_whole(path, ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True))

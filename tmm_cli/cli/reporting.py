@@ -1,0 +1,119 @@
+"""Computing a file of either form, and showing and writing what was found; commands import it when they work."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tmm_cli import count, problem_of, redrive, solve, structure_of
+from tmm_cli.analysis.pipeline import Results, Stage
+from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
+from tmm_cli.errors import _
+from tmm_cli.problem.build import is_chain
+from tmm_cli.problem.reader import read_file
+from tmm_cli.results.as_json import sections
+from tmm_cli.results.files import folder_name, write_whole
+from tmm_cli.results.output import write_results
+from tmm_cli.results.reports import walk
+from tmm_cli.results.table import Table
+from tmm_cli.results.terminal import show as print_table
+from tmm_cli.results.text import json_text
+from tmm_cli.results.warnings import warnings
+from tmm_cli.synthesis.check import measured_on
+
+if TYPE_CHECKING:
+    from tmm_cli.results.digits import AccuracyReport
+
+
+def computed(
+    file: str, stage: Stage, positions: Sequence[int] | None = None, driver: str | None = None, *, drafted: bool = False
+) -> Results | ChainResults:
+    """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
+
+    drafted: the structure without the lengths that a task of synthesis finds.
+    """
+    tree = read_file(file)
+    if is_chain(tree):
+        from tmm_cli.problem.build_chain import build_chain  # few files give a chain
+
+        return count(build_chain(tree))
+    problem = problem_of(tree)
+    if driver is not None:
+        return solve(redrive(problem, driver), stage, positions)
+    return structure_of(problem) if drafted else solve(problem, stage, positions)
+
+
+def bounds_of(results: Results | ChainResults, digits: bool) -> AccuracyReport | None:
+    """How far each number is to be trusted, with `digits` in full; None where nothing moves."""
+    if isinstance(results, ChainResults) or results.motion is None:
+        return None
+    from tmm_cli.results.digits import accuracy  # the structure does not need it
+
+    return accuracy(results, digits)
+
+
+def report(
+    results: Results | ChainResults, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False
+) -> int:
+    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
+
+    digits: show bounds and sensitivities beside the values.
+    """
+    found = bounds_of(results, digits)
+    if as_json:
+        emit_results(results, found)
+    else:
+        show(results, names, found)
+    if out is not None:
+        say(_("written: {folder}").format(folder=write_results(results, out, digits=found)))
+    for warning in warnings(results):
+        say(_("warning: {warning}").format(warning=warning))
+    return checked(results)
+
+
+def checked(results: Results | ChainResults) -> int:
+    """The exit code: whether the lever holds, and what a synthesis asked; of a structure there is nothing to check."""
+    if isinstance(results, ChainResults) or results.motion is None:
+        return OK
+    return OK if results.lever_holds and all(m.met for m in measured_on(results)) else CHECK_FAILED
+
+
+def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
+    """The content of result.json on standard output, as it comes."""
+    sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
+
+
+def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:
+    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
+    folder = Path("outputs") / folder_name(results.problem.name)
+    if out is not None:
+        folder = write_results(results, out, pictures.items())
+    for name, content in pictures.items() if out is None else ():
+        write_whole(folder / name, content)
+    if out is not None or pictures:
+        say(_("written: {folder}").format(folder=folder))
+
+
+def show(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:
+    """Tables of these names, of a chain all; of long ones the positions in detail."""
+    screen = console()
+    shown = walk(results, () if isinstance(results, ChainResults) else set(names))
+    if found is not None:
+        from tmm_cli.results.digits import beside
+
+        shown = found.with_bounds(shown)
+        shown = map(beside, shown) if found.full else shown
+    for table in shown:
+        print_table(table, results.problem.units, screen, detailed_rows(results, table))
+
+
+def detailed_rows(results: Results | ChainResults, table: Table) -> set[int] | None:
+    """Rows of a long table that belong to positions in detail, or to the first one; None: all rows of a short one."""
+    if isinstance(results, ChainResults) or not table.long:
+        return None
+    chosen = {results.numbers.index(n) for n in results.problem.request.detail if n in results.numbers}
+    per = table.rows // max(len(results.numbers), 1)
+    return {k * per + i for k in chosen or {0} for i in range(per)}

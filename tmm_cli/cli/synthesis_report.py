@@ -1,0 +1,64 @@
+"""What `tmm synthesis` shows and writes of a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tmm_cli import solve
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.cli.common import CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.files import Staged, folder_name
+from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
+from tmm_cli.results.terminal import show
+from tmm_cli.results.text import csv_text, json_bytes
+from tmm_cli.synthesis.check import measured_on
+from tmm_cli.synthesis.reading import alone, build
+
+
+def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
+    """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
+    name, title, found, units, results = _solved(file)
+    measured = None if results is None else measured_on(results)
+    whole = {"problem": name, **to_json(found, measured)}
+    if as_json:
+        emit_json(whole)
+    else:
+        screen = console()
+        for table in tables_of(found, measured, units):
+            if not table.long:
+                show(table, units, screen, most=None)
+        if measured is None:
+            say(_("the file has no linkage: nothing was measured"))
+    if out is not None:
+        from tmm_cli.draw.formats import files as drawings
+        from tmm_cli.draw.synthesis import sheets
+
+        folder = out / folder_name(name)
+        with Staged(folder) as staged:
+            for table in tables_of(found, measured, units, 15):
+                staged.write(f"{table.name}.csv", csv_text(table, units))
+            for drawing, picture in drawings(sheets(title, found.outcome, results, units, found.names)):
+                staged.write(drawing, (picture,))
+            staged.write("synthesis.json", (json_bytes(whole),))
+        say(_("written: {folder}").format(folder=folder))
+    for fault in missed(measured or (), units):
+        say(_("warning: {warning}").format(warning=fault))
+    return OK if all(m.met for m in measured or ()) else CHECK_FAILED
+
+
+def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+    """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
+    tree = read_file(file)
+    if "synthesis" not in tree.data:
+        build(tree)  # refuses a misspelt key
+        raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
+    if "links" not in tree.data:
+        return (*alone(tree), None)
+    problem = build(tree)
+    assert problem.synthesis is not None
+    return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")
