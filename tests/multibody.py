@@ -62,6 +62,26 @@ def run_of(law, angle, n):
     raise AssertionError
 
 
+def solved(matrix, right):
+    """Linear equations by elimination; zeros, which most of such a matrix is, are passed over."""
+    n = len(right)
+    rows = [[*(matrix[i, j] for j in range(n)), right[i]] for i in range(n)]
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[best] = rows[best], rows[k]
+        known = [j for j in range(k, n + 1) if rows[k][j]]
+        for row in rows[k + 1 :]:
+            if row[k]:
+                factor = row[k] / rows[k][k]
+                for j in known:
+                    row[j] -= factor * rows[k][j]
+    found = mp.matrix(n, 1)
+    for k in reversed(range(n)):
+        rest = sum(rows[k][j] * found[j] for j in range(k + 1, n) if rows[k][j])
+        found[k] = (rows[k][n] - rest) / rows[k][k]
+    return found
+
+
 class Multibody:
     """One linkage; `at(k)` solves position k of a motion.
 
@@ -108,23 +128,27 @@ class Multibody:
 
     def constraints(self, X, q, n):
         """Two rows a lower pair, one a higher pair and a driver; zero when closed."""
-        rows = []
-        for pair in self.pairs:
+        rows = [row for pair in self.pairs for row in self.closing(X, pair, n)]
+        return rows + [self.driven(X, driver, n) - value for driver, value in zip(self.it.drivers, q, strict=True)]
+
+    def closing(self, X, pair, n):
+        """The rows of a pair."""
+        if pair.kind == "R":
             (xi, zi), (xj, zj) = self.pose(X, pair.i, n), self.pose(X, pair.j, n)
-            if pair.kind == "R":
-                gap = xi + self.it.local(pair.i, pair.point) * zi - xj - self.it.local(pair.j, pair.point) * zj
-                rows += [gap.real, gap.imag]
-            elif pair.kind == "P":
-                turned = zj * np.conj(zi) * n.exp(-n.real(pair.slide.turned))
-                rows += [turned.imag, self.slid(X, pair.slide, n)[1]]
-            else:
-                rows.append(self.mesh(X, pair.mesh, n))
-        for driver, value in zip(self.it.drivers, q, strict=True):
-            if driver.kind == "turn":
-                rows.append(self.angle(X, driver.link) - self.angle(X, driver.base) - value)
-            else:
-                rows.append(self.slid(X, self.it.slide(driver.joint), n)[0] - value)
-        return rows
+            gap = xi + self.it.local(pair.i, pair.point) * zi - xj - self.it.local(pair.j, pair.point) * zj
+            return [gap.real, gap.imag]
+        if pair.kind == "P":
+            turned = (
+                self.pose(X, pair.j, n)[1] * np.conj(self.pose(X, pair.i, n)[1]) * n.exp(-n.real(pair.slide.turned))
+            )
+            return [turned.imag, self.slid(X, pair.slide, n)[1]]
+        return [self.mesh(X, pair.mesh, n)]
+
+    def driven(self, X, driver, n):
+        """Where a driver is."""
+        if driver.kind == "turn":
+            return self.angle(X, driver.link) - self.angle(X, driver.base)
+        return self.slid(X, self.it.slide(driver.joint), n)[0]
 
     def mesh(self, X, mesh, n):
         a = self.angle(X, mesh.i) - self.angle(X, mesh.carrier)
@@ -211,13 +235,22 @@ class Multibody:
     def residuals(self, X, q):
         return mp.matrix(self.constraints(X, q, Digits()))
 
-    def jacobian(self, X, q):
-        J = mp.matrix(self.size, self.size)
-        for j in range(self.size):
-            more, less = X.copy(), X.copy()
-            more[j] += self.step
-            less[j] -= self.step
-            J[:, j] = (self.residuals(more, q) - self.residuals(less, q)) / (2 * self.step)
+    def jacobian(self, X):
+        """Of the rows of each pair and driver by the coordinates of the links that it joins."""
+        J, n, row = mp.matrix(self.size, self.size), Digits(), 0
+        parts = [({pair.i, pair.j, *((pair.mesh.carrier,) if pair.mesh else ())}, self.closing, pair)
+                 for pair in self.pairs]  # fmt: skip
+        parts += [({d.base, d.link}, lambda *given: [self.driven(*given)], d) for d in self.it.drivers]
+        for links, rows_of, part in parts:
+            for j in (self.at_row[name] + k for name in links - {FRAME} for k in range(3)):
+                more, less = X.copy(), X.copy()
+                more[j] += self.step
+                less[j] -= self.step
+                ends = zip(rows_of(more, part, n), rows_of(less, part, n), strict=True)
+                slopes = [(one - other) / (2 * self.step) for one, other in ends]
+                for k, slope in enumerate(slopes, row):
+                    J[k, j] = slope
+            row += len(slopes)
         return J
 
     def begun(self, place):
@@ -232,22 +265,24 @@ class Multibody:
         q = [drive[0] for drive in drives]
         X = self.begun(place)
         for _ in range(self.rounds):
-            J = self.jacobian(X, q)
-            X = X - mp.lu_solve(J, self.residuals(X, q))
+            missed = self.residuals(X, q)
+            if mp.norm(missed, mp.inf) < mp.mpf(10) ** (8 - self.digits):
+                break
+            X = X - solved(self.jacobian(X), missed)
         assert mp.norm(self.residuals(X, q), mp.inf) < mp.mpf(10) ** -40
-        J = self.jacobian(X, q)
+        J = self.jacobian(X)
         asked = [mp.matrix(self.size, 1) for _ in range(2)]
         for order in (1, 2):
             for row, drive in enumerate(drives, self.size - len(drives)):
                 asked[order - 1][row] = drive[order]
-        V = mp.lu_solve(J, asked[0])
+        V = solved(J, asked[0])
         bend = self.residuals(X + self.bend * V, q) - 2 * self.residuals(X, q) + self.residuals(X - self.bend * V, q)
-        A = mp.lu_solve(J, asked[1] - bend / self.bend**2)
+        A = solved(J, asked[1] - bend / self.bend**2)
         pushing = self.pushing(J, X).T
         missing = self.missing(X, V, A)
-        multipliers = mp.lu_solve(pushing, missing)
+        multipliers = solved(pushing, missing)
         radial = self.radial(X, multipliers)
-        return X, V, A, multipliers if radial is None else mp.lu_solve(pushing, missing - radial)
+        return X, V, A, multipliers if radial is None else solved(pushing, missing - radial)
 
     def row_of(self, pair):
         """The first row of a pair."""

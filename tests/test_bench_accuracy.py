@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import subprocess
-import sys
+from functools import partial
 from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
 import pytest
+from test_commands import tmm
 from write_bench_references import BANK, DATA, answers, solved
 
 from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure, places
@@ -148,7 +147,7 @@ def test_what_is_drawn_to_half_a_millimetre_comes_within_the_five_percent_rule_o
 def test_a_finer_grid_makes_a_truer_drawing(name):
     fine, coarse = (error_of(f"board-{mm}", name) for mm in ("0.25", "0.50"))
     assert np.prod([coarse[q] / fine[q] for q in QUANTITIES]) > 1
-    finest = Method("", "", board.prepare(1e-6))
+    finest = Method("", "", partial(board.prepare, 1e-6))
     true = reference(name)
     assert max(errors(finest.solve(true.case, true.q), true.exact).values()) < 1e-6
 
@@ -207,13 +206,6 @@ def test_rivals_are_measured_only_where_they_are_installed(monkeypatch):
 
 
 # the command
-
-
-def tmm(*arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "tmm_cli", *arguments], capture_output=True, text=True, check=False,
-        env=os.environ | {"PYTHONIOENCODING": "utf-8"},
-    )  # fmt: skip
 
 
 def test_bench_accuracy_prints_json_and_writes_a_table_and_a_chart(tmp_path):

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import random
-import subprocess
-import sys
+from dataclasses import replace
 from decimal import Decimal
 from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
 import pytest
-from write_stability_references import NUMBERS, Closely, circles, closed, starts, written
+from test_commands import tmm
+from write_stability_references import Closely, circles, closed, starts, written
 
 from tmm_cli.bench import stability
 from tmm_cli.bench.chart_stability import charts
@@ -67,9 +65,10 @@ def test_answers_are_what_the_textbook_says_in_a_hundred_digits(family, seed, k)
 
 def test_the_triads_of_the_fold_lose_two_assemblies_there():
     family, stored = BY_NAME["two-assemblies-lost"], seeds("two-assemblies-lost")[0]
-    n = NUMBERS[family.name](random.Random(f"{family.name} 0"), 0)
-    begin = starts(family, n)
-    assert {key: str(value) for key, value in n.items()} == {key: str(v) for key, v in stored.numbers.items()}
+    n = {key: value for key, value in stored.numbers.items() if key != "critical"}
+    n["end"] = Decimal(float(stored.numbers["critical"]))  # near it: the fold is found to fifty digits
+    begin = starts(replace(family, distances=(Decimal("1e-9"),)), n)
+    assert n == stored.numbers
     distances = [float(distance) for distance in family.distances[4:]]
     apart = []
     for distance, scene in zip(family.distances[4:], stored.scenes[4:], strict=True):
@@ -159,13 +158,17 @@ def test_size_and_three_points_in_line_harm_no_formula():
 
 @pytest.fixture(scope="module")
 def own():
-    """The product alone, in the fewer scenes of all families."""
-    return measure(methods=(), reduced=True)
+    """The product alone, in few scenes of all families."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stability, "SEEDS_WHEN_REDUCED", 1)
+        return measure(methods=(), reduced=True)
 
 
 @pytest.mark.parametrize("family", [family.name for family in FAMILIES if family.name != "two-assemblies-lost"])
 def test_no_value_of_ours_is_outside_its_bound(family):
-    for at in known(family, None, 3):
+    for at in known(family, None, 7):
+        if at.seed == 0:
+            continue  # among those of `own`
         shot = ours(Case.of(at.scene.linkage), at)
         assert shot.verdict in ("right", "said"), (at.seed, at.distance, shot)
         assert shot.verdict == "said" or max(shot.errors.values()) <= WRONG
@@ -174,11 +177,11 @@ def test_no_value_of_ours_is_outside_its_bound(family):
 def test_no_value_of_a_class_iii_group_is_outside_its_bound_where_it_loses_two_assemblies(own):
     found = own.of("two-assemblies-lost", OURS)
     assert [row.distance for row in found] == [0.1, 1e-5, 1e-9, 1e-13, 1e-15]
-    assert all(row.wrong == 0 for row in found) and all(row.right == 2 for row in found[:3])
+    assert all(row.wrong == 0 for row in found) and all(row.right == 1 for row in found[:3])
 
 
 def test_nine_of_ten_bounds_are_within_a_hundred_times_the_error(own):
-    assert len(own.widths) > 600 and len(own.families) == 10
+    assert len(own.widths) > 300 and len(own.families) == 10
     assert own.sharp >= 0.9 and not own.failures
     assert min(own.widths) >= 1
 
@@ -220,7 +223,7 @@ def answering(place, name="x", family="x", setting=None):
     return Method(name, family, lambda case: lambda q: Answers({"B": np.array([place])}), setting)
 
 
-def test_an_answer_is_right_wrong_in_another_assembly_or_not_given():
+def test_an_answer_is_right_wrong_or_not_given():
     at = near("three-in-line", "0.1")
     true, size = complex(at.exact["positions"]), at.largest["positions"]
 
@@ -229,7 +232,7 @@ def test_an_answer_is_right_wrong_in_another_assembly_or_not_given():
 
     assert verdict(answering(true)) == "right"
     assert verdict(answering(true + 2 * WRONG * size)) == "wrong"
-    assert verdict(answering(complex(at.other))) == "astray"
+    assert verdict(answering(-true)) == "wrong"
     assert verdict(answering(complex("nan"))) == "said"
     assert verdict(answering(true + 0.05 * size, "newton-2", "newton", 1e-2)) == "right"
     assert verdict(answering(true + 0.2 * size, "newton-2", "newton", 1e-2)) == "wrong"
@@ -273,42 +276,32 @@ def test_the_textbook_has_no_formula_for_other_linkages():
 # the command
 
 
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory):
-    """The reduced measurement of two families through the command line."""
-    folder = tmp_path_factory.mktemp("bench")
-    arguments = ["--family", "three-in-line", "--family", "dead-position", "--reduced", "-o", str(folder)]
-    return run(*arguments), folder
-
-
-def run(*arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "tmm_cli", "bench", "stability", *arguments], capture_output=True, text=True,
-        env={**os.environ, "COLUMNS": "200"},
-    )  # fmt: skip
-
-
-def test_the_command_meets_its_targets_and_writes_what_it_found(bench):
-    done, folder = bench
+def test_the_command_meets_its_targets_and_writes_what_it_found(tmp_path):
+    families = ("--family", "three-in-line", "--family", "dead-position")
+    done = tmm("bench", "stability", *families, "--reduced", "--json", "-o", tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "all targets met" in done.stderr and "never" in done.stdout
-    assert {path.name for path in folder.iterdir()} == {"stability.csv", "stability.json", "stability-1.png"}
-    content = json.loads((folder / "stability.json").read_text(encoding="utf-8"))
+    assert "all targets met" in done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"stability.csv", "stability.json", "stability-1.png"}
+    content = json.loads(done.stdout)
+    assert json.loads((tmp_path / "stability.json").read_text(encoding="utf-8")) == content
+    assert set(content["first_lie"]) == {"three-in-line", "dead-position"}
     assert content["first_lie"]["dead-position"]["tmm"] is None
     assert content["first_lie"]["dead-position"]["newton-2"] >= 1e-9
     assert content["sharp"] >= 0.9 and content["failures"] == []
-    with (folder / "stability.csv").open(encoding="utf-8") as stream:
-        lines = list(csv.DictReader(stream))
-    assert all(int(line["right"]) + int(line["said"]) + int(line["wrong"]) == int(line["scenes"]) for line in lines)
+    assert all(row["right"] + row["said"] + row["wrong"] == row["scenes"] for row in content["rows"])
+    with (tmp_path / "stability.csv").open(encoding="utf-8") as stream:
+        (product,) = [line for line in csv.DictReader(stream) if line["method"] == OURS]
+    assert product["dead-position"] == product["three-in-line"] == "never"
 
 
-def test_json_goes_to_standard_output_alone():
-    done = run("--family", "size", "--reduced", "--json")
-    assert done.returncode == 0 and set(json.loads(done.stdout)["first_lie"]) == {"size"}
+def test_the_table_says_where_each_method_lies_first(own):
+    (table,) = own.tables
+    method, *families = ([column.header, *column.values] for column in table.columns)
+    assert method == ["method", OURS] and all(told[1] == "never" for told in families)
 
 
 def test_an_unknown_family_is_one_clear_error():
-    done = run("--family", "nothing")
+    done = tmm("bench", "stability", "--family", "nothing")
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.startswith("error: there is no family nothing; there are dead-position,")
 
@@ -316,7 +309,7 @@ def test_an_unknown_family_is_one_clear_error():
 def test_a_sheet_has_a_panel_a_family_and_a_row_a_method():
     some = [METHODS[name] for name in ("closed", "cosines")]
     found = measure(["long-rod", "size"], reduced=True, methods=some)
-    (figure,) = charts(found)
+    (figure,) = charts(found).values()
     assert len(figure.axes) == 4
     rows_of = [label.get_text() for label in figure.axes[1].get_yticklabels()]
     assert rows_of[0] == OURS and set(rows_of) <= set(found.methods)

@@ -40,9 +40,7 @@ W = np.conj(some(3) + 1j * some(4))
 @pytest.mark.parametrize(
     "operation", [lambda x, y: x + y, lambda x, y: x - y, lambda x, y: x * y, lambda x, y: x / y], ids="+-*/"
 )
-@pytest.mark.parametrize(
-    "pair", [(X, Y), (Z, W), (X, W), (Z, Y)], ids=["real", "complex", "mixed", "mixed too"]
-)
+@pytest.mark.parametrize("pair", [(X, Y), (Z, W), (X, W), (Z, Y)], ids=["real", "complex", "mixed", "mixed too"])
 def test_sums_products_and_quotients_are_good_to_the_last_bits(operation, pair):
     expected = [operation(a, b) for a, b in zip(*map(true, pair), strict=True)]
     assert off(operation(*pair), expected) < 4 * EPS

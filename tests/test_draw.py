@@ -43,7 +43,7 @@ def test_labels_do_not_cover_each_other_or_lines():
     labels = [Label(f"A{k}", 100 + 100j, 10, "k") for k in range(8)]
     places = [ground.place(label) for label in labels]
     for k, (place, label) in enumerate(zip(places, labels, strict=True)):
-        width, height = extent(label)
+        width, height = extent(label.text, label.size)
         assert abs(place.imag - 100) > height / 2  # off the line
         for other in places[:k]:
             assert abs(place.real - other.real) > 0.9 * width or abs(place.imag - other.imag) > 0.9 * height

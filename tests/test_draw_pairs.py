@@ -33,14 +33,13 @@ def solved(name):
     return solve(build(read_text(PROBLEMS[name], f"{name}.yaml")))
 
 
-def placed(results, k):
-    """Points of links in a position."""
-    return Scene(results.linkage, results.structure, results.motion.poses, k).place
+def scene(results, k):
+    return Scene(results.linkage, results.structure, results.motion.poses, k)
 
 
 def shaped(name, k):
     results = solved(name)
-    return shape(results.linkage.meshes[0], results.linkage, placed(results, k))
+    return shape(scene(results, k), results.linkage.meshes[0])
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -132,7 +131,7 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
     text = PROBLEMS["flat follower"].replace("offset: 60", "offset: 5")
     text = text.replace("B: [0, 140]", "B: [0, 85]").replace("D: [120, 230]", "D: [120, 175]")
     results = solve(build(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
-    found = shape(results.linkage.meshes[0], results.linkage, placed(results, 0))
+    found = shape(scene(results, 0), results.linkage.meshes[0])
     assert not found.true
     turns = np.unwrap(np.angle(np.diff(found.disk[::6])))
     assert np.all(np.diff(turns) < 0.05) or np.all(np.diff(turns) > -0.05)  # convex all the same
@@ -147,17 +146,17 @@ def test_wheels_far_larger_than_the_mechanism_do_not_decide_its_scale():
 
 def test_a_group_of_one_wheel_is_drawn_as_large_as_the_wheel():
     results = solved("inner")
-    scene = Scene(results.linkage, results.structure, results.motion.poses, 2)
+    here = scene(results, 2)
     wheel = shaped("inner", 2).discs[0]
-    assert {wheel.centre + wheel.radius * way for way in (1, 1j, -1, -1j)} <= set(scene.extent(["1"]))
+    assert {wheel.centre + wheel.radius * way for way in (1, 1j, -1, -1j)} <= set(here.extent(["1"]))
 
 
 @pytest.mark.parametrize("name", [*WHEELS, *CAMS])
 def test_a_higher_pair_is_named_where_the_links_touch(name):
     results = solved(name)
-    scene = Scene(results.linkage, results.structure, results.motion.poses, 2)
+    here = scene(results, 2)
     pair = next(p for p in results.structure.pairs if not p.lower)
-    assert scene.at(pair) == pytest.approx(contact(shaped(name, 2)))
+    assert here.at(pair) == pytest.approx(contact(shaped(name, 2)))
 
 
 def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
@@ -167,8 +166,8 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
     heads = []
     for k in range(len(runs)):
         sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
-        place = placed(results, k)
-        middle, along = cylinder(sheet, results.linkage, slide, place, (min(runs), max(runs)))
+        here = scene(results, k)
+        middle, along = cylinder(sheet, here, slide), here.along(slide)
         corners = sheet.axes.patches[-1].get_xy()
         length = max(abs(complex(*c) - middle) for c in corners)
         (x, y) = next(line for line in sheet.axes.lines if line.get_linewidth() == 2.4).get_data()
@@ -177,15 +176,15 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
         assert abs(complex(x[0], y[0]) - head) < BARREL
         end = sheet.on(results.motion.named("A").x[k])
         assert dot(along, end - middle) > length - BARREL  # the rod comes out of it
-        heads.append(dot(along, head - sheet.on(place("1", 0j))))
+        heads.append(dot(along, head - sheet.on(here.place("1", 0j))))
     assert np.all(np.diff(heads) > 0)
 
 
 def test_a_spring_is_drawn_from_end_to_end():
     results = solved("cylinder")
     sheet = Sheet("t", "c", [0j, 0.6 + 0.3j])
-    place = placed(results, 4)
-    springs(sheet, results.linkage, place)
+    place = scene(results, 4).place
+    springs(sheet, scene(results, 4))
     zigzag = max((line.get_xydata() for line in sheet.axes.lines), key=len)
     ends = [sheet.on(place("0", 0.52 - 0.12j)), sheet.on(place("3", 0.2 + 0j))]
     assert [complex(*zigzag[0]), complex(*zigzag[-1])] == pytest.approx(ends)

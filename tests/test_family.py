@@ -10,7 +10,7 @@ from test_commands import ROOT
 
 from tmm_cli.linkage import Request
 from tmm_cli.problem import schema
-from tmm_cli.problem.build import Builder
+from tmm_cli.problem.build import build_shape
 from tmm_cli.problem.expressions import evaluate_quantity, resolve_parameters
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.reader import read_file
@@ -19,6 +19,7 @@ from tmm_cli.problem.values import ValueReader
 from tmm_cli.tape import record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.batch import everything, prepare
+from tmm_cli.variants.one_by_one import OneByOne
 from tmm_cli.variants.taped import Taped
 from tmm_cli.variants.variant import NoTapeError, Places, Variant
 
@@ -35,7 +36,7 @@ def maker(name, given):
         units = VariedUnits(units) if any(isinstance(x, TracedNumber) for x in numbers) else units
         varied = {key: PhysicalValue(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
         values = ValueReader(varied | resolve_parameters(rest, units, varied), units)
-        linkage = Builder(shape, tree, values).problem().linkage
+        linkage = build_shape(shape, tree, values).linkage
         always = tuple(replace(load, when="always") for load in linkage.loads if load.table is None)
         linkage = replace(linkage, loads=always)
         return Variant(linkage, Request(start=linkage.sketch.at))
@@ -95,3 +96,15 @@ def test_groups_found_by_iteration_are_no_family():
     )
     with pytest.raises(NoTapeError):
         Taped(make, first, everything)
+
+
+def test_groups_followed_beside_their_neighbours_are_those_followed_alone():
+    make, first = maker("press-class-iii", ["OA", "CE", "FE"])
+    columns = np.array(first) * (1 + 0.2 * np.random.default_rng(2).uniform(-1, 1, (3, 3)))
+    q = np.linspace(0.1, 6.1, 12)
+    found = OneByOne(make, first, everything)(columns, Places(np.zeros(0), q))
+    for k, row in enumerate(columns):
+        linkage = make(row).linkage
+        batch = prepare(linkage, everything, forces=False)
+        for key, alone in batch(q).items():
+            assert np.allclose(found[key][k], alone, rtol=0, atol=1e-12 * np.nanmax(np.abs(alone)), equal_nan=True)

@@ -35,7 +35,7 @@ def followed(seed, kinds, driver):
 def test_a_linkage_goes_its_whole_way_without_a_jump(case):
     it, kernels, way = followed(*case)
     ends = 1e-5 * (way.end - way.start) * (not way.full)
-    q = np.linspace(way.start + ends, way.end - ends, 1500 * way.turns + 1)
+    q = np.linspace(way.start + ends, way.end - ends, 400 * way.turns + 1)
     motion = move(it, kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assert np.all(motion.placed)
     step = q[1] - q[0]

@@ -200,15 +200,19 @@ def triad(r, rods, at, start, guide=None):
     return problem, equations
 
 
-def determinant(equations, x, y, t, q):
+def determinant(r, guide, x, y, t, q):
+    """Of the equations' derivatives by x, y and t, each over 2 for a rod."""
     rows = []
-    for k in range(3):
-        rows.append([mp.diff(lambda *v, k=k: equations(*v, q)[k], (x, y, t), tuple(int(n == m) for m in range(3)))
-                     for n in range(3)])  # fmt: skip
+    for k, pivot in enumerate(((mp.mpf(r) * mp.cos(q), mp.mpf(r) * mp.sin(q)), PIVOTS["K"], PIVOTS["L"])):
+        here = plate(x, y, t, k)
+        across = (here[0] - mp.mpf(pivot[0]), here[1] - mp.mpf(pivot[1]))
+        if guide and k == 2:
+            across = (-mp.sin(guide[2]), mp.cos(guide[2]))
+        rows.append([*across, (here[0] - x) * across[1] - (here[1] - y) * across[0]])
     return mp.det(mp.matrix(rows))
 
 
-def folds(problem, equations):
+def folds(problem, equations, r, guide):
     """Limits, and where in 50 digits the three equations have a double root, from a state beside each limit."""
     results = results_of(problem, "kinematics")
     found = sorted(limit.place for limit in results.driver_range.limits)
@@ -217,7 +221,7 @@ def folds(problem, equations):
         motion = at_positions(results, np.array([place + 1e-6 * inside]))
         pose = motion.poses["3"]
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), place)
-        root = mp.findroot(lambda *v: (*equations(*v), determinant(equations, *v)), tuple(map(mp.mpf, start)))
+        root = mp.findroot(lambda *v: (*equations(*v), determinant(r, guide, *v)), tuple(map(mp.mpf, start)))
         exact.append(root[3])
     return found, exact
 
@@ -228,7 +232,7 @@ def folds(problem, equations):
 )
 def test_limits_of_a_class_iii_group(r, rods, guide):
     problem, equations = triad(r, rods, 0.9, (0.45, 0.2, 0.4), guide)
-    found, exact = folds(problem, equations)
+    found, exact = folds(problem, equations, r, guide)
     near(found, exact)
 
 

@@ -28,41 +28,31 @@ def refusal(text):
 REFUSED = {
     "{task: crank-slider, stroke: 120, k: 1.5, ratio: 40}":
         "synthesis.k: the crank does not turn fully: k is too large for this ratio of rod and crank\n"
-        "  found:   1.5\n  allowed: 1.2218 or less",
+        "  found:   1.5",
     "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}":
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3.5\n"
-        "  allowed: 2.28853 or less",
+        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3.5\n",
     "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}":
-        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n"
-        "  allowed: 1 or more",
+        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n",
     "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}":
-        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n"
-        "  allowed: 31.1481 deg or more",
+        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n",
     "{task: crank-slider, stroke: 120, k: 3, pressure: 80}":
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n"
-        "  allowed: 2.05677 or less",
+        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n",
     "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}":
-        "synthesis.pressure: a largest pressure angle is less than a right angle\n  found:   95\n"
-        "  allowed: 89.9999 deg or less",
+        "synthesis.pressure: a largest pressure angle is less than a right angle\n  found:   95\n",
     "{task: crank-slider, stroke: 120, nu: 2, ratio: 2.5}":
-        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n"
-        "  allowed: 1.49999 or less",
+        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n",
     "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}":
-        "synthesis.nu: the offset is a distance; turn the drawing over for the other side\n  found:   -1\n"
-        "  allowed: 0 or more",
+        "synthesis.nu: the offset is a distance; turn the drawing over for the other side\n  found:   -1\n",
     "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}":
-        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n"
-        "  allowed: 1.20001 or more",
+        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n",
     "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}":
-        "synthesis.stroke: there is no such motion\n  found:   0\n  allowed: 0.001 mm or more",
+        "synthesis.stroke: this is too small for a mechanism\n  found:   0",
     "{task: crank-slider, stroke: 50, e: 80, k: 1.5}":
-        "synthesis.k: the crank does not turn fully: k is too large for this stroke and offset\n  found:   1.5\n"
-        "  allowed: 1.43251 or less",
+        "synthesis.k: the crank does not turn fully: k is too large for this stroke and offset\n  found:   1.5\n",
     "{task: crank-slider, stroke: 50, e: 20, k: 1}":
-        "synthesis.k: with an offset k is more than 1\n  found:   1\n  allowed: 1.00001 or more",
+        "synthesis.k: with an offset k is more than 1\n  found:   1",
     "{task: crank-slider, stroke: 50, e: 0, k: 1}":
-        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n"
-        "  allowed: 0.001 mm or more; but then another number is refused",
+        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n",
     "{task: crank-slider, stroke: 20, k: 1.1}":
         "synthesis: these keys do not determine a crank-slider\n  found:   k\n"
         "  allowed: ratio and nu; or ratio and k; or pressure and nu; or pressure and k; or e and k",
@@ -103,7 +93,7 @@ NO_MECHANISM = {
     "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2":
         "l3: this is too large for a mechanism\n  found:   1e+250\n  allowed: 0.001 to 1e+09 mm",
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]":
-        "near[0]: this is too large for a mechanism\n  found:   1e+200\n  allowed: 1e+09 mm or less",
+        "near[0]: this is too large for a mechanism\n  found:   1e+200",
     "four-bar-by-k, l3: 100, psi1: 1e16, psi2: 10000000000000050, k: 1.2": "psi1: this is too large",
     "shaper, stroke: 10, k: 1.7, frame_ratio: .499, rod_ratio: 3e9": "rod_ratio: this is too large",
     "grashof, l1: 1e200, l2: 1e200, l3: 1e200, l4: 1e199": "l1: this is too large",

@@ -16,7 +16,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.crank_slider.solver import Task, find, largest_k, largest_theta, least_pressure, shortest
+from tmm_cli.synthesis.crank_slider.solver import Task, find, largest_theta, least_pressure, shortest
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.reading import build
 from tmm_cli.variants.batch import prepare
@@ -167,7 +167,6 @@ def test_the_least_pressure_angle_is_the_least_over_all_lengths():
         lengths = np.geomspace(1, longest, 200_003)[1:-1]
         least = np.min(find(Task(stroke=1.0, k=k, ratio=lengths)).pressure)
         assert float(least_pressure(theta_of(k))) == pytest.approx(least, rel=1e-7)
-        assert float(largest_k(least_pressure(theta_of(k)))) == pytest.approx(k, rel=1e-12)
 
 
 def test_h_and_nu_obey_the_relations_of_the_course():

@@ -26,7 +26,7 @@ from tmm_cli.groups.telescope import Telescope, TelescopeParts
 from tmm_cli.kinematics.motion import move
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.reading import build, task_of
 from tmm_cli.variants.batch import everything, prepare
 from tmm_cli.variants.batch import solved as stages
@@ -235,7 +235,7 @@ positions: {at: [first, (first + last)/2, last]}
 
 def test_candidates_whose_strokes_vary_are_on_one_tape():
     """The boom goes from 10 to 60 deg in each of them, so that the cylinder goes another way in each."""
-    search = Search(task_of(read_text(LIFT, "x.yaml")))
+    search = Candidates(task_of(read_text(LIFT, "x.yaml")))
     assert isinstance(search.program, Taped)
     variants = search.numbers(np.random.default_rng(3).random((5, 3)))
     places = Places(np.linspace(0, 1, 7), np.zeros(0))
@@ -260,7 +260,7 @@ def digger():
     for old, new in (("s1: sqrt(600^2", "s1: sqrt(HX^2"), ("H: [600, 0]", "H: [HX, 0]"), ("points: {O", asked)):
         assert old in text
         text = text.replace(old, new, 1)
-    return Search(task_of(read_text(text, "x.yaml")))
+    return Candidates(task_of(read_text(text, "x.yaml")))
 
 
 def test_drivers_of_each_candidate_pass_through_its_own_sketch():

@@ -109,7 +109,7 @@ class Fold(Closely):
         for _ in range(60):
             gaps = [*self.residuals(X, [q]), X[k] - value]
             M = mp.matrix(self.size + 1, self.size + 1)
-            M[: self.size, : self.size] = self.jacobian(X, [q])
+            M[: self.size, : self.size] = self.jacobian(X)
             M[self.size - 1, self.size], M[self.size, k] = -1, 1
             step = mp.lu_solve(M, -mp.matrix(gaps))
             X, q = X + step[: self.size], q + step[self.size]

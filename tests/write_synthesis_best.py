@@ -31,8 +31,9 @@ def long_runs():
             (one.missed, one.values[0], seed, [float(v) for v in one.numbers], population * len(one.evolved.history))
         )
     _, objective, seed, numbers, _ = min(runs)
+    names = [parameter.name for parameter in search.task.parameters]
     return {
-        "problem": SEARCHED, "objective": objective, "numbers": dict(zip(search.task.low, numbers, strict=True)),
+        "problem": SEARCHED, "objective": objective, "numbers": dict(zip(names, numbers, strict=True)),
         "seed": seed, "population": population, "generations": generations,
         "runs": [{"seed": s, "objective": f, "missed": m, "evaluations": n} for m, f, s, _, n in runs],
     }  # fmt: skip

@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from tmm_cli.analysis.inputs import Inputs
+    from tmm_cli.analysis.mechanism import Inputs
     from tmm_cli.analysis.pipeline import Results
     from tmm_cli.analysis.spatial_chain import ChainResults
     from tmm_cli.problem.record import ChainProblem, Problem, TaskProblem
@@ -91,7 +91,7 @@ def inputs_of(problem: Problem) -> Inputs:
     """What the stages need of a problem."""
     from functools import cache
 
-    from tmm_cli.analysis.inputs import Inputs
+    from tmm_cli.analysis.mechanism import Inputs
 
     again = problem.extended
     extended = None if again is None else cache(lambda: inputs_of(again()))

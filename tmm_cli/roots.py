@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from tmm_cli.tolerances import SMOOTH
 from tmm_cli.vectors import Real
 
 SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
@@ -101,5 +102,5 @@ def top(function: Callable[[Real], Real], place: float, half: float) -> float:
         if curved == 0 or abs(here) > 1:
             return place
         here -= float(slope(here)) / curved
-    smooth = rough < 1e-13 * float(np.max(np.abs(values))) and float(np.ptp(values)) > 1e3 * rough
+    smooth = rough < SMOOTH * float(np.max(np.abs(values))) and float(np.ptp(values)) > 1e3 * rough
     return place + half * here if smooth and abs(here) < 1 else place

@@ -7,9 +7,10 @@ the least singular value of a scaled Jacobian over the largest.
 
 from __future__ import annotations
 
-# Rounding, in units of the last place
-ROUNDINGS = 8.0  # of the data: a distance below so many of them cannot be told from zero
-CONSTRUCTION_ROUNDINGS = 16  # that a construction of a few steps may lose
+# Rounding
+ROUNDOFF = 2.0**-53  # relative: of float64
+ROUNDINGS = 8.0  # units of the last place of the data: a distance below so many of them cannot be told from zero
+CONSTRUCTION_ROUNDINGS = 16  # units of the last place that a construction of a few steps may lose
 
 # Dead positions
 DEAD = 1e-6  # margin: the least of it is found to half the digits, 1e-8; a hundred times that is sure
@@ -23,26 +24,40 @@ DEAD_COSINE_DOUBLE = 4e-15  # of the same terms in float64
 # Newton's method, without dimension: sizes of the group, rad
 LAST_STEP = 1e-9  # a step below this squares to less than rounding: it was the last
 LAST_STEP_EXTENDED = 1e-20  # of double-doubles, whose steps are found in float64: the next is 1e-16 of this
+LAST_STEP_AFAR = 1e-12  # the last of damped steps from anywhere: the next one is all rounding
 CONVERGED = 1e-6  # a last step, or a residual, above this has not converged
 CLOSED = 1e-9  # residual of a group that is closed, and is not so to half the digits only
 
 # Equal
-SAME_POSE = 1e-6  # sizes, rad: two assemblies are the same; found in a dead position they agree to half the digits
+SAME_ASSEMBLY = 1e-6  # sizes, rad: two assemblies are the same; found in a dead position they agree to half the digits
 MEET = 1e-4  # sizes, rad: two assemblies this near, both dead, are one
 CAME_BACK = 1e-6  # sizes of a group, or of a cycle: what is no farther off after a cycle is back where it was
 SAME_PLACE = 1e-9  # rad, m: places of the driver, and times of strokes, that differ by rounding of a search only
+SAME_IN_SKETCH = 1e-9  # sizes of the group, rad: two assemblies that differ by less at a point differ by rounding there
+SEAM = 1e-12  # rad: a place this near to the end of a cycle is at the beginning of the next one
 SAME_RATIO = 1e-12  # relative: numbers that differ by what arithmetic on a file's numbers rounds (0.1 + 0.2 is not 0.3)
 PARALLEL = 1e-9  # sine: lines that meet under less do not meet
 
 # Redundant constraints: the least real singular value of a linkage was 1e-2, an idle one has 1e-16
 REDUNDANT = 1e-8  # of the largest singular value
 DEPENDENT = 1e-9  # of the largest singular value, or of a row, out of the plane; dependent rows are at 1e-15
+SHARED = 1e-6  # of one: a condition with less part in a sum that says nothing new has none
+VANISHED = 1e-11  # sizes: a triad's polynomial with less everywhere is zero, and tells nothing
 TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for nothing
 
 # At rest, or nothing
 RESTS = 1e-12  # of the longest run, of the largest speed: less is rounding
+NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
+NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign changes jumps there
+NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly
+SMOOTH = 1e-13  # of the largest value: what a polynomial leaves of a smooth function
 NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for rounding has no largest place
+NO_GAIN = 1e-12  # rad: a pressure angle this near to 90 deg has no coefficient of force increase
+NO_COORDINATE = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
+INFINITELY_FAR = 1e9  # sizes: a guide's force that acts farther away is what rounding leaves of a couple
 NO_MOMENT = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
 FRICTION_AGREES = 1e-13  # of the largest reaction: friction and the reactions that it comes from
+FRICTION_ROUNDED = 1e-15  # of the largest reaction: a smaller step of Newton's method is rounding
+FRICTION_LOCKS = 1e-9  # of the largest reaction: a last step above this, or a size below minus this, has no solution
 NO_VIOLATION = 1e-12  # of its scale: a smaller violation is none that could be shown
 MET = 1e-9  # relative: a wanted value is met when it is missed by less

@@ -10,9 +10,8 @@ import numpy as np
 
 from tmm_cli.double_double import exactly
 from tmm_cli.linkage import Linkage
+from tmm_cli.tolerances import NO_COORDINATE
 from tmm_cli.vectors import Record, mapped
-
-NOTHING = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ def lengths(linkage: Linkage) -> tuple[Length, ...]:
     """Every coordinate of every link that is not zero. The same number on the same link is one length."""
     found: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_vectors(linkage))
-    least = NOTHING * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
+    least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
     for link, path, value in vectors:
         for along, part in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
             if abs(part) > least:

@@ -16,8 +16,7 @@ import numpy as np
 
 from tmm_cli.accuracy.data import changed, lengths, widened
 from tmm_cli.analysis.extended import near_dead, refined
-from tmm_cli.analysis.inputs import Inputs
-from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
 from tmm_cli.analysis.selection import values as leading_values
 from tmm_cli.double_double import exactly, rounded
@@ -28,9 +27,9 @@ from tmm_cli.kinematics.motion import move
 from tmm_cli.kinematics.strokes import Strokes, output_run
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 
-U = 2.0**-53
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
@@ -143,7 +142,7 @@ class _Judge:
         rows = self.rows(self.of(base))
         values = np.stack([value[..., chosen] for value in self.values.values()])
         share, paper, by_q = self.responses(base, first, near, lambda other: self.gap(self.rows(self.of(other)), rows))
-        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + U * np.abs(values)
+        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
         bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 

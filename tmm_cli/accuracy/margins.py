@@ -31,9 +31,9 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 
-U = 2.0**-53
 LOSS = 128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
 SHARP = 10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
 AWAY = 4.0  # the same for a driver that is not where it was asked to be
@@ -47,12 +47,12 @@ def relative(results: Results, blur: float = 0.0) -> Real:
     """
     motion = results.motion
     assert motion is not None
-    unit = np.full(np.shape(motion.q), U)
+    unit = np.full(np.shape(motion.q), ROUNDOFF)
     if motion.where is not None:  # computed in extended precision, and rounded
         unit[motion.where] = EPS
     away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
     lost = growth(results)
-    found: Real = LOSS * (U + unit * (1 + np.abs(motion.q)) * slenderness(results) * lost) + AWAY * away * lost
+    found: Real = LOSS * (ROUNDOFF + unit * (1 + np.abs(motion.q)) * slenderness(results) * lost) + AWAY * away * lost
     return found
 
 

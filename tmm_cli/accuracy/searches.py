@@ -1,6 +1,6 @@
 """Bounds of what is searched for: ends of strokes, limits, dead positions, largest pressure angles.
 
-A root is known as well as its function's sign: in longdouble the nearest places on both sides of it where the sign is
+A root is known as well as its function's sign: in double-doubles the nearest places on both sides of it where the sign is
 sure. What follows from several such numbers is shifted by the bound of each of them, one after the other.
 """
 
@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_cli.accuracy.data import Length, changed, lengths
-from tmm_cli.accuracy.digits import PAPER, SHARE, Digits, U
+from tmm_cli.accuracy.digits import PAPER, SHARE, Digits
 from tmm_cli.accuracy.wide import Wide
 from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.analysis.pipeline import CYCLE, Results, cycle_losses
 from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real, mapped
 
 Cells = Mapping[Hashable, Real]
@@ -41,7 +42,7 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
     """
     values, told = of(results), Digits(mu=mu)
     for key, value in values.items():
-        told.bound[key] = 2 * U * np.abs(np.asarray(value, float))
+        told.bound[key] = 2 * ROUNDOFF * np.abs(np.asarray(value, float))
         told.lengths[key], told.paper[key] = np.zeros((2, *np.shape(value)))
     with np.errstate(all="ignore"):
         for found in found_in(results, wide):
@@ -94,7 +95,7 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
             yield found(f"travels[{k}].{part}", bound)
     for k, dead in enumerate(results.dead):
         yield found(f"dead[{k}].place", wide.dead(dead.place, dead.group, span))
-        yield found(f"dead[{k}].margin", dead.margin + 4 * U)
+        yield found(f"dead[{k}].margin", dead.margin + 4 * ROUNDOFF)
     for k, pressure in enumerate(results.pressure):
         largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
         yield found(f"pressure[{k}].largest", largest, -1)
@@ -114,7 +115,7 @@ def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[t
     span = driver_range.end - driver_range.start
     for name, towards, place in (("start", -1, driver_range.start), ("end", 1, driver_range.end)):
         limit = None if driver_range.full else _limit(results, place)
-        yield name, 2 * U * abs(place) if limit is None else wide.end(place, towards, limit, span)
+        yield name, 2 * ROUNDOFF * abs(place) if limit is None else wide.end(place, towards, limit, span)
 
 
 def blur(results: Results, wide: Wide) -> float:

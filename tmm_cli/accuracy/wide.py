@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.digits import U, exact
+from tmm_cli.accuracy.digits import exact
 from tmm_cli.accuracy.margins import growth, slenderness
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.double_double import EPS, DoubleDouble, rounded
@@ -18,7 +18,7 @@ from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import pressure_at
 from tmm_cli.kinematics.strokes import Strokes, Travel, output_place, output_slope
-from tmm_cli.tolerances import NO_PRESSURE
+from tmm_cli.tolerances import NO_PRESSURE, ROUNDOFF
 from tmm_cli.vectors import Real
 
 FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
@@ -40,7 +40,7 @@ class Wide:
         self.linkage = exact(results) if growth is None else results.linkage
         self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
         self.kind: Any = DoubleDouble if growth is None else np.asarray
-        self.noise = NOISE * (EPS if growth is None else U * growth)
+        self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
 
     def at(self, q: Real, order: int = 0) -> LinkStates:
         """The links there."""
@@ -78,7 +78,9 @@ class Wide:
             off = np.abs(rounded(output_place(self.at(near.ravel()), link).reshape(near.shape) - told))
         if swings:
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
-        found: Real = 2 * np.max(off, axis=0, where=np.isfinite(off), initial=0.0) + 4 * (U + self.noise) * np.abs(told)
+        found: Real = 2 * np.max(off, axis=0, where=np.isfinite(off), initial=0.0) + 4 * (
+            ROUNDOFF + self.noise
+        ) * np.abs(told)
         return found
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
@@ -91,7 +93,7 @@ class Wide:
         """Of the driver's places at the least and the largest run of an output, and of these runs."""
         places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(asked) < places) & (places < np.max(asked))
-        bounds = np.where(inner, self.turns(places, travel.link), 2 * U * np.abs(places))
+        bounds = np.where(inner, self.turns(places, travel.link), 2 * ROUNDOFF * np.abs(places))
         told = np.array([travel.low, travel.high])
         return bounds, self.runs(places, bounds, told, travel.link, travel.kind == "swing")
 
@@ -99,7 +101,7 @@ class Wide:
         """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
         kernel = next((k for k in self.kernels if k.group.title == group), None)
         if not isinstance(kernel, Closed):
-            return LEAST * span + 4 * U * abs(place)
+            return LEAST * span + 4 * ROUNDOFF * abs(place)
         steps, both = self.sides(np.array([place]))
         inside, outside = self.at(both.ravel()).placed.reshape(both.shape)[::towards]
         sure = float(_first(inside & ~outside, steps)[0])
@@ -120,18 +122,18 @@ class Wide:
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
         """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only."""
         if largest < NO_PRESSURE:
-            return largest + 4 * U, span
+            return largest + 4 * ROUNDOFF, span
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
         states = self.at(self.kind(place) + step * np.arange(-2, 3))
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
-        error = 2 * abs(float(here) - largest) + 32 * U + 4 * self.noise / max(float(np.cos(largest)), U)
+        error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
         bend = float(2 * here - b1 - a1) / step**2
         if not bend * step**2 > error:  # no bend that could be told from rounding
             return error, span
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
         off = abs(slope / bend)  # where the slope of a smooth top is nothing
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
-        return error, min(4 * off + SMOOTH * step + 4 * U * abs(place) if off < 1e-3 * step else flat, span)
+        return error, min(4 * off + SMOOTH * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat, span)
 
 
 def coarsely(results: Results) -> Wide:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from tmm_cli.analysis.inputs import Inputs
+from tmm_cli.analysis.mechanism import Inputs
 from tmm_cli.analysis.pipeline import Results, solve
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.enumerate import find_assemblies

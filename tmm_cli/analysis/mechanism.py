@@ -5,13 +5,14 @@ A Mechanism finds each of them when it is first asked for, so the structure alon
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from tmm_cli.analysis.inputs import Inputs
 from tmm_cli.errors import LinkageError
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import Linkage, Request
 from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.naming import roles
 
@@ -24,6 +25,24 @@ if TYPE_CHECKING:  # what moves the linkage is imported when it is moved
 
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """A linkage, the positions asked for, and what is allowed.
+
+    pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
+    the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
+    None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
+    as the structure alone does not need them.
+    """
+
+    linkage: Linkage
+    request: Request = field(default_factory=Request)
+    pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
+    lever_limit: float = 0.05
+    extended: Callable[[], Inputs] | None = None
+    sized: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from tmm_cli.analysis.inputs import Inputs
-from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.double_double import exactly

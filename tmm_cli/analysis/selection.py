@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tmm_cli.errors import UnknownNameError
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import BALANCING, LINK, POINT, REACTION, Quantity
@@ -30,13 +32,7 @@ def named_points(linkage: Linkage) -> dict[str, Place]:
 def mass_centres(linkage: Linkage) -> dict[str, Place]:
     """Centres of mass of the links that have one, named S3 after the link."""
     links = linkage.links
-    return {f"S{name}": (name, links[name].centre) for name in linkage.moving if _heavy(links[name].mass)}
-
-
-def _heavy(mass: float) -> bool:
-    import numpy as np
-
-    return bool(np.any(mass != 0))
+    return {f"S{name}": (name, links[name].centre) for name in linkage.moving if np.any(links[name].mass != 0)}
 
 
 def check(linkage: Linkage, names: Sequence[str]) -> None:

@@ -20,8 +20,10 @@ from tmm_cli.structure.cycle import turns_of_cycle
 FOLLOWED = 720  # places a turn at which angles are followed through
 
 
-def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None) -> tuple[Kernel, ...]:
-    """The groups with their assemblies, in solving order.
+def assemble(
+    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[Kernel, ...] = ()
+) -> tuple[Kernel, ...]:
+    """The groups with their assemblies, in solving order; like: those of a linkage whose lengths differ, which helps.
 
     Raises AssemblyError, AmbiguousSketchError, SketchMismatchError.
     """
@@ -32,7 +34,8 @@ def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] |
         poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
     chosen: list[Kernel] = []
     for group in structure.solved if groups is None else groups:
-        kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen))
+        other = like[len(chosen)] if like else None
+        kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)
     check_fit(linkage, poses)
@@ -40,8 +43,9 @@ def assemble(linkage: Linkage, structure: Structure, groups: tuple[Group, ...] |
 
 
 def _assembled(
-    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
-) -> tuple[Kernel, Placement]:
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    like: Kernel | None,
+) -> tuple[Kernel, Placement]:  # fmt: skip
     q = np.array([linkage.sketch.at])
     closed = closed_form(group, linkage)
     if closed is not None:
@@ -53,7 +57,7 @@ def _assembled(
         return kernel, at
     from tmm_cli.assembly.search import assembled  # class II alone needs none of it
 
-    return assembled(group, linkage, poses, drives, before)
+    return assembled(group, linkage, poses, drives, before, like)
 
 
 def closed_form(group: Group, linkage: Linkage) -> Closed | None:

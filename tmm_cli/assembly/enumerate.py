@@ -21,7 +21,7 @@ from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.groups.state import Drives, Pose, State
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group, Structure
-from tmm_cli.tolerances import CLOSED, DEAD, MEET, SAME_POSE
+from tmm_cli.tolerances import CLOSED, DEAD, MEET, SAME_ASSEMBLY
 
 if TYPE_CHECKING:
     from tmm_cli.groups.newton import Newton
@@ -133,7 +133,7 @@ def _of_group(group: Group, linkage: Linkage, motion: LinkStates, placed: Mappin
     if sketched is None:
         return found
     size = max((abs(p) for link in group.links for p in linkage.links[link].points.values()), default=1.0) or 1.0
-    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME_POSE) for a in found.assemblies]
+    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME_ASSEMBLY) for a in found.assemblies]
     return replace(found, assemblies=tuple(marked))
 
 
@@ -241,7 +241,7 @@ def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: LinkStat
     for seed in range(1, ROUNDS + 1):
         for state in all_assemblies(kernel, placed, motion.drives, seed, number):
             here = kernel.poses_of(state)
-            if not any(_apart(here, kernel.poses_of(other), kernel.size) < SAME_POSE for other in states):
+            if not any(_apart(here, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states):
                 states.append(state)
         if not turning or len(states) % 2 == 0:
             break
@@ -251,7 +251,7 @@ def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: LinkStat
 def _same(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
     """Whether an assembly is there already; in a dead position both that meet are known to half the digits only."""
     apart = _apart(poses, other.poses, size)
-    return apart < SAME_POSE or (apart < MEET and max(margin, other.margin) < DEAD)
+    return apart < SAME_ASSEMBLY or (apart < MEET and max(margin, other.margin) < DEAD)
 
 
 def _moves(kernel: Newton, state: State, placed: Mapping[str, Pose], drives: Drives) -> bool:

@@ -21,7 +21,7 @@ from tmm_cli.groups.state import Pose, State
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group, Passive, Structure, analyse, ties_of
 from tmm_cli.structure.graph import Tie
-from tmm_cli.tolerances import CONVERGED, REDUNDANT
+from tmm_cli.tolerances import CONVERGED, REDUNDANT, SHARED
 from tmm_cli.vectors import Real
 
 STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both ways
@@ -95,7 +95,7 @@ def _without_passive(
     """Leave out so many conditions, the last ones of the file first, that the count is right."""
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # combinations of rows that say nothing new
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]
-    heavy = np.max(np.abs(left), axis=0) > 1e-6
+    heavy = np.max(np.abs(left), axis=0) > SHARED
     names = dict.fromkeys(row.name for row, there in zip(rows, heavy, strict=True) if there)
     pairs = {p.name: p for p in structure.pairs}
     among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))

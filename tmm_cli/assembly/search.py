@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.assembly.continuation import Walker
+from tmm_cli.assembly.neighbour import corrected
 from tmm_cli.assembly.sketch import nearest_to_sketch, sketch_distance, sketchable
 from tmm_cli.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError
 from tmm_cli.groups.base import Kernel, reach
@@ -25,7 +26,7 @@ from tmm_cli.groups.state import Drives, Placement, Pose, State
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group
 from tmm_cli.structure.cycle import turns_of_cycle
-from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, SAME_POSE
+from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, LAST_STEP_AFAR, SAME_ASSEMBLY
 from tmm_cli.vectors import Real, unit
 
 STARTS = 400  # in one round of looking for all assemblies
@@ -38,9 +39,10 @@ CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is t
 
 
 def assembled(
-    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...]
-) -> tuple[Newton, Placement]:
-    """The group in the assembly that the sketch shows, followed along the driver's way.
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    like: Kernel | None = None,
+) -> tuple[Newton, Placement]:  # fmt: skip
+    """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
 
     Raises GroupTooLargeError, AssemblyError, AmbiguousSketchError.
     """
@@ -54,11 +56,13 @@ def assembled(
         raise AmbiguousSketchError(group, {})
     kernel = replace(kernel, start=state)
     if not kernel.by_angle:
-        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state))
+        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state, like))
     return kernel, kernel.place(poses, q, drives)
 
 
-def _traced(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State) -> BranchTrace | None:
+def _traced(
+    kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State, like: Kernel | None
+) -> BranchTrace | None:
     before = towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
 
     def source(q: Real, order: int) -> LinkStates:
@@ -66,7 +70,9 @@ def _traced(kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state:
 
     turns = linkage.driver.kind == "turn"
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
-    trace = Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    known = like.followed if like is not None else None
+    trace = corrected(kernel, source, known, linkage.sketch.at, state) if known is not None else None
+    trace = trace or Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return trace if trace is None or turns else replace(trace, unit=kernel.size)
 
 
@@ -94,7 +100,7 @@ def close_from_afar(
             size = np.max(np.abs(step), axis=-1, keepdims=True)
             step = step * np.minimum(1.0, STRIDE / size)
             state = state.moved(step, kernel.size)
-            if bool(np.all((size < 1e-12) | ~np.isfinite(size))):
+            if bool(np.all((size < LAST_STEP_AFAR) | ~np.isfinite(size))):
                 break
         state, last = kernel.close(state, known, drives)
         everything = {**known, **kernel.poses_of(state)}
@@ -133,7 +139,7 @@ def all_assemblies(
 
 def _alike(kernel: Newton, one: State, other: State) -> bool:
     turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
-    return bool(np.max(turned) < SAME_POSE and np.max(np.abs(one.x - other.x)) < SAME_POSE * kernel.size)
+    return bool(np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(one.x - other.x)) < SAME_ASSEMBLY * kernel.size)
 
 
 def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:

@@ -10,10 +10,10 @@ from tmm_cli.errors import AmbiguousSketchError, SketchMismatchError
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Pose
 from tmm_cli.linkage import Linkage
+from tmm_cli.tolerances import SAME_IN_SKETCH
 
 TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
 FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
-ROUNDED = 1e-9  # sizes of the group, rad: two assemblies that differ by less at a point differ by rounding there
 
 Shown = dict[str, complex | float]  # points (m) and angles of links (rad) by their names
 
@@ -50,7 +50,7 @@ def nearest_to_sketch(
     shown = [sketchable(linkage, poses) for poses in assemblies]
     tells = [
         name for name in shown[0]
-        if any(abs(one[name] - shown[0][name]) > ROUNDED * (1.0 if name in linkage.links else kernel.size)
+        if any(abs(one[name] - shown[0][name]) > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
                for one in shown[1:])
     ]  # fmt: skip
     sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)

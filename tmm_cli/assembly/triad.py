@@ -29,12 +29,11 @@ from tmm_cli.groups.guides import meet
 from tmm_cli.groups.state import Pose, State
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import PARALLEL
+from tmm_cli.tolerances import PARALLEL, VANISHED
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 DEGREE = 3  # of the trigonometric polynomial
 SAMPLES = 16  # places on the unit circle, more than 2 * DEGREE
-LOST = 1e-11  # a polynomial smaller than this (lengths in the group's size) vanishes
 ANNULUS = 0.5  # roots farther from the unit circle than this factor are not nearly real
 NEAR = 0.03  # sizes of the group: what a place found from a root may leave of the third condition before refinement
 
@@ -144,9 +143,9 @@ def starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[State, int] | None:
     else:
         coefficients = polynomial(triad, known)
         size = np.abs(coefficients)
-        if np.max(size) < LOST:
+        if np.max(size) < VANISHED:
             return None
-        most = 2 * max(k for k in range(DEGREE + 1) if size[DEGREE + k] > LOST * np.max(size))
+        most = 2 * max(k for k in range(DEGREE + 1) if size[DEGREE + k] > VANISHED * np.max(size))
         roots = np.roots(coefficients[::-1])
         directions = np.array([z / abs(z) for z in roots if ANNULUS < abs(z) < 1 / ANNULUS])
     found = [(x * triad.size, z) for z in directions for x in _places(conditions(triad, known, np.array([z])))]

@@ -7,15 +7,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from tmm_cli.bench.measured import Measured, times
+from tmm_cli.bench.measured import Measured, cell, slack, times, words
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable, errors
 from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.errors import _
+from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 NAMED: dict[Compared, str] = {
@@ -49,13 +50,19 @@ class Accuracy(Measured):
     positions: int
     repeats: int
 
+    met: ClassVar[str] = _("all targets met: positions within 1e-14, the rest within 1e-13")
+
+    @property
+    def linkages(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row.linkage for row in self.rows))
+
     @property
     def failures(self) -> tuple[str, ...]:
         """Where the product misses its targets."""
         return tuple(
             f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
             for row in self.rows if row.method in (OURS.name, TAPED.name)
-            for quantity in QUANTITIES if not row.errors[quantity] <= self.slack * TARGETS[quantity]
+            for quantity in QUANTITIES if not row.errors[quantity] <= slack(self.reduced) * TARGETS[quantity]
         )  # fmt: skip
 
     def to_dict(self) -> dict[str, Any]:
@@ -67,13 +74,24 @@ class Accuracy(Measured):
 
     def lines(self) -> list[Sequence[object]]:
         """A line a linkage and method."""
-        found: list[Sequence[object]] = [["linkage", "method", "family", "setting", "us_per_position", *QUANTITIES]]
-        for row in self.rows:
-            time = "" if row.microseconds is None else f"{row.microseconds:.4g}"
-            setting = "" if row.setting is None else f"{row.setting:g}"
-            errors = ["" if math.isnan(row.errors[q]) else f"{row.errors[q]:.3g}" for q in QUANTITIES]
-            found.append([row.linkage, row.method, row.family, setting, time, *errors])
-        return found
+        header = ("linkage", "method", "family", "setting", "us_per_position", *QUANTITIES)
+        return [header, *(
+            (row.linkage, row.method, row.family, cell(row.setting), cell(row.microseconds, 4),
+             *(cell(row.errors[quantity]) for quantity in QUANTITIES)) for row in self.rows
+        )]  # fmt: skip
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """One a linkage."""
+        return tuple(
+            words(
+                "accuracy", _("Errors over the largest value in the cycle: {linkage}").format(linkage=name),
+                (_("method"), _("µs a position"), *NAMED.values()),
+                [(row.method, "-" if row.microseconds is None else f"{row.microseconds:.3g}",
+                  *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in NAMED))
+                 for row in self.rows if row.linkage == name],
+            ) for name in self.linkages
+        )  # fmt: skip
 
 
 def _plain(value: float) -> float | str | None:

@@ -1,4 +1,10 @@
-"""The mechanisms that are also written by hand, with what turns their linkages into the arguments of that code."""
+"""Three mechanisms by hand: what an engineer who needs just this one mechanism writes in NumPy, and no more.
+
+Kinematics of all joints and centres of mass, all reactions with inertia and weights, and the balancing moment; for
+places q (rad) of a crank that turns evenly at w (rad/s). Dimensions are numbers or arrays (variants, 1). Against these
+the general calculator is timed, and results have its names; the formulas are those of any course, and each value is
+written once.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +15,173 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.bench import handwritten
 from tmm_cli.bench.references import reference
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import Linkage
 from tmm_cli.variants.batch import Batch, everything, prepare
 from tmm_cli.vectors import Real
+
+G = 9.81
+
+
+def cross(a: Any, b: Any) -> Any:
+    """z component of a x b."""
+    return a.real * b.imag - a.imag * b.real
+
+
+def crank_slider(q: Any, *, r: Any, l: Any, s: float, m1: float, m2: float, J2: float, m3: float, w: float, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501, E741
+    """Crank OA, rod AB with its centre of mass at the share s of its length, slider on the x axis; S1 at O."""
+    c, sn = np.cos(q), np.sin(q)
+    w2 = w * w
+    yA = r * sn
+    A = r * c + 1j * yA
+    h = np.sqrt((l - yA) * (l + yA))
+    AB = h - 1j * yA
+    B = A.real + h
+    vA = 1j * w * A
+    aA = -w2 * A
+    omega = -w * A.real / h
+    vB = vA.real + omega * yA
+    epsilon = (-aA.imag + omega * omega * -yA) / h
+    aB = aA.real + epsilon * yA - omega * omega * h
+    AS = s * AB
+    turn = 1j * epsilon - omega * omega
+    S, vS, aS = A + AS, vA + 1j * omega * AS, aA + turn * AS
+    P2 = -m2 * aS - 1j * (m2 * G)
+    P3 = -m3 * aB + F
+    # rod about A: N at B; slider: the rest of the rod's force at B
+    M2 = -J2 * epsilon + cross(AS, P2)
+    N = -(M2 + yA * P3) / h + m3 * G
+    RB = P3 + 1j * (N - m3 * G)  # on the rod from the slider
+    RA = -(P2 + RB)  # on the rod from the crank
+    T = -cross(A, -RA)
+    RO = RA + 1j * (m1 * G)
+    return {
+        "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "S2.x": S, "S2.v": vS, "S2.a": aS,
+        "2.omega": omega, "2.epsilon": epsilon, "R.A": RA, "R.B": RB, "R.x": N, "R.O": RO, "T.1": T,
+    }  # fmt: skip
+
+
+def six_bar(q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: complex, w: float, m: Any, J: Any, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501
+    """Crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider on the level y.
+
+    Centres of mass: of the crank at its middle, of the coupler at S2 (its axes, as a share of b), of the rocker at 0.4
+    of DB, of the rod at its middle, of the slider at F. m and J: masses and moments of inertia of links 1 to 5.
+    """
+    w2 = w * w
+    A = a * (np.cos(q) + 1j * np.sin(q))
+    vA, aA = 1j * w * A, -w2 * A
+    D = d - A
+    square = D.real * D.real + D.imag * D.imag
+    x = (square + b * b - c * c) / 2
+    h = np.sqrt(b * b * square - x * x)
+    AB = D * (x + 1j * h) / square
+    DB = AB - D
+    B = A + AB
+    det = cross(AB, DB)
+    omega2 = -(vA.real * DB.real + vA.imag * DB.imag) / det
+    omega3 = -(vA.real * AB.real + vA.imag * AB.imag) / det
+    vB = 1j * omega3 * DB
+    n2, n3 = omega2 * omega2, omega3 * omega3
+    n = n2 * AB - n3 * DB - aA
+    epsilon2 = (n.real * DB.real + n.imag * DB.imag) / det
+    epsilon3 = (n.real * AB.real + n.imag * AB.imag) / det
+    aB = (1j * epsilon3 - n3) * DB
+    # rod and slider
+    k = y - B.imag
+    g = np.sqrt((e - k) * (e + k))
+    BF = g + 1j * k
+    F5 = B + BF
+    omega4 = -vB.imag / g
+    vF = vB.real - omega4 * k
+    n4 = omega4 * omega4
+    epsilon4 = (n4 * k - aB.imag) / g
+    aF = aB.real - epsilon4 * k - n4 * g
+    AS2, DS3, BS4, OS1 = S2 * AB, 0.4 * DB, 0.5 * BF, 0.5 * A
+    S = (OS1, A + AS2, d + DS3, B + BS4)
+    v = (0.5 * vA, vA + 1j * omega2 * AS2, 0.4 * vB, vB + 1j * omega4 * BS4)
+    acc = (0.5 * aA, aA + (1j * epsilon2 - n2) * AS2, 0.4 * aB, aB + (1j * epsilon4 - n4) * BS4)
+    gi = 1j * G
+    P1, P2, P3, P4 = (-m[i] * (acc[i] + gi) for i in range(4))
+    P5 = -m[4] * (aF + gi) + F
+    M2, M3, M4 = -J[1] * epsilon2, -J[2] * epsilon3, -J[3] * epsilon4
+    N = -(M4 + cross(BS4, P4) + cross(BF, P5)) / g
+    RF = P5 + 1j * N  # on the rod from the slider
+    R4 = -(P4 + RF)  # on the rod in B
+    # coupler and rocker
+    t2 = -(M2 + cross(AS2, P2))
+    t3 = M3 + cross(DS3, P3) - cross(DB, R4)
+    # X in B on the coupler, so -X - R4 on the rocker: AB x X = t2, DB x X = t3
+    X = (t2 * DB - t3 * AB) / det
+    RA = -(P2 + X)
+    RD = X + R4 - P3
+    T = -cross(OS1, P1) + cross(A, RA)
+    RO = RA - P1
+    return {
+        "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "F.x": F5, "F.v": vF, "F.a": aF,
+        **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(4)},
+        "2.omega": omega2, "3.omega": omega3, "4.omega": omega4, "2.epsilon": epsilon2, "3.epsilon": epsilon3,
+        "4.epsilon": epsilon4, "R.A": RA, "R.B": X, "R.B''": R4, "R.D": RD, "R.F": RF, "R.x": N, "R.O": RO, "T.1": T,
+    }  # fmt: skip
+
+
+def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at: complex, w: float, m: Any, J: Any, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501
+    """Crank OA = a, OC = f down, slotted link CD = c, rod DE = e, ram on the level y; stone hinged to the crank in A.
+
+    Centres of mass: crank at 0.3, slotted link and rod at their middles, stone in A, ram at S5 from E. The force F acts
+    at `at` from E. m and J: of links 1 to 5.
+    """
+    w2 = w * w
+    A = a * (np.cos(q) + 1j * np.sin(q))
+    vA, aA = 1j * w * A, -w2 * A
+    CA = A + 1j * f
+    rho = np.abs(CA)
+    u = CA / rho
+    omega3 = (u.real * vA.imag - u.imag * vA.real) / rho
+    slide = u.real * vA.real + u.imag * vA.imag
+    n3 = omega3 * omega3
+    epsilon3 = (u.real * aA.imag - u.imag * aA.real - 2 * omega3 * slide) / rho
+    CD = c * u
+    D = CD - 1j * f
+    vD = 1j * omega3 * CD
+    turn3 = 1j * epsilon3 - n3
+    aD = turn3 * CD
+    k = y - D.imag
+    g = np.sqrt((e - k) * (e + k))
+    DE = g + 1j * k
+    E = D + DE
+    omega4 = -vD.imag / g
+    vE = vD.real - omega4 * k
+    n4 = omega4 * omega4
+    epsilon4 = (n4 * k - aD.imag) / g
+    aE = aD.real - epsilon4 * k - n4 * g
+    OS1, CS3, DS4 = 0.3 * A, 0.5 * CD, 0.5 * DE
+    S = (OS1, A, CS3 - 1j * f, D + DS4, E + S5)
+    v = (0.3 * vA, vA, 0.5 * vD, vD + 1j * omega4 * DS4, vE)
+    acc = (0.3 * aA, aA, 0.5 * aD, aD + (1j * epsilon4 - n4) * DS4, aE)
+    gi = 1j * G
+    P1, P2, P3, P4, P5 = (-m[i] * (acc[i] + gi) for i in range(5))
+    M2, M3, M4 = -J[1] * epsilon3, -J[2] * epsilon3, -J[3] * epsilon4
+    N = -(M4 + cross(DS4, P4) + cross(DE, P5 + F)) / g
+    RE = P5 + F + 1j * N  # on the rod from the ram
+    couple5 = -(cross(S5, P5) + cross(at, F + 0j * N))  # of the guide on the ram, about E
+    RD = -(P4 + RE)  # on the rod from the slotted link
+    # slotted link and stone: the stone turns with it, so its couple passes through the slot
+    R32 = -(M3 + M2 + cross(CS3, P3) + cross(CD, -RD)) / rho  # on the link from the stone, across the slot
+    Q = 1j * u * R32
+    couple2 = M2  # likewise
+    RC = -(P3 - RD + Q)
+    RA = Q - P2  # on the stone from the crank
+    T = -cross(OS1, P1) + cross(A, RA)
+    RO = RA - P1
+    return {
+        "A.x": A, "A.v": vA, "A.a": aA, "D.x": D, "D.v": vD, "D.a": aD, "E.x": E, "E.v": vE, "E.a": aE,
+        **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(5)},
+        "3.omega": omega3, "4.omega": omega4, "3.epsilon": epsilon3, "4.epsilon": epsilon4, "R.A": RA,
+        "R.A'": Q, "M.A'": couple2, "R.C": RC, "R.D": RD, "R.E": RE, "R.x": N, "M.x": couple5, "R.O": RO, "T.1": T,
+    }  # fmt: skip
+
 
 Arguments = Callable[[Linkage], dict[str, Any]]
 
@@ -116,7 +282,7 @@ def _shaper(linkage: Linkage) -> dict[str, Any]:
 
 
 MECHANISMS = (
-    Mechanism("crank-slider", handwritten.crank_slider, _crank_slider, ("1", "2")),
-    Mechanism("six-bar", handwritten.six_bar, _six_bar, ("1", "2", "3", "4")),
-    Mechanism("shaper", handwritten.shaper, _shaper, ("1", "3", "4")),
+    Mechanism("crank-slider", crank_slider, _crank_slider, ("1", "2")),
+    Mechanism("six-bar", six_bar, _six_bar, ("1", "2", "3", "4")),
+    Mechanism("shaper", shaper, _shaper, ("1", "3", "4")),
 )

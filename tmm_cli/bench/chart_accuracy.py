@@ -31,6 +31,11 @@ FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
 LINED = ("newton", "differences")  # methods that differ in one setting
 
 
+def charts(accuracy: Accuracy) -> dict[str, Figure]:
+    """One a linkage, by the names of their files."""
+    return {f"accuracy-{name}.png": chart(accuracy, name) for name in accuracy.linkages}
+
+
 def chart(accuracy: Accuracy, linkage: str) -> Figure:
     """The chart of one linkage, A4."""
     rows = [row for row in accuracy.rows if row.linkage == linkage]

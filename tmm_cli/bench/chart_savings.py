@@ -12,13 +12,18 @@ from tmm_cli.errors import _
 SHARE = 0.75  # of the height of a landscape sheet
 
 
+def charts(measured: Savings) -> dict[str, Figure]:
+    """By the names of their files."""
+    return dict.fromkeys(("savings.png", "savings.svg"), chart(measured))
+
+
 def chart(measured: Savings) -> Figure:
     """Bars of both shares, a pair a saving, with the numbers beside them."""
-    shown = [s for s in measured.found if not s.why]
+    shown = measured.found
     figure = page(_("What is saved by computing no more than what is asked for"), measured.title[:90], SHARE)
     axes = figure.add_subplot()
     at = np.arange(len(shown))
-    counts = [s.with_ / s.without if s.without else 1.0 for s in shown]
+    counts = [s.with_ / s.without for s in shown]
     times = [s.seconds[0] / s.seconds[1] for s in shown]
     counted = [f"{s.with_} / {s.without} {COUNTED[s.counts]}" for s in shown]
     timed = [f"{_short(s.seconds[0])} / {_short(s.seconds[1])}" for s in shown]

@@ -18,6 +18,11 @@ FLOOR = 1e-7  # %: what is nearer is drawn there
 SHARE = 0.62  # of the height of a landscape sheet
 
 
+def charts(measured: Searches) -> dict[str, Figure]:
+    """By the names of their files."""
+    return {"synthesis.png": chart(measured)}
+
+
 def chart(measured: Searches) -> Figure:
     """Both panels on half a sheet."""
     caption = _("five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "

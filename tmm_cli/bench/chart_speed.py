@@ -14,6 +14,11 @@ from tmm_cli.errors import _
 COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
 
+def charts(speed: Speed) -> dict[str, Figure]:
+    """By the names of their files."""
+    return {"speed.png": chart(speed)}
+
+
 def chart(speed: Speed) -> Figure:
     """All of the measurement on one sheet."""
     caption = _(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -42,13 +41,15 @@ DISTANCES = {
 }  # fmt: skip
 
 
-def charts(stability: Stability) -> Iterator[Figure]:
-    """Sheets of A4 with five families each."""
+def charts(stability: Stability) -> dict[str, Figure]:
+    """Sheets of A4 with five families each, by the names of their files."""
     families = stability.families
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
-    for number, chosen in enumerate(pages, 1):
-        title = _("Near what kills a method ({page} of {pages})").format(page=number, pages=len(pages))
-        yield _sheet(stability, chosen, title)
+    title = _("Near what kills a method ({page} of {pages})")
+    return {
+        f"stability-{number}.png": _sheet(stability, chosen, title.format(page=number, pages=len(pages)))
+        for number, chosen in enumerate(pages, 1)
+    }
 
 
 def _sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:

@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.bench.measured import CLOCK, Measured
-from tmm_cli.bench.speed import by_turns
+from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
+from tmm_cli.errors import _
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.optimal.search import Search
+from tmm_cli.results.table import Table
+from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.solver import best
 from tmm_cli.synthesis.reading import task_of
 from tmm_cli.variants.taped import Taped
+from tmm_cli.vectors import Real
 
 SEARCHED = "crank-rocker"  # whose search is measured, and whose speed has a target
 NAMES = (SEARCHED, "six-bar", "shaper")
@@ -39,6 +41,12 @@ class SearchRate:
     generation: int
     per_second: float
     target: float | None = None
+
+    def missed(self, slack: float) -> str:
+        if self.target is None or self.per_second >= self.target / slack:
+            return ""
+        size = f"{self.problem}, generations of {self.generation}"
+        return f"{size}: {self.per_second:.0f} candidates a second, target {self.target:.0f}"
 
 
 @dataclass(frozen=True)
@@ -83,19 +91,40 @@ class Searches(Measured):
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        slow = [
-            f"{r.problem}, generations of {r.generation}: {r.per_second:.0f} candidates a second, target {r.target:.0f}"
-            for r in self.rates if r.target is not None and r.per_second < r.target / self.slack
-        ]  # fmt: skip
-        if self.near < self.wanted:
-            near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
-            slow.append(f"{near} of the best known, target {self.wanted}")
-        return tuple(slow)
+        slow = tuple(filter(None, (rate.missed(slack(self.reduced)) for rate in self.rates)))
+        if self.near >= self.wanted:
+            return slow
+        near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
+        return (*slow, f"{near} of the best known, target {self.wanted}")
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
         found = [asdict(one) | {"near": one.near} for one in self.found]
         return super().to_dict() | {"found": found, "near": self.near, "wanted": self.wanted}
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        runs = self.known["runs"]
+        title = _(
+            "Search from several seeds, {problem}; best known {objective:.9g} "
+            "of {runs} runs of {evaluations} candidates"
+        )
+        rates = words(
+            "rates", _("Candidates a second at the evaluation, one thread: least time of several turns"),
+            (_("problem"), _("parameters"), _("constraints"), _("positions"), _("operations"), _("generation"),
+             _("candidates/s"), _("at least")),
+            [(r.problem, str(r.parameters), str(r.constraints), str(r.positions), str(r.operations), str(r.generation),
+              f"{r.per_second:.0f}", "" if r.target is None else f"{r.target:.0f}") for r in self.rates],
+        )  # fmt: skip
+        found = words(
+            "found", title.format(problem=self.known["problem"], objective=self.known["objective"], runs=len(runs),
+                                  evaluations=max(run["evaluations"] for run in runs)),
+            (_("seed"), _("objective (SI)"), _("above the best known, %"), _("candidates"), _("search, s"),
+             _("polish, s")),
+            [(str(f.seed), f"{f.objective:.9g}", f"{100 * f.off:.2g}", str(f.evaluations), f"{f.searching:.2f}",
+              f"{f.polishing:.2f}") for f in self.found],
+        )  # fmt: skip
+        return rates, found
 
 
 @cache
@@ -112,9 +141,9 @@ def known() -> dict[str, Any]:
     return found
 
 
-def prepared(name: str) -> Search:
+def prepared(name: str) -> Candidates:
     """The task of a problem by its name, ready for evaluation."""
-    return Search(task_of(read_text(text(name), f"{name}.yaml")))
+    return Candidates(task_of(read_text(text(name), f"{name}.yaml")))
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
@@ -135,26 +164,25 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
 def rate(name: str, reduced: bool) -> list[SearchRate]:
     """Candidates a second, evenly spread over the bounds, by the size of generations."""
     search = prepared(name)
-    parameters, sizes = len(search.low), (search.population, *GENERATIONS[: 2 if reduced else None])
     chance = np.random.default_rng(1)
-    found = []
-    for size in sizes:
-        x = chance.random((size, parameters))
-        seconds = by_turns({"": lambda: search.evaluate(x)}, reduced)[""]  # noqa: B023
-        target = PER_SECOND if name == SEARCHED and size == search.population else None
-        found.append(
-            SearchRate(name, parameters, len(search.constraints) - 1, search.task.positions, _operations(search), size,
-                 size / seconds, target)
-        )  # fmt: skip
-    return found
+    sizes = (search.population, *GENERATIONS[: 2 if reduced else None])
+    return [_rated(name, search, chance.random((size, len(search.low))), reduced) for size in sizes]
 
 
-def _operations(search: Search) -> int:
-    """Of the tape, for all of a generation."""
-    return search.coarse.program.operations if isinstance(search.coarse, Taped) else 0
+def _rated(name: str, search: Candidates, x: Real, reduced: bool) -> SearchRate:
+    size, parameters = x.shape
+    target = PER_SECOND if name == SEARCHED and size == search.population else None
+    operations = search.coarse.program.operations if isinstance(search.coarse, Taped) else 0
+    constraints = len(search.constraints) - 1  # without that the crank turns fully
+
+    def found(least: dict[str, float]) -> SearchRate:
+        positions, per_second = search.task.positions, size / least[""]
+        return SearchRate(name, parameters, constraints, positions, operations, size, per_second, target)
+
+    return timed({"": lambda: search.evaluate(x)}, found, reduced)
 
 
-def searched(search: Search, seed: int, known: float) -> Found:
+def searched(search: Candidates, seed: int, known: float) -> Found:
     """Search and polish from a seed, at the ordinary settings of the task."""
     times = [CLOCK()]
 

@@ -1,4 +1,4 @@
-"""`tmm bench speed`: against code by hand for one mechanism, and how time grows with links, positions, variants."""
+"""`tmm bench speed`: against code by hand for one mechanism, other programs, and how time grows."""
 
 from __future__ import annotations
 
@@ -11,22 +11,21 @@ import numpy as np
 
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.chains import chain
-from tmm_cli.bench.measured import Measured, times
+from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
 from tmm_cli.bench.methods import taped
-from tmm_cli.bench.methods.case import Unable
+from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.results.table import Table
 from tmm_cli.variants.batch import Batch, prepare
 from tmm_cli.vectors import Real
 
 POSITIONS = (12, 360, 36_000)
-VARIANTS = (1, 100, 10_000)
+VARIANTS = (100, 10_000)
 OF_VARIANTS = 12  # positions of each variant
 OF_LINKS = 72  # positions of each chain: of 360 the longest chain fills the cache, and that is measured then
-TURNS, REDUCED_TURNS = 41, 15
-LEAST = 2e-3  # s: what is quicker is repeated in one turn
 TARGETS = {(1, 360): 1.3, (1, 36_000): 1.0, (10_000, 12): 1.3}  # ours over by hand, by (variants, positions)
 RIVALS = {"pylinkage": 3.0, "kinepy": 30.0}  # theirs over ours, at least
 EXPONENT = 0.05  # growth may differ so much from linear
@@ -59,6 +58,12 @@ class Race:
         """At most this ratio; None where none is set."""
         return TARGETS.get((self.variants, self.positions))
 
+    def missed(self, slack: float) -> str:
+        if self.target is None or self.ratio <= slack * self.target:
+            return ""
+        kind = f"{self.mechanism}, {self.variants} x {self.positions}"
+        return f"{kind}: {self.ratio:.2f} times the code by hand, target {self.target:g}"
+
 
 @dataclass(frozen=True)
 class Growth:
@@ -68,6 +73,11 @@ class Growth:
     numbers: tuple[int, ...]
     seconds: tuple[float, ...]
     exponent: float
+
+    def missed(self, slack: float) -> str:
+        if abs(self.exponent - 1) <= slack * EXPONENT:
+            return ""
+        return f"growth with {self.what}: exponent {self.exponent:.3f}, target 1 +- {EXPONENT:g}"
 
 
 @dataclass(frozen=True)
@@ -83,6 +93,16 @@ class Rival:
     def ratio(self) -> float:
         return self.theirs / self.ours
 
+    @property
+    def target(self) -> float:
+        """At least this ratio."""
+        return RIVALS[self.name]
+
+    def missed(self, slack: float) -> str:
+        if self.ratio >= self.target / slack:
+            return ""
+        return f"{self.name}, {self.mechanism}: {self.ratio:.1f} times as long, target {self.target:g}"
+
 
 @dataclass(frozen=True)
 class Speed(Measured):
@@ -95,26 +115,37 @@ class Speed(Measured):
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        found = [
-            f"{r.mechanism}, {r.variants} x {r.positions}: {r.ratio:.2f} times the code by hand, target {r.target:g}"
-            for r in self.races if r.target is not None and r.ratio > self.slack * r.target
-        ]  # fmt: skip
-        found += [
-            f"growth with {g.what}: exponent {g.exponent:.3f}, target 1 +- {EXPONENT:g}"
-            for g in self.growths if abs(g.exponent - 1) > self.slack * EXPONENT
-        ]  # fmt: skip
-        found += [
-            f"{r.name}, {r.mechanism}: {r.ratio:.1f} times as long, target {RIVALS[r.name]:g}"
-            for r in self.rivals if r.ratio < RIVALS[r.name] / self.slack
-        ]  # fmt: skip
-        return tuple(found)
+        found: tuple[Timed, ...] = (*self.races, *self.growths, *self.rivals)
+        return tuple(filter(None, (one.missed(slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
         return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
-            "rivals": [asdict(r) | {"ratio": r.ratio, "target": RIVALS[r.name]} for r in self.rivals],
+            "rivals": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.rivals],
         }
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        races = words(
+            "races", _("Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism"),
+            (_("mechanism"), _("variants"), _("positions"), _("tmm"), _("by hand"), _("ratio"), _("at most"),
+             _("preparing once, ms")),
+            [(r.mechanism, str(r.variants), str(r.positions), f"{r.ours:.0f}", f"{r.by_hand:.0f}", f"{r.ratio:.2f}",
+              "" if r.target is None else f"{r.target:g}", f"{r.preparing:.0f}") for r in self.races],
+        )  # fmt: skip
+        growths = words(
+            "growths", _("How time grows: t0 + c n^exponent"), (_("with"), _("n"), _("ms"), _("exponent")),
+            [(GROWING[g.what][0], f"{g.numbers[0]} ... {g.numbers[-1]}",
+              f"{1e3 * g.seconds[0]:.2f} ... {1e3 * g.seconds[-1]:.2f}", f"{g.exponent:.3f}") for g in self.growths],
+        )  # fmt: skip
+        rivals = words(
+            "rivals", _("Other programs, nanoseconds a position of 360"),
+            (_("program"), _("mechanism"), _("its time"), _("tmm"), _("times as long"), _("at least")),
+            [(r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
+             for r in self.rivals],
+        )  # fmt: skip
+        return (races, growths, rivals) if self.rivals else (races, growths)
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
@@ -133,28 +164,24 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
 
 def race(mechanism: Mechanism, reduced: bool) -> list[Race]:
     """A mechanism with one and with many variants, ours and by hand by turns."""
-    found = []
-    kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if v > 1 and not (reduced and v == 100)]
-    for variants, positions in kinds:
-        linkages = mechanism.variants(variants)
-        start = perf_counter()
-        ours = mechanism.ours(linkages)
-        q = linkages[0].sketch.at + 2 * np.pi * np.arange(positions) / positions
-        ours(q)
-        preparing = 1e3 * (perf_counter() - start)
-        by_hand = mechanism.by_hand(linkages)
-        least = by_turns({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, reduced)  # noqa: B023
-        share = 1e9 / (variants * positions)
-        found.append(
-            Race(mechanism.name, variants, positions, least["ours"] * share, least["hand"] * share, preparing)
-        )  # fmt: skip
-    return found
+    kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if not (reduced and v == 100)]
+    return [_raced(mechanism, variants, positions, reduced) for variants, positions in kinds]
 
 
-def by_turns(runs: Mapping[str, Callable[[], Any]], reduced: bool) -> dict[str, float]:
-    """Seconds of each, the least of its turns: the one that was disturbed least."""
-    found = times(runs, REDUCED_TURNS if reduced else TURNS, LEAST)
-    return {name: float(min(seconds)) for name, seconds in found.items()}
+def _raced(mechanism: Mechanism, variants: int, positions: int, reduced: bool) -> Race:
+    linkages = mechanism.variants(variants)
+    start = perf_counter()
+    ours = mechanism.ours(linkages)
+    q = linkages[0].sketch.at + 2 * np.pi * np.arange(positions) / positions
+    ours(q)
+    preparing = 1e3 * (perf_counter() - start)
+    by_hand = mechanism.by_hand(linkages)
+    share = 1e9 / (variants * positions)
+
+    def found(least: dict[str, float]) -> Race:
+        return Race(mechanism.name, variants, positions, least["ours"] * share, least["hand"] * share, preparing)
+
+    return timed({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, found, reduced)
 
 
 def growth(what: str, reduced: bool) -> Growth:
@@ -173,9 +200,12 @@ def growth(what: str, reduced: bool) -> Growth:
             runs[str(number)] = _ready(prepare(six_bar.linkage(), _balancing), number)
         else:
             runs[str(number)] = _ready(prepare(six_bar.variants(number), _balancing), OF_VARIANTS)
-    seconds = tuple(by_turns(runs, reduced).values())
-    size = [2 * n + 1 for n in numbers] if what == "links" else list(numbers)
-    return Growth(what, tuple(size), seconds, exponent(size, seconds))
+    size = tuple(2 * n + 1 if what == "links" else n for n in numbers)
+
+    def found(least: dict[str, float]) -> Growth:
+        return Growth(what, size, tuple(least.values()), exponent(size, tuple(least.values())))
+
+    return timed(runs, found, reduced)
 
 
 def _balancing(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -219,8 +249,15 @@ def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tupl
             except Unable as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
-            q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360
-            ours = taped.batch(case, forces=method.solve(case, q).reactions is not None)
-            least = by_turns({"theirs": lambda: solver(q), "ours": lambda: ours(q)}, reduced)  # noqa: B023
-            found.append(Rival(method.name, mechanism.name, least["theirs"] * 1e9 / 360, least["ours"] * 1e9 / 360))
+            found.append(_against(method, mechanism.name, case, solver, reduced))
     return tuple(found), tuple(absent)
+
+
+def _against(method: Method, mechanism: str, case: Case, solver: Callable[[Real], object], reduced: bool) -> Rival:
+    q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360
+    ours = taped.batch(case, forces=method.solve(case, q).reactions is not None)
+
+    def found(least: dict[str, float]) -> Rival:
+        return Rival(method.name, mechanism, least["theirs"] * 1e9 / 360, least["ours"] * 1e9 / 360)
+
+    return timed({"theirs": lambda: solver(q), "ours": lambda: ours(q)}, found, reduced)

@@ -10,18 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from tmm_cli.accuracy.digits import bare, bounds
 from tmm_cli.bench.families import BY_NAME
-from tmm_cli.bench.measured import Measured
+from tmm_cli.bench.measured import Measured, words
 from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.truths import Known, known
-from tmm_cli.errors import LinkageError
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 OURS = "tmm"
@@ -37,7 +38,7 @@ NAIVE = (
 )  # fmt: skip
 RIVALS: tuple[Method, ...] = (*METHODS, *NAIVE)
 
-Verdict = Literal["right", "said", "wrong", "astray"]
+Verdict = Literal["right", "said", "wrong"]
 Solver = Callable[[Real], Answers]
 
 
@@ -45,8 +46,7 @@ Solver = Callable[[Real], Answers]
 class Shot:
     """One method in one scene: the errors of its answers (shares of the largest), and what to think of it.
 
-    astray: wrong because it is in another assembly; why: how it said so. For ours, widths: bound over true error of
-    every number, nan where there is no bound.
+    why: how it said so. For ours, widths: bound over true error of every number, nan where there is no bound.
     """
 
     method: str
@@ -61,8 +61,7 @@ class Shot:
 class Row:
     """One method at one distance: of so many scenes how many it answers rightly, says that it cannot, gets wrong.
 
-    errors: the largest of the answers it gave; astray are among the wrong ones; bound: the largest of ours, a share
-    of the largest value.
+    errors: the largest of the answers it gave; bound: the largest of ours, a share of the largest value.
     """
 
     family: str
@@ -72,7 +71,6 @@ class Row:
     right: int
     said: int
     wrong: int
-    astray: int
     errors: dict[Compared, float]
     bound: float = float("nan")
     why: tuple[str, ...] = ()
@@ -90,6 +88,8 @@ class Stability(Measured):
 
     rows: tuple[Row, ...]
     widths: tuple[float, ...]
+
+    met: ClassVar[str] = _("all targets met: every value within its bound or not given")
 
     @property
     def families(self) -> tuple[str, ...]:
@@ -135,16 +135,22 @@ class Stability(Measured):
             "reduced": self.reduced, "absent": list(self.absent), "failures": list(self.failures),
         }  # fmt: skip
 
-    def lines(self) -> list[Sequence[object]]:
-        """A line a family, method and distance."""
-        lines: list[Sequence[object]] = [
-            ["family", "method", "distance", "scenes", "right", "said", "wrong", "astray", *QUANTITIES, "bound"]
-        ]
-        for row in self.rows:
-            found = ["" if np.isnan(e) else f"{e:.3g}" for e in (*(row.errors[q] for q in QUANTITIES), row.bound)]
-            counts = [row.scenes, row.right, row.said, row.wrong, row.astray]
-            lines.append([row.family, row.method, f"{row.distance:g}", *counts, *found])
-        return lines
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        def first(family: str, method: str) -> str:
+            if not self.of(family, method):
+                return "-"
+            distance = self.lies(family, method)
+            return _("never") if distance is None else f"{distance:.0e}".replace("e-0", "e-")
+
+        rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
+        title = _("Where each method first gives a wrong answer without saying so")
+        return (words("stability", title, (_("method"), *self.families), rows),)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        sharp = _("{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error")
+        return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{WIDE:g}")
 
 
 def _plain(value: float) -> float | None:
@@ -221,11 +227,8 @@ def judged(method: Method, solver: Solver | Exception, at: Known) -> Shot:
         quantity: nothing[quantity] if value is None else _off(value, quantity, at)
         for quantity, value in values.items()
     }
-    if not max(error for error in errors.values() if not np.isnan(error)) > limit(method):
-        return Shot(method.name, "right", errors)
-    place, true = values["positions"], at.exact["positions"]
-    astray = place is not None and at.other is not None and abs(place - at.other) < abs(place - true)
-    return Shot(method.name, "astray" if astray else "wrong", errors)
+    wrong = max(error for error in errors.values() if not np.isnan(error)) > limit(method)
+    return Shot(method.name, "wrong" if wrong else "right", errors)
 
 
 def _off(value: Any, quantity: Compared, at: Known) -> float:
@@ -282,11 +285,8 @@ def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
         errors[quantity] = max(given, default=float("nan"))
-    count = {
-        verdict: sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong", "astray")
-    }
     wide = [shot.bound for shot in shots if not np.isnan(shot.bound)]
-    return Row(
-        family, method, distance, len(shots), count["right"], count["said"], count["wrong"] + count["astray"],
-        count["astray"], errors, max(wide, default=float("nan")), tuple(sorted({s.why for s in shots if s.why})),
-    )  # fmt: skip
+    right, said, wrong = (sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong"))
+    why = tuple(sorted({shot.why for shot in shots if shot.why}))
+    bound = max(wide, default=float("nan"))
+    return Row(family, method, distance, len(shots), right, said, wrong, errors, bound, why)

@@ -23,7 +23,7 @@ KEYS: dict[Compared, str] = {
 
 @dataclass(frozen=True)
 class Known:
-    """A scene and what is true there, longdouble: of its watched point and pair. other: its place in another assembly.
+    """A scene and what is true there, longdouble: of its watched point and pair.
 
     largest: what errors are counted in, the larger of the value here and in the harmless scene of the same numbers.
     """
@@ -34,7 +34,6 @@ class Known:
     scene: Scene
     exact: Mapping[Compared, Any]
     largest: Mapping[Compared, float]
-    other: Any
 
 
 @dataclass(frozen=True)
@@ -73,5 +72,4 @@ def known(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Kn
             of_all = [exact[k], exact[0]] if of.unit in ("rad", "share") else [exact[k]]
             largest = {quantity: max(float(abs(one[quantity])) for one in of_all) for quantity in QUANTITIES}
             distance = Decimal(scene["distance"])
-            other = None if scene["other"] is None else value(scene["other"])
-            yield Known(of, number, distance, of.scene(seed.numbers, distance), exact[k], largest, other)
+            yield Known(of, number, distance, of.scene(seed.numbers, distance), exact[k], largest)

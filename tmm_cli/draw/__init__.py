@@ -10,24 +10,26 @@ from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.formats import files as every_format
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.mechanism import all_positions, detailed, position
-from tmm_cli.draw.plans import acceleration, forces, lever, velocity
-from tmm_cli.draw.structure import structure
+from tmm_cli.draw.plans import forces, lever, motion_plans
+from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 
 
 def sheets(results: Results) -> Drawn:
     """Every sheet with its file's stem: those of the structure, of the cycle, then of each position in detail."""
-    yield from structure(results)
-    yield from groups(results)
+    found = at_sketch(results)
+    if found is not None:
+        yield "structure", scheme(results.problem.title, *found).finish()
+        yield from groups(results.problem.title, *found, results.roles)
     if results.motion is None:
         return
     yield from synthesised(results)
     if bool(results.motion.placed.any()):
         yield from all_positions(results)
         yield from diagrams(results)
-    for k in detailed(results):
-        for of_position in (position, velocity, acceleration, forces, lever):
-            yield from of_position(results, k)
+    for here in detailed(results):
+        for sheets_of in (position, motion_plans, forces, lever):
+            yield from sheets_of(here)
 
 
 def files(results: Results) -> Iterable[tuple[str, bytes]]:

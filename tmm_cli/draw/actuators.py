@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tmm_cli.draw.scene import ON_LINE, Scene
 from tmm_cli.draw.sheet import DARK, Sheet, hatch
-from tmm_cli.draw.wheels import Place, direction
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide, Spring
 from tmm_cli.vectors import cross, dot, unit
 
@@ -20,37 +20,29 @@ def cylinders(linkage: Linkage) -> dict[str, Driver]:
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
 
-def cylinder(
-    sheet: Sheet, linkage: Linkage, slide: Slide, place: Place, way: tuple[float, float], colour: str = DARK
-) -> tuple[complex, complex]:
-    """A cylinder with its piston and rod; way: least and largest run of the rod's end (m).
+def cylinder(sheet: Sheet, scene: Scene, slide: Slide) -> complex:
+    """A cylinder with its piston and rod; the middle of the barrel (mm).
 
-    Gives the middle of the barrel (mm) and the direction in which the rod goes out. The barrel begins at the last point
-    that the cylinder has behind the rod's end, else a stroke before it; where it cannot hold the stroke (no real one
-    could) the piston goes slower than the rod.
+    The barrel begins at the last point that the cylinder has behind the rod's end, else a stroke before it; where it
+    cannot hold the stroke (no real one could) the piston goes slower than the rod.
     """
-    low, high = (run / sheet.mu for run in way)
-    foot, end = sheet.on(place(slide.carrier, slide.through)), sheet.on(place(slide.runner, slide.at))
-    along = direction(slide, place)
+    low, high = (run / sheet.mu for run in scene.way(slide))
+    foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
+    along, stroke = scene.along(slide), high - low
     run = float(dot(along, end - foot))
-    on_line = [
-        float(dot(along, arm))
-        for local in linkage.links[slide.carrier].points.values()
-        for arm in [sheet.on(place(slide.carrier, local)) - foot]
-        if abs(cross(along, arm)) < 0.3
-    ]
-    stroke = high - low
-    behind = [r for r in on_line if r < low - LEAST / 2]
+    arms = [sheet.on(point) - foot for point in scene.ends(slide.carrier)]
+    runs = [float(dot(along, arm)) for arm in arms if abs(cross(along, arm)) < ON_LINE]
+    behind = [r for r in runs if r < low - LEAST / 2]
     start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST)
     length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST, low - start))
     share = (run - low) / max(stroke, 0.74 * length, 1e-9)
     head = foot + along * (start + length * (0.13 + 0.74 * share))
     back, front = foot + along * start, foot + along * (start + length)
     side = 1j * along * BARREL
-    sheet.area([back + side, front + side, front - side, back - side], "white", colour, 1.3, 3.5)
-    sheet.line([head + 0.8 * side, head - 0.8 * side], colour, 2.4, z=3.7)
-    sheet.line([head, end], colour, 1.8, z=3.6)
-    return (back + front) / 2, along
+    sheet.area([back + side, front + side, front - side, back - side], "white", DARK, 1.3, 3.5)
+    sheet.line([head + 0.8 * side, head - 0.8 * side], DARK, 2.4, z=3.7)
+    sheet.line([head, end], DARK, 1.8, z=3.6)
+    return (back + front) / 2
 
 
 def driver_name(driver: Driver, symbol: str) -> str:
@@ -58,13 +50,13 @@ def driver_name(driver: Driver, symbol: str) -> str:
     return symbol + driver.link + ("" if driver.base == FRAME else driver.base)
 
 
-def springs(sheet: Sheet, linkage: Linkage, place: Place) -> None:
+def springs(sheet: Sheet, scene: Scene) -> None:
     """All springs, with their names."""
-    for spring in linkage.springs:
+    for spring in scene.linkage.springs:
         if spring.turns:
-            _torsion(sheet, linkage, spring, place)
+            _torsion(sheet, scene, spring)
             continue
-        start, end = sheet.on(place(spring.i, spring.at_i)), sheet.on(place(spring.j, spring.at_j))
+        start, end = sheet.on(scene.place(spring.i, spring.at_i)), sheet.on(scene.place(spring.j, spring.at_j))
         if not np.isfinite(start + end) or abs(end - start) < 0.5:
             continue
         (_coils if spring.rate > 0 else _gas)(sheet, start, end)
@@ -86,11 +78,9 @@ def _coils(sheet: Sheet, start: complex, end: complex) -> None:
     stub = min(STUB, 0.15 * length)
     number = int(np.clip((length - 2 * stub) / COIL, 4, 14))
     step = (length - 2 * stub) / number
-    places = [start, start + stub * along]
-    for k in range(number):
-        sign = 1 if k % 2 == 0 else -1
-        places.append(start + along * (stub + (k + 0.5) * step) + sign * 1j * along * min(AMPLITUDE, length / 5))
-    sheet.line([*places, end - stub * along, end], SPRING, 1.1, z=3.8)
+    side = 1j * along * min(AMPLITUDE, length / 5)
+    coils = [start + along * (stub + (k + 0.5) * step) + (-1) ** k * side for k in range(number)]
+    sheet.line([start, start + stub * along, *coils, end - stub * along, end], SPRING, 1.1, z=3.8)
 
 
 def _gas(sheet: Sheet, start: complex, end: complex) -> None:
@@ -101,16 +91,15 @@ def _gas(sheet: Sheet, start: complex, end: complex) -> None:
     sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING, 1.1, 3.8)
 
 
-def _torsion(sheet: Sheet, linkage: Linkage, spring: Spring, place: Place) -> None:
+def _torsion(sheet: Sheet, scene: Scene, spring: Spring) -> None:
     """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
-    point = linkage.shared(spring.i, spring.j)
-    centre = sheet.on(place(spring.j, spring.at_j if point is None else linkage.local(spring.j, point)))
+    point = scene.linkage.shared(spring.i, spring.j)
+    centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))
     if not np.isfinite(centre):
         return
     inner, outer, turns = SPIRAL
-    begin = float(np.angle(place(spring.j, 1 + 0j) - place(spring.j, 0j)))
     share = np.linspace(0, 1, 120)
-    arc = centre + (inner + (outer - inner) * share) * unit(begin + 2 * np.pi * turns * share)
+    arc = centre + (inner + (outer - inner) * share) * unit(scene.turn(spring.j) + 2 * np.pi * turns * share)
     sheet.line([complex(p) for p in arc], SPRING, 1.1, z=5.5)
     last = complex(arc[-1])
     sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING, 1.1, z=5.5)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import Label, aside, extent, row
-from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.labels import aside, extent, row
+from tmm_cli.draw.sheet import DARK, NAMES, THIN, Sheet
 from tmm_cli.vectors import Vector, cross, dot
 
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
@@ -14,7 +14,6 @@ SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
-NAMES = "#7a3d99"
 
 
 def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
@@ -28,7 +27,7 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
         return
     u = span / length
     crowd = sheet.ground.crowd
-    width, height = extent(Label(text, 0j, TEXT, DARK))
+    width, height = extent(text, TEXT)
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
@@ -64,13 +63,11 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
             sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4)
-    if inner:
-        for back, tip in ((last, first), (first, last)):
-            sheet.arrow(back, tip, DARK, 0.6, 4.5)
-    else:  # heads from outside
+    if not inner:
         sheet.line([first, last], DARK, 0.6, z=4.5)
-        for back, tip in ((first - 2 * HEAD * u, first), (last + 2 * HEAD * u, last)):
-            sheet.arrow(back, tip, DARK, 0.6, 4.5)
+    backs = (last, first) if inner else (first - 2 * HEAD * u, last + 2 * HEAD * u)  # of short ones heads from outside
+    for back, tip in zip(backs, (first, last), strict=True):
+        sheet.arrow(back, tip, DARK, 0.6, 4.5)
     if stand in ("after", "before"):  # the line goes on under the text
         sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK, 0.6, z=4.5)
     sheet.along(middle, text, TEXT, v)
@@ -94,9 +91,7 @@ def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, nam
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # beyond the edge of a stone
-        sheet.line(
-            [vertex + corner * ways[0], vertex + corner * sum(ways), vertex + corner * ways[1]], DARK, 0.8, z=3.2
-        )
+        sheet.line([vertex + corner * way for way in (ways[0], sum(ways), ways[1])], DARK, 0.8, z=3.2)
         return
     turn = float(np.angle(ways[1] / ways[0]))
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))
@@ -107,4 +102,4 @@ def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, nam
     for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
         if abs(turn) * radius > 7:
             sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK, 0.5, 4.5)
-    sheet.labels.append(Label(name, places[len(places) // 2], 9, NAMES, "italic", far=True))
+    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic", far=True)

@@ -16,7 +16,7 @@ from tmm_cli.draw.render import names, render, spot
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, ground_of, scale_text
 from tmm_cli.draw.structure import colours
-from tmm_cli.draw.symbols import STRUCTURAL, Look, number, symbol_size
+from tmm_cli.draw.symbols import STRUCTURAL, Look, numbers, symbol_size
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, round_scale
@@ -55,10 +55,8 @@ def sheet_of(
     largest = complex(max(size.real for size in sizes), max(size.imag for size in sizes))
     mu, paper, places = _layout(len(every), largest)
     where = place(results.problem, here.q, here.number)
-    sheet = Sheet(
-        results.problem.title, _("Real assemblies of {group}, {place}").format(group=group.group.title, place=where),
-        [0j, 9 + 1j if paper == LANDSCAPE else 1 + 9j],
-    )  # fmt: skip
+    title = _("Real assemblies of {group}, {place}").format(group=group.group.title, place=where)
+    sheet = Sheet(results.problem.title, title, paper=paper)
     sheet.mu = mu
     look = STRUCTURAL.sized(max(SMALLEST, min(symbol_size(sheet, scene, links) for scene in scenes.values())))
     for (n, assembly), (low, high) in zip(every, places, strict=False):
@@ -113,8 +111,7 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, look: Look) -> No
     own, known, pairs = group.group.links, _neighbours(group), scene.structure.pairs
     hue = colours(scene.structure) | dict.fromkeys(known, THIN)
     drawn = render(sheet, scene, (*known, *own), pairs, look, hue)
-    for link, form in drawn.forms.items():
-        number(sheet, link, form, hue[link])
+    numbers(sheet, drawn.forms, hue)
     hinged = {p.point for p in pairs if p.kind == "R"}
     named = [(p, p.point) for p in pairs if p.kind == "R"]
     named += [(p, p.name) for p in pairs if p.slide and (p.slide.carrier == FRAME or p.point not in hinged)]

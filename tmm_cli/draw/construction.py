@@ -9,14 +9,14 @@ import numpy as np
 from tmm_cli.draw.annotations import angle_mark, dimension
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, THIN, Sheet, border, hatch, scale_text
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, hatch, scale_text
 from tmm_cli.draw.symbols import MEASURED, box, support
 from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
-from tmm_cli.synthesis.construction import Arc, Centre, Construction, Spot
+from tmm_cli.synthesis.construction import Arc, Centre, Construction, Size, Spot
 
 STYLES = {  # colour, width, line
     "link": (DARK, 2.2, "-"), "link2": (INERTIA, 2.2, "-"), "thin": (THIN, 0.8, "-"), "dashed": (THIN, 0.7, "--"),
@@ -28,7 +28,7 @@ FINE = 1.0  # mm between places along an arc
 QUIET = 12.0  # mm about a place on a curve that should be free for its name
 ON_EDGE = 1e-6  # mm from the edge of the field: a line is cut there
 ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
-NAMES = "#7a3d99"
+BOXES = {"slider": MEASURED.box, "stone": MEASURED.stone}
 
 
 def construction(
@@ -43,22 +43,21 @@ def construction(
         _spot(sheet, spot)
     lines: list[Label] = []
     for s in drawn.segments:
-        colour, width, line = STYLES[s.style]
         start, end = sheet.on(s.start), sheet.on(s.end)
         if s.style == "guide":
             _guide(sheet, start, end)
             continue
-        sheet.line([start, end], colour, width, line, z=3 if s.style.startswith("link") else 1.5)
+        sheet.line([start, end], *STYLES[s.style], z=3 if s.style.startswith("link") else 1.5)
         if s.name:
             lines.append(Label(s.name, (start + end) / 2, 10, NAMES, "italic", (start, end)))
     for arc in drawn.arcs:
-        _curve(sheet, [_along(sheet, arc)], arc.style)
-    pieces: dict[tuple[str, str], list[list[complex]]] = {}
+        _curve(sheet, _along(sheet, arc), arc.style)
+    named: dict[str, list[Sequence[complex]]] = {}
     for curve in drawn.curves:
-        pieces.setdefault((curve.name, curve.style), []).append([sheet.on(p) for p in curve.places])
-    for named in (False, True):  # names when all curves are drawn
-        for (name, style), places in pieces.items():
-            _curve(sheet, places, style, name, named=named)
+        pieces = _curve(sheet, [sheet.on(p) for p in curve.places], curve.style)
+        named.setdefault(curve.name, []).extend(pieces)
+    for name, pieces in named.items():
+        _named(sheet, name, pieces)
     for centre in drawn.centres:
         _centre(sheet, centre, units)
     for angle in drawn.angles:
@@ -67,13 +66,10 @@ def construction(
     _notes(sheet, drawn, letters, units)
     sheet.corner()
     for size in drawn.sizes:
-        way = size.end - size.start
-        length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
-        text = _value(size.name, length, "length", units, symbol=False)
-        dimension(sheet, sheet.on(size.start), sheet.on(size.end), text, size.along)
+        _size(sheet, size, units)
     for spot in drawn.spots:
         if spot.name:
-            sheet.labels.append(Label(spot.name, sheet.on(spot.at), 11, DARK, far=True))
+            sheet.label(spot.name, sheet.on(spot.at), 11, far=True)
     sheet.labels += lines
     sheet.ground.lines += [label.line for label in lines if label.line]
     sheet.labels.sort(key=lambda label: label.size < 11)  # letters of points first
@@ -91,59 +87,47 @@ def granted(drawn: Construction) -> list[complex]:
 
 
 def inside(places: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
-    """The pieces of a polyline that lie in a field."""
+    """The pieces of a polyline that lie in a field, from edge to edge where they leave it."""
     z = np.asarray(places, dtype=complex)
-    with np.errstate(invalid="ignore"):
-        within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
-    cuts = np.flatnonzero(within[1:] != within[:-1]) + 1
-    parts = np.split(np.arange(len(z)), cuts)
+    within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
     found = []
-    for part in parts:
-        if not len(part) or not within[part[0]]:
-            continue
-        piece = [complex(p) for p in z[part]]
-        for at, outer, front in ((part[0], part[0] - 1, True), (part[-1], part[-1] + 1, False)):
-            if 0 <= outer < len(z) and np.isfinite(z[outer]):
-                edge = border(complex(z[at]), complex(z[outer]), low, high)
-                piece = [edge, *piece] if front else [*piece, edge]
-        found.append(piece)
+    for part in np.split(np.arange(len(z)), np.flatnonzero(within[1:] != within[:-1]) + 1):
+        if len(part) and within[part[0]]:
+            first, last = part[0], part[-1]
+            before = [border(z[first], z[first - 1], low, high)] if first > 0 and np.isfinite(z[first - 1]) else []
+            after = [border(z[last], z[last + 1], low, high)] if last + 1 < len(z) and np.isfinite(z[last + 1]) else []
+            found.append([complex(p) for p in (*before, *z[part], *after)])
     return found
 
 
-def _curve(
-    sheet: Sheet, whole: Sequence[Sequence[complex]], style: str, name: str = "", *, named: bool = False
-) -> None:
-    """Pieces of one curve, cut at the edge; its name stands where it is alone."""
+def _curve(sheet: Sheet, places: Sequence[complex], style: str) -> list[Sequence[complex]]:
+    """A curve, cut at the edge with arrows where it goes on beyond it; the pieces that are drawn."""
     colour, width, line = STYLES[style]
-    pieces = [piece for places in whole for piece in inside(places, *sheet.field)]
-    pieces = [piece for piece in pieces if len(piece) > 1]
-    for piece in pieces if not named else ():
+    pieces: list[Sequence[complex]] = [piece for piece in inside(places, *sheet.field) if len(piece) > 1]
+    low, high = sheet.field
+    for piece in pieces:
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
         sheet.ground.points.append(np.array(piece))
-        for tip, before in ((piece[0], piece[1:]), (piece[-1], piece[-2::-1])):
-            _goes_on(sheet, tip, before, colour)
-    if name and named and pieces:
-        places = [place for piece in pieces for place in _evenly(piece)]
+        for way in (piece, piece[::-1]):
+            tip = way[0]
+            if min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag) > ON_EDGE:
+                continue
+            tail = next((z for z in way if abs(z - tip) > ARROW), None)
+            if tail is not None:
+                sheet.arrow(tip + ARROW * (tail - tip) / abs(tail - tip), tip, colour, 0.5, 2.1)
+    return pieces
+
+
+def _named(sheet: Sheet, name: str, pieces: Sequence[Sequence[complex]]) -> None:
+    """The name of a curve where it is alone, written once."""
+    places: list[complex] = []
+    for piece in pieces:
+        run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
+        places += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
+    if name and places:
         crowd = sheet.ground.crowd
         free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < QUIET)), -abs(z)))
-        sheet.labels.append(Label(name, free, 10, NAMES, "italic", far=True))
-
-
-def _goes_on(sheet: Sheet, tip: complex, before: Sequence[complex], colour: str) -> None:
-    """A small arrow at the end of a line, places before it given, if the edge of the field cuts it there."""
-    low, high = sheet.field
-    if min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag) > ON_EDGE:
-        return
-    tail = next((z for z in before if abs(z - tip) > ARROW), None)
-    if tail is not None:
-        sheet.arrow(tip + ARROW * (tail - tip) / abs(tail - tip), tip, colour, 0.5, 2.1)
-
-
-def _evenly(piece: Sequence[complex]) -> list[complex]:
-    """Places along a line at even ways from each other."""
-    z = np.array(piece)
-    run = np.concatenate([[0], np.cumsum(np.abs(np.diff(z)))])
-    return [complex(np.interp(share * run[-1], run, z)) for share in np.linspace(0.1, 0.9, 17)]
+        sheet.label(name, free, 10, NAMES, "italic", far=True)
 
 
 def _along(sheet: Sheet, arc: Arc) -> list[complex]:
@@ -173,32 +157,30 @@ def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
             sheet.line([leg, at], THIN, 0.7, "--", 1.5)
         sheet.circle(at, 0.6, face=DARK)
         sheet.ground.rivals.append(at)
-        sheet.labels.append(Label(centre.name, at, 11, DARK, far=True))
+        sheet.label(centre.name, at, 11, far=True)
         sheet.labels.append(Label("R", (legs[0] + at) / 2, 10, NAMES, "italic", (legs[0], at)))
         return
     text = _("to {centre}, {radius}").format(centre=centre.name, radius=_value("R", centre.radius, "length", units))
-    inner = low + 3 * (1 + 1j), high - 3 * (1 + 1j)
-    tips = [border(leg, at, *inner) for leg in legs]
+    tips = [border(leg, at, low + 3 * (1 + 1j), high - 3 * (1 + 1j)) for leg in legs]
     for leg, tip in zip(legs, tips, strict=True):
         sheet.line([leg, tip], THIN, 0.7, "--", 1.5)
         if abs(tip - leg) > 6:
             sheet.arrow(tip - 5 * (tip - leg) / abs(tip - leg), tip, DARK, 0.8)
-    longest = max(zip(legs, tips, strict=True), key=lambda pair: abs(pair[1] - pair[0]))
-    ahead = longest[0] + 0.55 * (longest[1] - longest[0]), longest[1]
+    leg, tip = max(zip(legs, tips, strict=True), key=lambda pair: abs(pair[1] - pair[0]))
+    ahead = leg + 0.55 * (tip - leg), tip
     sheet.labels.append(Label(text, (ahead[0] + ahead[1]) / 2, 9, DARK, line=ahead))
 
 
 def _spot(sheet: Sheet, spot: Spot) -> None:
     at = sheet.on(spot.at)
-    if spot.mark in ("slider", "stone"):
-        size = MEASURED.box if spot.mark == "slider" else MEASURED.stone
-        box(sheet, at, spot.along / abs(spot.along), DARK, size, MEASURED)
+    if spot.mark in BOXES:
+        box(sheet, at, spot.along / abs(spot.along), DARK, BOXES[spot.mark], MEASURED)
     if spot.mark == "support":
         support(sheet, at, -1j)
-    if spot.mark in ("hinge", "support", "slider", "stone"):
-        sheet.circle(at, MEASURED.hinge)
-    elif spot.mark == "dot":
+    if spot.mark == "dot":
         sheet.circle(at, 0.6, face=DARK)
+    elif spot.mark != "none":
+        sheet.circle(at, MEASURED.hinge)
 
 
 def _guide(sheet: Sheet, start: complex, end: complex) -> None:
@@ -211,8 +193,16 @@ def _guide(sheet: Sheet, start: complex, end: complex) -> None:
     hatch(sheet, start + shift, end + shift, down)
 
 
+def _size(sheet: Sheet, size: Size, units: UnitSystem) -> None:
+    """A dimension line; its value has no unit."""
+    way = size.end - size.start
+    length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
+    text = _value(size.name, length, "length", units, symbol=False)
+    dimension(sheet, sheet.on(size.start), sheet.on(size.end), text, size.along)
+
+
 def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
-    """H = 120 mm; sizes on the drawing have no unit."""
+    """H = 120 mm."""
     measure = KINDS[kind].dimension
     text = f"{units.from_si(value, measure):.4g}"
     text = f"{units.from_si(value, measure):.0f}" if "e+" in text else text

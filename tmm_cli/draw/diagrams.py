@@ -40,18 +40,19 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
     outputs = results.mechanism.outputs
     panels = {f"diagrams-link-{link}": _output(results, motion, link) for link in outputs}
     first = panels.pop(f"diagrams-link-{outputs[0]}") if outputs else []
-    title = _("Diagrams over the cycle; dots: computed positions")
-    sheets = [(title, {"diagrams": [*first, *_balances(whole, results)], **panels})]
-    title = _("Reactions over the cycle; dots: computed positions")
-    sheets.append((title, {"reactions": _reactions(whole, results)}))
-    title = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
-    sheets.append((title, {"energy": _energy(whole, results)}))
-    title = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
-    sheets.append((title, {"pressure": _pressure(results, motion)}))
-    for title, drawn in sheets:
-        for stem, every in drawn.items():
-            if every:
-                yield safe(stem), _figure(results, title, q, marks, every)
+    cycle = _("Diagrams over the cycle; dots: computed positions")
+    reactions = _("Reactions over the cycle; dots: computed positions")
+    energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
+    pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
+    for title, stem, every in (
+        (cycle, "diagrams", [*first, *_balances(whole, results)]),
+        *((cycle, stem, every) for stem, every in panels.items()),
+        (reactions, "reactions", _reactions(whole, results)),
+        (energy, "energy", _energy(whole, results)),
+        (pressure, "pressure", _pressure(results, motion)),
+    ):
+        if every:
+            yield safe(stem), _figure(results, title, q, marks, every)
 
 
 def _points(results: Results) -> int:
@@ -78,26 +79,19 @@ def _reactions(whole: Results, results: Results) -> list[Panel]:
 
 def _balances(whole: Results, results: Results) -> list[Panel]:
     """What balances the drivers: moments in one panel, forces in another."""
-    panels: list[Panel] = []
     if whole.reactions is None or results.reactions is None:
-        return panels
+        return []
     several = len(whole.reactions.balances) > 1
-    for moment in (True, False):
-        lines: list[Line] = []
-        for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
-            turns = curve.moment is not None if several else curve.kind == "moment"
-            if turns != moment:
-                continue
-            name = balance_name(curve.driver.link, several) if several else ""
-            values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
-            lines.append((name.replace("F", "M", 1) if turns else name, values, dots))
-        if moment:
-            words = _("balancing moments Mb") if several else _("balancing moment Mb")
-        else:
-            words = _("balancing forces Fb") if several else _("balancing force Fb")
-        if lines:
-            panels.append((words, MOMENT if moment else FORCE, lines))
-    return panels
+    lines: dict[bool, list[Line]] = {True: [], False: []}
+    for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
+        turns = curve.moment is not None if several else curve.kind == "moment"
+        name = balance_name(curve.driver.link, several, turns=turns) if several else ""
+        values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
+        lines[turns].append((name, values, dots))
+    moments = _("balancing moments Mb") if several else _("balancing moment Mb")
+    forces = _("balancing forces Fb") if several else _("balancing force Fb")
+    panels = ((moments, MOMENT, lines[True]), (forces, FORCE, lines[False]))
+    return [panel for panel in panels if panel[-1]]
 
 
 def _output(results: Results, motion: Motion, link: str) -> list[Panel]:
@@ -121,24 +115,21 @@ def _energy(whole: Results, results: Results) -> list[Panel]:
     if curve is None or given is None:
         return []
     crank = results.linkage.driver.kind == "turn"
+    powers = {
+        _("drivers"): "drivers", _("weights"): "weights", _("loads"): "loads", _("friction"): "friction",
+        _("rate of T"): "rate",
+    }  # fmt: skip
     panels: list[Panel] = []
-
-    def panel(words: str, dimension: Dimension, *parts: tuple[str, str]) -> None:
-        lines = [
-            (label, getattr(curve, name), getattr(given, name))
-            for label, name in parts
-            if len(parts) == 1 or bool(np.any(np.nan_to_num(getattr(curve, name)) != 0))
-        ]
-        if any(bool(np.any(np.nan_to_num(values) != 0)) for __, values, __ in lines):
+    for words, dimension, parts in (
+        (_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, {"": "inertia"}),
+        (_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, {"": "moment"}),
+        (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}),
+        (_("power, W"), NUMBER, powers),
+    ):
+        lines = [(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
+        lines = [line for line in lines if np.any(np.nan_to_num(line[1]) != 0)]
+        if lines:
             panels.append((words, dimension, lines))
-
-    panel(_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, ("", "inertia"))
-    panel(_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, ("", "moment"))
-    panel(_("kinetic energy T, J"), NUMBER, ("", "kinetic"))
-    panel(
-        _("power, W"), NUMBER, (_("drivers"), "drivers"), (_("weights"), "weights"), (_("loads"), "loads"),
-        (_("friction"), "friction"), (_("rate of T"), "rate"),
-    )  # fmt: skip
     return panels
 
 

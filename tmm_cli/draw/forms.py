@@ -54,12 +54,12 @@ class Form:
     joints are its pairs but for the stones on its bars; boxes are those of them where it is the stone itself.
     """
 
-    joints: tuple[complex, ...]
-    boxes: tuple[complex, ...]
-    hull: tuple[complex, ...]
-    bars: tuple[Bar, ...]
-    struts: tuple[tuple[complex, complex], ...]
-    welds: tuple[tuple[complex, complex, complex], ...]
+    joints: Sequence[complex] = ()
+    boxes: Sequence[complex] = ()
+    hull: Sequence[complex] = ()
+    bars: Sequence[Bar] = ()
+    struts: Sequence[tuple[complex, complex]] = ()
+    welds: Sequence[tuple[complex, complex, complex]] = ()
 
     @property
     def lines(self) -> list[tuple[complex, complex]]:
@@ -108,7 +108,7 @@ def by_points(sheet: Sheet, scene: Scene, link: str) -> Form:
             foot = scene.place(link, slide.through)
             places += [foot, foot + scene.run(slide) * scene.along(slide)]
     hull = outline([sheet.on(p) for p in places])
-    return Form(tuple(hull[:1]) if len(hull) == 1 else (), (), tuple(hull) if len(hull) > 1 else (), (), (), ())
+    return Form(hull=hull) if len(hull) > 1 else Form(joints=hull)
 
 
 def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
@@ -143,9 +143,9 @@ def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
             welds.append((foot, near - foot, _longer(bar, foot)))
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
-    hull = tuple(_flat(outline(loose))) if len(loose) > 1 else ()
-    boxes = tuple(sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link)
-    return Form(tuple(joints), boxes, hull, tuple(bars), tuple(struts), tuple(welds))
+    hull = _flat(outline(loose)) if len(loose) > 1 else ()
+    boxes = [sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link]
+    return Form(joints, boxes, hull, bars, struts, welds)
 
 
 def _flat(hull: Sequence[complex]) -> Sequence[complex]:
@@ -159,13 +159,12 @@ def _flat(hull: Sequence[complex]) -> Sequence[complex]:
 
 def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
     """Where pairs beside the bars are joined to them: at a pair on a bar, or at the foot of the perpendicular."""
-    ways = []
-    for bar in bars:
-        for place in loose:
-            foot = min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
-            ways.append((abs(place - foot), bar, place, foot))
-    _, bar, place, foot = min(ways, key=lambda one: one[0])
-    return bar, place, foot
+
+    def foot(bar: Bar, place: complex) -> complex:
+        return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
+
+    ways = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
+    return min(ways, key=lambda way: abs(way[1] - way[2]))
 
 
 def _longer(bar: Bar, foot: complex) -> complex:
@@ -173,11 +172,9 @@ def _longer(bar: Bar, foot: complex) -> complex:
 
 
 def _join(
-    others: Sequence[Bar],
-    bar: Bar,
-    struts: list[tuple[complex, complex]],
+    others: Sequence[Bar], bar: Bar, struts: list[tuple[complex, complex]],
     welds: list[tuple[complex, complex, complex]],
-) -> None:
+) -> None:  # fmt: skip
     """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
     for other in others:
         turn = float(cross(other.along, bar.along))

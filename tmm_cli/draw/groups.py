@@ -9,70 +9,44 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import Ground
-from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells
-from tmm_cli.draw.structure import Part, at_sketch, parts
-from tmm_cli.draw.symbols import FREE, STRUCTURAL, Look, box, number, quiet, rails, symbol_size
+from tmm_cli.draw.structure import Part, parts
+from tmm_cli.draw.symbols import FREE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
 from tmm_cli.draw.wheels import draw
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
+from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.structure.assur import ROMAN, Pair
 
 LEAST, A_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
-A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it; with more, each has its own sheet
+A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
 LINE, PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
 STUB = 8.0  # mm of what a lead would be joined to
 
 
-def groups(results: Results) -> Iterable[tuple[str, Figure]]:
-    """All groups side by side, or on sheets of their own when there are many."""
-    found = at_sketch(results)
-    if found is None:
-        return
-    motion, k = found
-    scene = Scene(results.linkage, results.structure, motion.poses, k)
-    yield from sheets_apart(results.problem.title, place_of_driver(results, float(motion.q[k])), scene, results.roles)
-
-
-def sheets_apart(
+def groups(
     title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Figure]]:
-    """The sheets with the stems of their files."""
+    """All groups side by side, on more than one sheet when there are many."""
     every = parts(scene.structure)
-    if len(every) <= A_SHEET:
-        yield "groups", side_by_side(title, place, scene, every, roles).finish()
-        return
-    stems: set[str] = set()
-    for index, part in enumerate(every):
-        stem = stem_of(part)
-        stem = f"{stem}-{index}" if stem in stems else stem  # names may be alike in letters that files can have
-        stems.add(stem)
-        yield stem, side_by_side(title, place, scene, [part], roles).finish()
+    for first in range(0, len(every), A_SHEET):
+        stem = "groups" if first == 0 else f"groups-sheet-{first // A_SHEET + 1}"
+        yield stem, side_by_side(title, place, scene, every[first : first + A_SHEET], roles or {}).finish()
 
 
-def stem_of(part: Part) -> str:
-    """group-II-2-3."""
-    name = "-".join(["group", part.title.split("(")[0], *([FRAME] if part.group is None else []), *part.links])
-    return "".join(c if (c.isascii() and c.isalnum()) or c in "-_" else "_" for c in name)[:80]
-
-
-def side_by_side(
-    title: str, place: str, scene: Scene, every: Sequence[Part], roles: Mapping[str, str] | None = None
-) -> Sheet:
+def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], roles: Mapping[str, str]) -> Sheet:
     """A sheet of these parts, each in a cell with its caption below it."""
-    sheet = Sheet(
-        title, _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place), [0j, 9 + 1j]
-    )
+    subject = _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place)
+    sheet = Sheet(title, subject, paper=LANDSCAPE)
     rows = math.ceil(len(every) / A_ROW)
     columns = math.ceil(len(every) / rows)
     size, places = cells(sheet.ground.low, sheet.ground.high, columns, rows, GAP)
-    told = [caption(part, scene.structure.pairs, roles or {}, size.real) for part in every]
+    told = [caption(part, scene.structure.pairs, roles, size.real) for part in every]
     for index, (part, words, (low, high)) in enumerate(zip(every, told, places, strict=False)):
         row, column = divmod(index, columns)
         lines = max(map(len, told[row * columns : (row + 1) * columns]))
@@ -80,11 +54,10 @@ def side_by_side(
             x = low.real - GAP / 2
             sheet.axes.plot([x, x], [low.imag, high.imag], color=THIN, lw=0.4)
         sheet.ground = Ground(low + 1j * (LINE * (lines + 0.5)), high)
-        for line, text in enumerate(words):
-            at = low + 1j * LINE * (lines - line - 0.5)
-            first = line == 0
-            sheet.text(at, text, 11 if first else 8.5, colour=part.colour if first else DARK,
-                       weight="bold" if first else "normal")  # fmt: skip
+        top = low + 1j * LINE * (lines - 0.5)
+        sheet.text(top, words[0], 11, colour=part.colour, weight="bold")
+        for line, text in enumerate(words[1:], 1):
+            sheet.text(top - 1j * LINE * line, text, 8.5)
         _part(sheet, scene, part, PAD[rows > 1])
     return sheet
 
@@ -124,22 +97,21 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     pairs, links = scene.structure.pairs, part.links
     outer = part.group.outer if part.group else ()
     inner = part.group.inner if part.group else tuple(p for p in pairs if {p.i, p.j} <= {*links, FRAME})
-    scene = fitted(sheet, scene, links, sheet.ground.low, sheet.ground.high, pad, LEAST + A_LINK * len(links))
+    scene = fitted(sheet, scene, links, pad, LEAST + A_LINK * len(links))
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
-    hue = {FRAME: DARK} | dict.fromkeys(links, part.colour)
+    own = dict.fromkeys(links, part.colour)
     for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side
         if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
-            draw(sheet, scene.higher(pair), dict.fromkeys(links, part.colour))
+            draw(sheet, scene.higher(pair), own)
     for pair in outer:
         if pair.slide is not None:
             sliding_lead(sheet, scene, pair, part, look)
-    drawn = render(sheet, scene, links, inner, look, hue, leads=outer)
+    drawn = render(sheet, scene, links, inner, look, {FRAME: DARK} | own, leads=outer)
     for pair in outer:
         if pair.kind == "R":
             _stub(sheet, scene, pair, drawn.forms, look)
-    arrows(sheet, scene, drawn, look, hue)
-    for link, form in drawn.forms.items():
-        number(sheet, link, form, part.colour)
+    arrows(sheet, scene, drawn, look, own)
+    numbers(sheet, drawn.forms, own)
     names(sheet, ((spot(sheet, scene, p, look), p.name, part.colour if part.group else DARK) for p in inner))
     names(sheet, ((spot(sheet, scene, p, look), lead_name(p, part), DARK) for p in outer))
     _later(sheet, scene, part, (*inner, *outer), look)

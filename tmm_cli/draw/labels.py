@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -68,7 +69,7 @@ class Ground:
 
     def place(self, label: Label) -> complex:
         """The middle of the label where it covers the least; the label is then in the way of others."""
-        width, height = extent(label)
+        width, height = extent(label.text, label.size)
         reach = abs(label.line[1] - label.line[0]) / 2 if label.line else (FARTHER if label.far else RINGS)[-1]
         crowd = self.crowd
         near = crowd[np.abs(crowd - label.anchor) < reach + 2 * width + 5]
@@ -97,8 +98,7 @@ class Ground:
 
     def covered(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
         """The price of what a text there covers: of these points, of other labels, of the edge."""
-        left, right = middle.real - width / 2 - 0.4, middle.real + width / 2 + 0.4
-        low, high = middle.imag - height / 2 - 0.3, middle.imag + height / 2 + 0.3
+        left, right, low, high = about(middle, width + 0.8, height + 0.6)
         inside = (near.real > left) & (near.real < right) & (near.imag > low) & (near.imag < high)
         cost = float(np.count_nonzero(inside))
         for a, b, c, d in self.boxes:
@@ -124,8 +124,7 @@ def candidates(label: Label, width: float, height: float) -> Iterator[tuple[comp
         return
     for ring, reach in enumerate((*RINGS, *FARTHER) if label.far else RINGS):
         for step in range(DIRECTIONS):
-            angle = 2 * math.pi * (step + 0.5 * (ring % 2)) / DIRECTIONS + math.pi / 4
-            along = complex(math.cos(angle), math.sin(angle))
+            along = cmath.rect(1, 2 * math.pi * (step + 0.5 * (ring % 2)) / DIRECTIONS + math.pi / 4)
             # the box touches a circle about the anchor
             yield label.anchor + reach * along + complex(along.real * width / 2, along.imag * height / 2), 0.35 * reach
 
@@ -170,8 +169,8 @@ def away(box: Box, place: complex) -> float:
     return abs(nearest(box, place) - place)
 
 
-def extent(label: Label) -> tuple[float, float]:
-    """Width and height of a text on paper, mm (a measure good enough to keep labels apart)."""
+def extent(text: str, size: float) -> tuple[float, float]:
+    """Width and height of a text on paper, mm (a measure good enough to keep labels apart); size: points."""
     point = 25.4 / 72
-    width = sum(0.36 if c in NARROW else 0.88 if c in WIDE else 0.62 for c in label.text)
-    return max(width, 0.6) * label.size * point + 0.6, label.size * point
+    width = sum(0.36 if c in NARROW else 0.88 if c in WIDE else 0.62 for c in text)
+    return max(width, 0.6) * size * point + 0.6, size * point

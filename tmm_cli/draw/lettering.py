@@ -53,54 +53,28 @@ def rename(
 
 def joints(linkage: Linkage, chain: Chain, drawn: Construction) -> dict[str, str]:
     """Names of joints along the chain from the driver; none where the linkage is another one, or drives elsewhere."""
-    try:
-        found = _walk(linkage, chain)
-    except LookupError:
+    driver, letters = linkage.driver, LETTERS.get(chain, "")
+    if not letters or driver.kind != "turn":
         return {}
-    letters = LETTERS[chain]
-    crank = linkage.links[linkage.driver.link].points
-    own = abs(crank[found[0]] - crank[found[1]])
+    link, found = driver.link, [driver.joint]
+    for __ in linkage.links:
+        if len(found) == len(letters):
+            break
+        hinged = {h.point: h.links for h in linkage.hinges if link in h.links and h.point not in found}
+        ends = hinged or {p: (FRAME, link) for p in linkage.links[link].points if p not in found}
+        pivots = [p for p in hinged if FRAME in hinged[p]]
+        wanted = pivots or list(ends)
+        across = {s.carrier if s.runner == link else s.runner for s in linkage.slides if link in (s.carrier, s.runner)}
+        if len(wanted) == 1:
+            found += wanted
+            link = link if pivots else next((n for n in ends[wanted[0]] if n != link), FRAME)
+        elif not wanted and len(across) == 1:  # a stone: the chain goes on along its lever
+            (link,) = across
+        else:
+            return {}
+    if len(found) < len(letters):
+        return {}
     at = {spot.name: spot.at for spot in drawn.spots}
-    wanted = abs(at[f"{letters[1]}1"] - at[letters[0]])
-    if len(set(found)) < len(found) or abs(own - wanted) > NEAR * wanted:
-        return {}
-    return dict(zip(letters, found, strict=True))
-
-
-def _walk(linkage: Linkage, chain: Chain) -> list[str]:
-    """Points from joint to joint. Raises LookupError."""
-    driver = linkage.driver
-    if not chain or driver.kind != "turn":
-        raise LookupError(chain)
-    pin, link = _next(linkage, driver.link, driver.joint)
-    found = [driver.joint, pin]
-    if chain in ("four-bar", "crank-slider"):
-        joint, link = _next(linkage, link, pin)
-        found.append(joint)
-        if chain == "four-bar":
-            found.append(_next(linkage, link, joint, frame=True)[0])
-        return found
-    ways = [s for s in linkage.slides if link in (s.carrier, s.runner) and FRAME not in (s.carrier, s.runner)]
-    if len(ways) != 1:
-        raise LookupError(link)
-    lever = ways[0].carrier if ways[0].runner == link else ways[0].runner
-    pivot = _next(linkage, lever, "", frame=True)[0]
-    if chain == "slotted-lever":
-        ends = [name for name in linkage.links[lever].points if name not in (pivot, pin)]
-        if len(ends) != 1:
-            raise LookupError(lever)
-        return [*found, pivot, ends[0]]
-    joint, rod = _next(linkage, lever, pivot)
-    return [*found, pivot, joint, _next(linkage, rod, joint)[0]]
-
-
-def _next(linkage: Linkage, link: str, other: str, *, frame: bool = False) -> tuple[str, str]:
-    """The one hinge of a link besides another one, with the frame or with a moving link, and that link."""
-    found = [
-        (h.point, next((n for n in h.links if n != link), FRAME))
-        for h in linkage.hinges
-        if link in h.links and h.point != other and (FRAME in h.links) == frame
-    ]
-    if len(found) != 1:
-        raise LookupError(link)
-    return found[0]
+    crank = linkage.links[driver.link].points
+    own, wished = abs(crank[found[0]] - crank[found[1]]), abs(at[f"{letters[1]}1"] - at[letters[0]])
+    return dict(zip(letters, found, strict=True)) if abs(own - wished) <= NEAR * wished else {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,24 +13,37 @@ from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
 from tmm_cli.draw.scene import Scene, fixed_pivots, moving_points, to_scale
-from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, REACTION, THIN, Sheet, scale_text
-from tmm_cli.draw.symbols import MEASURED, NAMES
+from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
+from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import balance_name
+from tmm_cli.plans.record import PAD, balance_name
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
-from tmm_cli.vectors import Vector
 
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 SHOWN = 48  # positions drawn thin, at most
 
 
-def caption(results: Results, k: int) -> str:
-    """Which position it is and where the driver stands."""
-    assert results.motion is not None
-    place = place_of_driver(results, float(results.motion.q[k]))
-    return _("Position {number}, {place}").format(number=results.numbers[k], place=place)
+@dataclass(frozen=True)
+class Position:
+    """A computed position by its index, and what its sheets are called."""
+
+    results: Results
+    motion: Motion
+    k: int
+
+    def stem(self, name: str) -> str:
+        """velocity-03."""
+        return f"{name}-{self.results.numbers[self.k]:02d}"
+
+    def sheet(self, title: str, places: Iterable[complex], pad: float = PAD, **words: str) -> Sheet:
+        """A sheet for places (SI). {caption} in its title: which position it is and where the driver stands."""
+        place = place_of_driver(self.results, float(self.motion.q[self.k]))
+        caption = _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
+        return Sheet(self.results.problem.title, title.format(caption=caption, **words), places, pad=pad)
 
 
 def place_of_driver(results: Results, q: float) -> str:
@@ -41,15 +54,19 @@ def place_of_driver(results: Results, q: float) -> str:
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 
-def measured(sheet: Sheet, scene: Scene) -> Rendered:
-    """One position to scale with all its symbols, names of points and centres of mass, numbers of links."""
+def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
+    """One position to scale with its symbols, names of points and centres of mass, numbers of links.
+
+    mark: of the position, after the names of moving points.
+    """
     linkage = scene.linkage
+    moving = moving_points(linkage)
     drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
     for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
         at = sheet.on(scene.point(name))
         if sum(name in link.points for link in linkage.links.values()) == 1:
             sheet.circle(at, 0.6, face=DARK)
-        sheet.label(name, at, 10)
+        sheet.label(name + mark if name in moving else name, at, 10, far=bool(mark) and name in moving)
     for link in linkage.moving:
         own = linkage.links[link]
         if np.any(own.mass != 0):
@@ -79,28 +96,26 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
             sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
 
 
-def trajectory(sheet: Sheet, places: Vector) -> None:
-    """The path of a point, m."""
-    sheet.line([sheet.on(complex(p)) for p in places], THIN, 0.7, "--", 1.5, blocks=False)
+def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
+    """A sheet with the paths of all moving points over the cycle."""
+    whole = at_positions(results, results.closely(DENSE), 0)
+    paths = [whole.spot(name) for name in moving_points(results.linkage)]
+    used = [*fixed_pivots(results.linkage), *(p for path in paths for p in path)]
+    sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
+    for path in paths:
+        sheet.line([sheet.on(complex(p)) for p in path], THIN, 0.7, "--", 1.5, blocks=False)
+    return sheet
 
 
 def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    whole = at_positions(results, results.closely(DENSE), 0)
-    points = moving_points(linkage)
     chosen = detailed(results)
-    k = chosen[0] if chosen else int(np.argmax(motion.placed))
+    k = chosen[0].k if chosen else int(np.argmax(motion.placed))
     scene = Scene(linkage, results.structure, motion.poses, k)
-    used = [*fixed_pivots(linkage), *(p for name in points for p in whole.spot(name))]
-    sheet = Sheet(
-        results.problem.title,
-        _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers)),
-        to_scale(scene, used),
-    )
-    for name in points:
-        trajectory(sheet, whole.spot(name))
+    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    sheet = trajectories(results, scene, caption)
     for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
         if other != k and motion.placed[other]:
             skeleton(sheet, replace(scene, k=other))
@@ -131,60 +146,57 @@ def _numbers(sheet: Sheet, results: Results) -> None:
         sheet.label(", ".join(numbers), at + 1.5 * out, 8, "#404040")
 
 
-def detailed(results: Results) -> list[int]:
-    """Indices of the positions in detail that could be computed."""
+def detailed(results: Results) -> list[Position]:
+    """The positions in detail that could be computed."""
     motion = results.motion
     assert motion is not None
     wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
-    return [k for k, n in enumerate(results.numbers) if n in wanted and motion.moving[k] and not results.locked[k]]
+    return [
+        Position(results, motion, k) for k, n in enumerate(results.numbers)
+        if n in wanted and motion.moving[k] and not results.locked[k]
+    ]  # fmt: skip
 
 
-def stem(name: str, results: Results, k: int) -> str:
-    """velocity-03."""
-    return f"{name}-{results.numbers[k]:02d}"
-
-
-def position(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+def position(here: Position) -> Iterable[tuple[str, Figure]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
-    motion, linkage = results.motion, results.linkage
-    assert motion is not None
+    results, motion, k = here.results, here.motion, here.k
+    linkage, reactions = results.linkage, results.reactions
     scene = Scene(linkage, results.structure, motion.poses, k)
-    loads = results.reactions.applied if results.reactions is not None else ()
+    loads = [
+        (load, complex(motion.point(load.link, load.at).x[k])) for load in (reactions.applied if reactions else ())
+    ]
     places = [*fixed_pivots(linkage), *(scene.point(p) for p in moving_points(linkage))]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
-    places += [complex(motion.point(load.link, load.at).x[k]) for load in loads]
-    sheet = Sheet(results.problem.title, caption(results, k), to_scale(scene, places), pad=30)
+    sheet = here.sheet("{caption}", to_scale(scene, [*places, *(at for __, at in loads)]), pad=30)
     measured(sheet, scene)
-    if results.reactions is not None:
-        taken: list[tuple[complex, complex]] = []
-        coupled: list[complex] = []
-        for load in results.reactions.applied:
-            at = sheet.on(complex(motion.point(load.link, load.at).x[k]))
-            force, moment = complex(load.force[k]), float(load.moment[k])
-            colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
-            if abs(force) > 0:
-                if load.kind == "load":
-                    belongs(sheet, scene, load.link, at)
-                unscaled(sheet, taken, at, force, load.name, colour)
-            if moment != 0:
-                radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
-                coupled.append(at)
-                couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
-        _balance(sheet, results, k)
+    taken: list[tuple[complex, complex]] = []
+    coupled: list[complex] = []
+    for load, place in loads:
+        at, force, moment = sheet.on(place), complex(load.force[k]), float(load.moment[k])
+        colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
+        if abs(force) > 0:
+            if load.kind == "load":
+                belongs(sheet, scene, load.link, at)
+            unscaled(sheet, taken, at, force, load.name, colour)
+        if moment != 0:
+            radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
+            coupled.append(at)
+            couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
+    if reactions is not None:
+        _balance(sheet, reactions, k)
         sheet.note(_("loads without scale"))
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    yield stem("position", results, k), sheet.finish()
+    yield here.stem("position"), sheet.finish()
 
 
-def _balance(sheet: Sheet, results: Results, k: int) -> None:
-    assert results.reactions is not None
-    several = len(results.reactions.balances) > 1
-    for balance in results.reactions.balances:
-        name = balance_name(balance.driver.link, several)
-        if balance.kind == "moment" and balance.moment is not None:
-            pivots = [f.at for f in results.reactions.frames if f.on == balance.driver.link]
+def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
+    for balance in reactions.balances:
+        turns = balance.kind == "moment" and balance.moment is not None
+        name = balance_name(balance.driver.link, len(reactions.balances) > 1, turns=turns)
+        if turns:
+            pivots = [f.at for f in reactions.frames if f.on == balance.driver.link]
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
-            couple(sheet, pivot, np.sign(float(balance.moment[k])), REACTION, name.replace("F", "M", 1), 7.5)
+            couple(sheet, pivot, np.sign(float(balance.generalized[k])), REACTION, name, 7.5)
         elif abs(balance.vector[k]) > 0:
             unscaled(sheet, [], sheet.on(complex(balance.at[k])), complex(balance.vector[k]), name, REACTION)
 

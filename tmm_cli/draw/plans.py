@@ -8,52 +8,38 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
-from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.mechanism import caption, stem, unscaled
+from tmm_cli.draw.mechanism import Position, unscaled
 from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
 from tmm_cli.errors import _
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import NamedVector, Plan, balance_name
+from tmm_cli.plans.record import NamedVector, balance_name
 from tmm_cli.plans.velocity import velocity_plan
 
 
-def velocity(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
-    """Velocity plan of a position."""
-    assert results.motion is not None
-    plan = velocity_plan(results.motion, k)
-    sheet = _plan(results, plan, _("Velocity plan. {caption}").format(caption=caption(results, k)), "p")
-    sheet.note(scale_text("v", sheet.mu, "m/s/mm"))
-    yield stem("velocity", results, k), sheet.finish()
-
-
-def acceleration(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
-    """Acceleration plan of a position, with the parts of each link."""
-    assert results.motion is not None
-    plan = acceleration_plan(results.motion, k)
-    sheet = _plan(results, plan, _("Acceleration plan. {caption}").format(caption=caption(results, k)), POLE)
-    sheet.note(scale_text("a", sheet.mu, "m/s²/mm"))
-    yield stem("acceleration", results, k), sheet.finish()
-
-
-def _plan(results: Results, plan: Plan, title: str, pole: str) -> Sheet:
-    sheet = Sheet(results.problem.title, title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
-    drawn = plan.drawn()
-    for vector in drawn:
-        start, end = sheet.on(vector.start), sheet.on(vector.end)
-        # of points of mass a thin ray is enough: the letters say the rest
-        mass = vector.kind == "absolute" and vector.name[len(pole) :].startswith("s")
-        width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
-        sheet.arrow(start, end, THIN if mass else COLOURS[vector.kind], width)
-    for vector in drawn:
-        if vector.kind not in ("absolute", "relative") and sheet.mu > 0 and abs(vector.value) / sheet.mu > 2.5:
-            sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
-    _letters(sheet, plan.ends, pole)
-    if plan.size == 0:
-        sheet.note(_("everything is at rest"))
-    return sheet
+def motion_plans(here: Position) -> Iterable[tuple[str, Figure]]:
+    """Velocity plan and acceleration plan of a position, with the parts of each link."""
+    for name, plan_of, title, pole, symbol, unit in (
+        ("velocity", velocity_plan, _("Velocity plan. {caption}"), "p", "v", "m/s/mm"),
+        ("acceleration", acceleration_plan, _("Acceleration plan. {caption}"), POLE, "a", "m/s²/mm"),
+    ):
+        plan = plan_of(here.motion, here.k)
+        sheet = here.sheet(title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
+        for vector in plan.drawn():
+            # of points of mass a thin ray is enough: the letters say the rest
+            mass = vector.kind == "absolute" and vector.name[len(pole) :].startswith("s")
+            width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
+            sheet.arrow(sheet.on(vector.start), sheet.on(vector.end), THIN if mass else COLOURS[vector.kind], width)
+        for vector in plan.drawn():
+            if vector.kind not in ("absolute", "relative") and abs(vector.value) / sheet.mu > 2.5:
+                sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
+        _letters(sheet, plan.ends, pole)
+        if plan.size == 0:
+            sheet.note(_("everything is at rest"))
+        sheet.note(scale_text(symbol, sheet.mu, unit))
+        yield here.stem(name), sheet.finish()
 
 
 def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
@@ -63,31 +49,29 @@ def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
 
 
-def forces(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+def forces(here: Position) -> Iterable[tuple[str, Figure]]:
     """A sheet for the polygon of each group and of the driving link."""
-    if results.reactions is None:
+    if here.results.reactions is None:
         return
-    for plan in force_plans(results.reactions, k):
-        links = ", ".join(plan.links)
+    for plan in force_plans(here.results.reactions, here.k):
         title = _("Force plan of link {links}. {caption}")
         if plan.driving:
             title = _("Force plan of the driving link {links}. {caption}")
         elif len(plan.links) > 1:
             title = _("Force plan of links {links}. {caption}")
-        sheet = Sheet(
-            results.problem.title, title.format(links=links, caption=caption(results, k)),
-            [p for v in plan.plan.vectors for p in (v.start, v.end)],
-        )  # fmt: skip
+        places = [p for v in plan.plan.vectors for p in (v.start, v.end)]
+        sheet = here.sheet(title, places, links=", ".join(plan.links))
         sheet.note(scale_text("F", sheet.mu, "N/mm"))
-        for vector in plan.plan.drawn():
+        drawn = plan.plan.drawn()
+        for vector in drawn:
             _force(sheet, vector)
-        small = [v.name for v in plan.plan.vectors if v not in plan.plan.drawn()]
+        small = [v.name for v in plan.plan.vectors if v not in drawn]
         if small:
             sheet.note(_("zero: {names}").format(names=", ".join(small)))
         for line, text in enumerate(textwrap.wrap(plan.equation, 105 if sheet.paper[0] < 250 else 150, max_lines=2)):
             sheet.text(complex(12, 8 - 4.5 * line), text, 9, colour="#404040")
         kind = "links" if len(plan.links) > 1 else "link"
-        yield safe("-".join(["forces", f"{results.numbers[k]:02d}", kind, *plan.links])), sheet.finish()
+        yield safe("-".join([here.stem("forces"), kind, *plan.links])), sheet.finish()
 
 
 def _force(sheet: Sheet, vector: NamedVector) -> None:
@@ -102,59 +86,57 @@ def _force(sheet: Sheet, vector: NamedVector) -> None:
     sheet.label(vector.name, (start + end) / 2, 10, colour)
 
 
-def lever(results: Results, k: int) -> Iterable[tuple[str, Figure]]:
+def lever(here: Position) -> Iterable[tuple[str, Figure]]:
     """The turned velocity plan with its forces; arms are thin lines from the pole."""
-    if results.lever is None or results.motion is None:
+    results = here.results
+    if results.lever is None:
         return
     crank = results.linkage.driver.kind == "turn"
-    plan = lever_plan(results.motion, results.lever, k)
+    plan = lever_plan(here.motion, results.lever, here.k)
     places = [*plan.ends.values(), *(f.at for f in plan.forces), *(f.foot for f in plan.forces)]
     title = (
         _("Zhukovsky lever: velocity plan for 1 rad/s, turned by 90°. {caption}")
         if crank
         else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90°. {caption}")
     )
-    sheet = Sheet(results.problem.title, title.format(caption=caption(results, k)), places, pad=36)
+    sheet = here.sheet(title, places, pad=36)
     for bar in plan.bars:
         sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
     size = max((abs(e) for e in plan.ends.values()), default=0.0)
-    pole = sheet.on(0j)
     taken: list[tuple[complex, complex]] = []
     inertial = {n for load in results.loads if load.kind == "inertia" for n in (load.name, load.couple_name)}
     for force in plan.forces:
         at, foot = sheet.on(force.at), sheet.on(force.foot)
-        colour = COLOURS["inertia" if force.name in inertial else "load"]
         if abs(force.foot) > 1e-9 * size:
-            sheet.line([pole, foot], THIN, 0.6, ":", 2)
+            sheet.line([sheet.on(0j), foot], THIN, 0.6, ":", 2)
             sheet.line([foot, at], THIN, 0.5, "--", 2)
-        unscaled(sheet, taken, at, force.force, force.name, colour)
+        unscaled(sheet, taken, at, force.force, force.name, COLOURS["inertia" if force.name in inertial else "load"])
     _letters(sheet, plan.ends, "p")
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:
             sheet.note(f"{name}: {moment:.4g} N·m")
-    for line in _balancing(results, plan.balancing, k):
+    for line in _balancing(here, plan.balancing):
         sheet.note(line)
-    yield stem("lever", results, k), sheet.finish()
+    yield here.stem("lever"), sheet.finish()
 
 
-def _balancing(results: Results, value: float, k: int) -> Iterable[str]:
+def _balancing(here: Position, value: float) -> Iterable[str]:
     """What the lever gives; with several drivers it is the sum of what they do at their speeds."""
-    motion, reactions = results.motion, results.reactions
-    assert motion is not None and reactions is not None
-    crank = results.linkage.driver.kind == "turn"
+    motion, reactions, k = here.motion, here.results.reactions, here.k
+    assert reactions is not None
+    crank = here.results.linkage.driver.kind == "turn"
     if len(reactions.balances) == 1:
         yield (_("Mb = {value} N·m") if crank else _("Fb = {value} N")).format(value=f"{value:.6g}")
         return
     names = []
     for balance in reactions.balances:
         ratio = float(np.broadcast_to(motion.drives[balance.driver.link].first, motion.q.shape)[k])
-        name = balance_name(balance.driver.link, True)
-        name = name if balance.moment is None else name.replace("F", "M", 1)
-        unit = "N" if balance.moment is None else "N·m"
+        turns = balance.moment is not None
+        name = balance_name(balance.driver.link, True, turns=turns)
         names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
         yield _("{name} = {value} {unit} (force plan)").format(
-            name=name, value=f"{float(balance.generalized[k]):.6g}", unit=unit
+            name=name, value=f"{float(balance.generalized[k]):.6g}", unit="N·m" if turns else "N"
         )
     yield _("lever: {names} = {value} {unit}").format(
         names=" ".join(names), value=f"{value:.6g}", unit="N·m" if crank else "N"

@@ -28,10 +28,10 @@ GREY = "#404040"
 
 @dataclass
 class Rendered:
-    """What was drawn of the links, and the cylinders by their sliding pair: the middle (mm) and the direction."""
+    """What was drawn of the links, and the middles of the cylinders (mm) by their sliding pair."""
 
     forms: Mapping[str, Form]
-    cylinders: dict[str, tuple[complex, complex]] = field(default_factory=dict)
+    cylinders: dict[str, complex] = field(default_factory=dict)
 
 
 def render(
@@ -56,12 +56,11 @@ def render(
         if pair.slide is None:
             continue
         if pair.name in driven:
-            way = scene.way(pair.slide)
-            drawn.cylinders[pair.name] = cylinder(sheet, scene.linkage, pair.slide, scene.place, way)
+            drawn.cylinders[pair.name] = cylinder(sheet, scene, pair.slide)
         else:
             slider(sheet, scene, pair, look, hue[pair.slide.runner])
     if look.measured:
-        springs(sheet, scene.linkage, scene.place)
+        springs(sheet, scene)
     hinges = gathered((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
     for at, here in hinges:
         _hinge(sheet, at, here, forms, look, hue)
@@ -182,9 +181,14 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
         at = sheet.on(scene.at(pair))
         if pair.slide is not None:
             along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
-            if pair.name in drawn.cylinders:
-                at = drawn.cylinders[pair.name][0]
-            sliding_arrow(sheet, at, along, look.box[1], driver_name(driver, "v"), hue[driver.link])
+            sliding_arrow(
+                sheet,
+                drawn.cylinders.get(pair.name, at),
+                along,
+                look.box[1],
+                driver_name(driver, "v"),
+                hue[driver.link],
+            )
         else:
             ends = [end - at for line in drawn.forms[driver.link].lines for end in line]
             if look.measured:

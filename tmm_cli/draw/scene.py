@@ -43,6 +43,10 @@ class Scene:
             return complex(local)
         return self._now(self.poses[link].x) + local * self._now(self.poses[link].z)
 
+    def turn(self, link: str) -> float:
+        """The angle of a link, rad."""
+        return float(np.angle(self.place(link, 1 + 0j) - self.place(link, 0j)))
+
     def along(self, slide: Slide) -> complex:
         """Direction of a guide."""
         turned = 1.0 if slide.carrier == FRAME else self._now(self.poses[slide.carrier].z)
@@ -76,7 +80,7 @@ class Scene:
     def higher(self, pair: Pair) -> Shape:
         """The wheels, or the cam and its follower, of a higher pair."""
         assert pair.mesh is not None
-        return shape(pair.mesh, self.linkage, self.place)
+        return shape(self, pair.mesh)
 
     def of(self, link: str) -> tuple[Pair, ...]:
         """The lower pairs of a link."""
@@ -117,15 +121,12 @@ class Scene:
         return complex(row[self.k if row.size > 1 else 0])
 
 
-def fitted(
-    sheet: Sheet, scene: Scene, links: Sequence[str], low: complex, high: complex, pad: float, most: float
-) -> Scene:
-    """Put these links into a field of the sheet (mm); where a guide on the frame is does not matter for the structure.
+def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: float) -> Scene:
+    """Put these links onto the ground of the sheet; where a guide on the frame is does not matter for the structure.
 
     So a slider that would cover another one of its link is drawn further on along its guide.
     """
-    fit(sheet, scene.extent(links), low, high, pad, most)
-    links = [link for link in links if link != FRAME]
+    fit(sheet, scene.extent(links), pad, most)
     boxes = [(p, sheet.on(scene.at(p))) for link in links for p in scene.of(link) if p.slide is not None]
     every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
@@ -136,16 +137,13 @@ def fitted(
         if any(abs(place - at) < APART for other, place in boxes if other.name != pair.name):
             others = [place for place in every if abs(place - at) > ON_LINE]
             choices = [at + side * ASIDE * scene.along(slide) for side in (1, -1)]
-            moved[pair.name] = (_emptier(choices, others) - at) * sheet.mu
+            # farther from the others; without any, lower
+            free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
+            moved[pair.name] = (free - at) * sheet.mu
     if moved:
         scene = replace(scene, moved=moved)
-        fit(sheet, scene.extent(links), low, high, pad, most)
+        fit(sheet, scene.extent(links), pad, most)
     return scene
-
-
-def _emptier(places: Sequence[complex], others: Sequence[complex]) -> complex:
-    """The place that is farther from the others; without any, the lower one."""
-    return max(places, key=lambda place: (min((abs(place - other) for other in others), default=0.0), -place.imag))
 
 
 def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
@@ -154,8 +152,9 @@ def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
     return max(across / room.real, up / room.imag, larger / most) or 1.0
 
 
-def fit(sheet: Sheet, places: Sequence[complex], low: complex, high: complex, pad: float, most: float) -> None:
-    """Put places (m) into the middle of a field of the sheet (mm), as large as the pad and `most` (mm) let them be."""
+def fit(sheet: Sheet, places: Sequence[complex], pad: float, most: float) -> None:
+    """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
+    low, high = sheet.ground.low, sheet.ground.high
     sheet.mu = scale_to(places, high - low - 2 * pad * (1 + 1j), most)
     sheet.origin = (low + high) / 2 - extent(places or [0j])[3] / sheet.mu
 
@@ -172,7 +171,7 @@ def apart(places: Iterable[complex]) -> list[complex]:
 def to_scale(scene: Scene, places: Sequence[complex]) -> list[complex]:
     """Places (m) with what else must be on a sheet that has them: wheels, cams, ends of springs on the frame."""
     size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
-    found = [*places, *wheels_extent((shape(mesh, scene.linkage, scene.place) for mesh in scene.linkage.meshes), size)]
+    found = [*places, *wheels_extent((shape(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
         if not spring.turns:
             found += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]

@@ -24,9 +24,10 @@ POINTS = 72 * MM  # in a millimetre
 HINTED = 1.06  # pixels widen a text by up to this
 CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
+NAMES = "#7a3d99"  # of links, lines and angles
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
-    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": "#7a3d99",
+    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": NAMES,
 }  # fmt: skip
 BETWEEN = 12  # places along an edge that are tried for the notes
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
@@ -42,10 +43,15 @@ mpl.rcParams["font.family"] = "DejaVu Sans"
 class Sheet:
     """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
 
-    def __init__(self, title: str, caption: str, points: Iterable[complex], *, pad: float = PAD) -> None:
+    def __init__(
+        self, title: str, caption: str, points: Iterable[complex] = (), *, pad: float = PAD,
+        paper: tuple[float, float] | None = None,
+    ) -> None:  # fmt: skip
+        """For these points (SI), upright or not as they are larger then; or of a given paper, scaled later."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         middle = extent(found)[3]
-        self.paper, self.mu = sheet_scale(found, pad)
+        best, self.mu = sheet_scale(found, pad)
+        self.paper = paper or best
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
@@ -72,18 +78,21 @@ class Sheet:
 
     def text(
         self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: str = "left",
-        style: str = "normal",
+        style: str = "normal", turn: float = 0.0,
     ) -> None:  # fmt: skip
-        """A text at a place (mm); never read as mathematics."""
+        """A text at a place (mm), turned (deg) about it; never read as mathematics."""
         self.axes.text(
             at.real, at.imag, text, fontsize=size, color=colour, weight=weight, ha=ha, va="center", style=style,
-            parse_math=False, zorder=9,
+            rotation=turn, rotation_mode="anchor", parse_math=False, zorder=9,
         )  # fmt: skip
 
-    def label(self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal") -> None:
+    def label(
+        self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
+        far: bool = False,
+    ) -> None:  # fmt: skip
         """A text beside a place (mm); where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
-            self.labels.append(Label(text, anchor, size, colour, style))
+            self.labels.append(Label(text, anchor, size, colour, style, far=far))
 
     def line(
         self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: str = "-", z: float = 3, *,
@@ -97,11 +106,14 @@ class Sheet:
                 if np.isfinite(start) and np.isfinite(end):
                     self.ground.line(complex(start), complex(end))
 
-    def area(self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0) -> None:
+    def area(
+        self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
+        blocks: bool = True,
+    ) -> None:  # fmt: skip
         """A filled polygon."""
         shape = [(c.real, c.imag) for c in corners]
         self.axes.add_patch(Polygon(shape, facecolor=face, edgecolor=edge, lw=width, zorder=z))
-        for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
+        for start, end in pairwise([*corners, corners[0]]) if blocks else ():
             self.ground.line(start, end)
 
     def circle(
@@ -123,8 +135,7 @@ class Sheet:
         neck = end - head * along
         side = 1j * along * head * 0.27
         self.line([start, neck + 0.3 * head * along], colour, width, z=z)
-        shape = [(c.real, c.imag) for c in (end, neck + side, neck - side)]
-        self.axes.add_patch(Polygon(shape, facecolor=colour, edgecolor="none", zorder=z))
+        self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
         self.ground.line(neck, end)
 
     def note(self, text: str) -> None:
@@ -151,11 +162,8 @@ class Sheet:
         """A text along a unit vector, its middle at a place (mm); it is in the way of labels."""
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
-        self.axes.text(
-            at.real, at.imag, text, fontsize=size, color=DARK, rotation=turn, rotation_mode="anchor", ha="center",
-            va="center", parse_math=False, zorder=9,
-        )  # fmt: skip
-        width, height = label_extent(Label(text, at, size, DARK))
+        self.text(at, text, size, ha="center", turn=turn)
+        width, height = label_extent(text, size)
         self.ground.boxes += [about(place, height, height) for place in row(at, along, width, height)]
 
     def corner(self) -> None:
@@ -178,8 +186,7 @@ class Sheet:
 
         at = min(fields, key=covered)
         corners = [at, at + width, at + complex(width, height), at + 1j * height]
-        shape = [(c.real, c.imag) for c in corners]
-        self.axes.add_patch(Polygon(shape, facecolor="white", edgecolor=THIN, lw=0.6, zorder=8))
+        self.area(corners, "white", THIN, 0.6, 8, blocks=False)
         for k, text in enumerate(self.notes):
             self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
         self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.draw.labels import Label, extent
+from tmm_cli.draw.labels import extent
 from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.scene import Scene, fitted, scale_to
 from tmm_cli.draw.sheet import DARK, Sheet, ground_of
-from tmm_cli.draw.symbols import PALETTE, STRUCTURAL, number, symbol_size
+from tmm_cli.draw.symbols import PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.errors import _
-from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT
 from tmm_cli.structure.assur import ROMAN, Group, Structure
@@ -54,10 +52,10 @@ def colours(structure: Structure) -> dict[str, str]:
     return {FRAME: DARK} | {link: part.colour for part in parts(structure) for link in part.links}
 
 
-def at_sketch(results: Results) -> tuple[Motion, int] | None:
-    """The motion with the index of the place to draw: the sketch, or a place at which no pair hides another.
+def at_sketch(results: Results) -> tuple[str, Scene] | None:
+    """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
 
-    None when the linkage cannot be assembled there.
+    None when the linkage cannot be assembled at the sketch.
     """
     linkage, structure = results.linkage, results.structure
     driver_range = results.driver_range
@@ -68,75 +66,57 @@ def at_sketch(results: Results) -> tuple[Motion, int] | None:
     motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
     if not bool(motion.placed[0]):
         return None
-    clear = _clearness(Scene(linkage, structure, motion.poses), motion)
+    scenes = [Scene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
+    clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
     best = int(np.argmax(clear))
-    return motion, best if clear[0] < HIDDEN and clear[best] > 2 * clear[0] else 0
+    k = best if clear[0] < HIDDEN and clear[best] > 2 * clear[0] else 0
+    return place_of_driver(results, float(motion.q[k])), scenes[k]
 
 
-def _clearness(scene: Scene, motion: Motion) -> Real:
-    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a place.
+def _clearness(scenes: Sequence[Scene]) -> Real:
+    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
 
     Pairs that always coincide do not count.
     """
-    number = len(motion.q)
-    scenes = [Scene(scene.linkage, scene.structure, scene.poses, k) for k in range(number)]
-    moving = scene.structure.links
+    moving, every = scenes[0].structure.links, scenes[0].structure.pairs
     # a guide on the frame may be drawn anywhere along itself
-    pairs = [p for p in scene.structure.pairs if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
+    pairs = [p for p in every if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
     spots = np.array([[s.at(p) for p in pairs] for s in scenes])
     spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
-    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines])
+    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines], complex)
+    bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
+    start, span = bars[..., 0], bars[..., 1] - bars[..., 0]
+    share = np.clip(dot(span, spots[:, :, None] - start) / np.maximum(np.abs(span) ** 2, 1e-300), 0, 1)
+    others = np.concatenate([np.broadcast_to(spots[:, None], (*spots.shape, len(pairs))), start + share * span], axis=2)
+    gaps = np.abs(others - spots[:, :, None]).reshape(len(scenes), -1)
     size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
-    gaps = [np.abs(spots[:, a] - spots[:, b]) for a in range(spots.shape[1]) for b in range(a)]
-    for a in range(spots.shape[1]):
-        for n in range(bars.shape[1] if bars.size else 0):
-            start, end, spot = bars[:, n, 0], bars[:, n, 1], spots[:, a]
-            bar = end - start
-            share = np.clip(dot(bar, spot - start) / np.maximum(np.abs(bar) ** 2, 1e-300), 0, 1)
-            gaps.append(np.abs(start + share * bar - spot))
-    apart = [gap / size for gap in gaps if np.nanmax(gap) > 1e-6 * size]
-    clear = np.min(apart, axis=0) if apart else np.ones(number)
-    return np.where(motion.placed, np.nan_to_num(clear, nan=-1.0), -1.0)
-
-
-def structure(results: Results) -> Iterable[tuple[str, Figure]]:
-    """The structural scheme on a sheet of its own."""
-    found = at_sketch(results)
-    if found is not None:
-        motion, k = found
-        scene = Scene(results.linkage, results.structure, motion.poses, k)
-        yield "structure", scheme(results.problem.title, place_of_driver(results, float(motion.q[k])), scene).finish()
+    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
+    return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
 
 
 def scheme(title: str, place: str, scene: Scene) -> Sheet:
-    """The whole mechanism with its legend; labels are placed."""
+    """The whole mechanism with its legend below; labels are placed."""
     legend = Legend(scene.structure)
-    sheet, scene = _paper(title, _("Structural scheme, {place} (not to scale)").format(place=place), scene, legend)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, colours(scene.structure)
-    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
-    drawn = render(sheet, scene, links, pairs, look, hue)
-    arrows(sheet, scene, drawn, look, hue)
-    for link, form in drawn.forms.items():
-        number(sheet, link, form, hue[link])
-    names(sheet, [(spot(sheet, scene, p, look), p.name, DARK) for p in pairs])
-    sheet.settle()
-    legend.draw(sheet)
-    return sheet
-
-
-def _paper(title: str, caption: str, scene: Scene, legend: Legend) -> tuple[Sheet, Scene]:
-    """A sheet with room for the legend below: landscape, unless the mechanism becomes much larger on an upright one."""
-    links = scene.structure.links
     places, most = scene.extent(links), LEAST + A_LINK * len(links)
 
     def scale(paper: tuple[float, float]) -> float:
         low, high = ground_of(paper)
         return scale_to(places, high - low - 2 * PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
-    wide = scale(LANDSCAPE) < 1.4 * scale(PORTRAIT)
-    sheet = Sheet(title, caption, [0j, 9 + 1j if wide else 1 + 9j])
-    sheet.ground.low += 1j * legend.height(sheet.paper[0])
-    return sheet, fitted(sheet, scene, links, sheet.ground.low, sheet.ground.high, PAD, most)
+    # upright only where the mechanism becomes much larger
+    paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
+    sheet = Sheet(title, _("Structural scheme, {place} (not to scale)").format(place=place), paper=paper)
+    sheet.ground.low += 1j * legend.height(paper[0])
+    scene = fitted(sheet, scene, links, PAD, most)
+    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
+    drawn = render(sheet, scene, links, pairs, look, hue)
+    arrows(sheet, scene, drawn, look, hue)
+    numbers(sheet, drawn.forms, hue)
+    names(sheet, [(spot(sheet, scene, p, look), p.name, DARK) for p in pairs])
+    sheet.settle()
+    legend.draw(sheet)
+    return sheet
 
 
 class Legend:
@@ -166,7 +146,7 @@ class Legend:
     def split(self, paper: float) -> tuple[float, list[str]]:
         """Where the right part begins (mm), and its lines."""
         width = paper - 2 * MARGIN
-        left = min(0.5 * width, 14 + max(extent(Label(self.words(part), 0j, 9, DARK))[0] for part in self.parts))
+        left = min(0.5 * width, 14 + max(extent(self.words(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
         wrapped = (textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4) for fact in self.facts)
         return left, [line for lines in wrapped for line in lines]

@@ -5,13 +5,13 @@ A look says how large and how bold they are: as measured drawings have them, or 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tmm_cli.draw.forms import Form
-from tmm_cli.draw.labels import Label, about, extent
+from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
 from tmm_cli.draw.sheet import DARK, Sheet, hatch
 from tmm_cli.vectors import cross, dot, unit
@@ -20,7 +20,6 @@ WELD = 3.2  # mm: leg of a rigid corner's mark
 CLEAR = 3.2  # mm about the number on a plate
 GAP = 0.5  # mm between a box and its rails
 FREE = "#6a6a6a"  # what a lead would be joined to
-NAMES = "#7a3d99"  # numbers of links
 PALETTE = ("#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#b86a00", "#00757d", "#8a3b5c", "#5f6b00", "#3d4a5c")
 CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
@@ -169,10 +168,11 @@ def symbol_size(sheet: Sheet, scene: Scene, links: Iterable[str]) -> float:
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 
 
-def number(sheet: Sheet, link: str, form: Form, colour: str) -> None:
-    """The number of a link: in the middle of its plate where nothing is drawn there, or beside it."""
-    if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > CLEAR):
-        sheet.ground.boxes.append(about(form.middle, *extent(Label(link, form.middle, 11, colour))))
-        sheet.text(form.middle, link, 11, colour=colour, ha="center", style="italic")
-    else:
-        sheet.label(link, form.middle, 11, colour, "italic")
+def numbers(sheet: Sheet, forms: Mapping[str, Form], hue: Mapping[str, str]) -> None:
+    """The numbers of links: in the middle of a plate where nothing is drawn there, or beside the link."""
+    for link, form in forms.items():
+        if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > CLEAR):
+            sheet.ground.boxes.append(about(form.middle, *extent(link, 11)))
+            sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
+        else:
+            sheet.label(link, form.middle, 11, hue[link], "italic")

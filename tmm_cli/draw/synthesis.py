@@ -14,17 +14,15 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.actuators import cylinders
 from tmm_cli.draw.construction import construction
 from tmm_cli.draw.forms import by_points
-from tmm_cli.draw.labels import Label
-from tmm_cli.draw.mechanism import measured, skeleton, trajectory
+from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
-from tmm_cli.draw.scene import Scene, fixed_pivots, moving_points, to_scale
+from tmm_cli.draw.scene import Scene, moving_points
 from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, chart, scale_text, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS, Dimension
-from tmm_cli.structure.cycle import DENSE
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.record import Outcome
 
@@ -97,20 +95,14 @@ def extremes(results: Results) -> Sheet:
     """The mechanism at both ends of its working stroke, the start in full, with the paths of its points."""
     strokes, linkage = results.strokes, results.linkage
     assert strokes is not None
-    sense = linkage.driver.sense
     ends = [stroke.start for stroke in strokes.strokes]
     if len(ends) == 1:
-        ends.append(ends[0] + sense * strokes.strokes[0].length)
+        ends.append(ends[0] + linkage.driver.sense * strokes.strokes[0].length)
     motion = at_positions(results, np.array(ends), 2)
-    whole = at_positions(results, results.closely(DENSE), 0)
-    points = moving_points(linkage)
     scene = Scene(linkage, results.structure, motion.poses)
-    used = [*fixed_pivots(linkage), *(complex(p) for name in points for p in whole.spot(name))]
-    sheet = Sheet(results.problem.title, _("Extreme positions of the output"), to_scale(scene, used))
-    for name in points:
-        trajectory(sheet, whole.spot(name))
-    for k in range(1, len(ends)):
-        other = replace(scene, k=k)
+    sheet = trajectories(results, scene, _("Extreme positions of the output"))
+    others = [replace(scene, k=k) for k in range(1, len(ends))]
+    for other in others:
         skeleton(sheet, other, INERTIA, 1.6, 2.9)
         for link in linkage.moving:
             for start, end in pairwise(by_points(sheet, other, link).hull):
@@ -118,24 +110,17 @@ def extremes(results: Results) -> Sheet:
         for pair in results.structure.pairs:
             if pair.slide is not None and pair.name not in cylinders(linkage):
                 slider(sheet, other, pair, MEASURED, INERTIA)
-    measured(sheet, scene)
-    named = {name: sheet.on(complex(motion.named(name).x[0])) for name in points}
-    sheet.labels = [
-        replace(label, text=label.text + ENDS[0], far=True)
-        if label.text in named and abs(label.anchor - named[label.text]) < MEASURED.hinge
-        else label
-        for label in sheet.labels
-    ]
-    sheet.ground.rivals += list(named.values())
-    for k in range(1, len(ends)):
+    measured(sheet, scene, ENDS[0])
+    points = moving_points(linkage)
+    sheet.ground.rivals += [sheet.on(here.point(name)) for here in (scene, *others) for name in points]
+    for other in others:
         for name in points:
-            at = sheet.on(complex(motion.named(name).x[k]))
-            sheet.ground.rivals.append(at)
+            at = sheet.on(other.point(name))
             if any(name in h.point for h in linkage.hinges):
                 sheet.circle(at, 0.8 * MEASURED.hinge, edge=INERTIA)
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
-            sheet.labels.append(Label(name + ENDS[min(k, 3)], at, 10, INERTIA, far=True))
+            sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA, far=True)
     sheet.note(scale_text("l", sheet.mu, "m/mm"))
     sheet.note(_("I: start of the working stroke, II: its end"))
     return sheet

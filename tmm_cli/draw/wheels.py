@@ -8,18 +8,20 @@ that is chosen to look well.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
-from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
+from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.base import axis
 from tmm_cli.vectors import Vector, dot, unit
 
-Place = Callable[[str, complex], complex]  # a point of a link (its axes, m) in the drawing's axes, m
+if TYPE_CHECKING:
+    from tmm_cli.draw.scene import Scene
+
 CHAIN: Any = (0, (7, 2.2, 1.2, 2.2))  # dash and dot
 DASHED: Any = (0, (3, 2))
 TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
@@ -74,11 +76,17 @@ class CamShape:
 Shape = Teeth | CamShape
 
 
-def shape(mesh: Mesh, linkage: Linkage, place: Place) -> Shape:
+def shape(scene: Scene, mesh: Mesh) -> Shape:
     """A higher pair at a pose."""
-    kinds: dict[str, Callable[[Mesh, Linkage, Place], Shape]]
-    kinds = {"gear": _gear, "rack": _rack, "cam": _flat_faced if mesh.slide else _with_roller}
-    return kinds[mesh.kind](mesh, linkage, place)
+    if mesh.kind == "cam":
+        return _flat_faced(scene, mesh) if mesh.slide else _with_roller(scene, mesh)
+    return _gear(scene, mesh) if mesh.kind == "gear" else _rack(scene, mesh)
+
+
+def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
+    """Where the axis of a wheel or cam is, m."""
+    base = FRAME if mesh.kind == "cam" else mesh.carrier
+    return scene.place(base, axis(scene.linkage, link, base))
 
 
 def contact(found: Shape) -> complex:
@@ -102,8 +110,8 @@ def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = 
     return [p for p in places if np.isfinite(p)]
 
 
-def _gear(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
-    one, other = (place(mesh.carrier, axis(linkage, link, mesh.carrier)) for link in (mesh.i, mesh.j))
+def _gear(scene: Scene, mesh: Mesh) -> Teeth:
+    one, other = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
     pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
     radii = abs(pitch - one), abs(pitch - other)
     inner = mesh.ratio > 0
@@ -114,38 +122,27 @@ def _gear(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
     return Teeth(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
 
 
-def direction(slide: Slide, place: Place) -> complex:
-    """Of a guide, in the drawing: the way in which its run grows."""
-    along = place(slide.carrier, complex(unit(slide.direction))) - place(slide.carrier, 0j)
-    return along / abs(along)
-
-
-def _guided(mesh: Mesh, linkage: Linkage, place: Place) -> tuple[complex, complex]:
+def _guided(scene: Scene, mesh: Mesh) -> tuple[complex, complex]:
     """Of a rack or a sliding follower: the way in which it goes, and its running point."""
-    slide = linkage.slide(mesh.slide)
+    slide = scene.linkage.slide(mesh.slide)
     if slide.runner == mesh.j:
-        return direction(slide, place), place(slide.runner, slide.at)
-    return -direction(slide, place), place(slide.carrier, slide.through)
+        return scene.along(slide), scene.place(slide.runner, slide.at)
+    return -scene.along(slide), scene.place(slide.carrier, slide.through)
 
 
-def _rack(mesh: Mesh, linkage: Linkage, place: Place) -> Teeth:
-    forward, start = _guided(mesh, linkage, place)
-    centre = place(mesh.carrier, axis(linkage, mesh.i, mesh.carrier))
+def _rack(scene: Scene, mesh: Mesh) -> Teeth:
+    forward, start = _guided(scene, mesh)
+    centre = _axis(scene, mesh, mesh.i)
     side = -1j * forward * math.copysign(1.0, mesh.ratio)
     pitch = centre + side * abs(mesh.ratio)
     return Teeth(mesh, pitch, forward, (Disc(mesh.i, centre, abs(mesh.ratio)),), side, start)
 
 
-def _cam_angle(mesh: Mesh, place: Place) -> float:
-    return float(np.angle(place(mesh.i, 1 + 0j) - place(mesh.i, 0j)))
-
-
-def _flat_faced(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
+def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
     """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
     assert mesh.law is not None
-    forward, runs = _guided(mesh, linkage, place)
-    centre = place(FRAME, axis(linkage, mesh.i, FRAME))
-    angle = _cam_angle(mesh, place)
+    forward, runs = _guided(scene, mesh)
+    centre, angle = _axis(scene, mesh, mesh.i), scene.turn(mesh.i)
     turn = np.linspace(0, 2 * np.pi, STEPS)
     rise, slope, bend = mesh.law(turn)
     now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
@@ -161,12 +158,12 @@ def _flat_faced(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
     return CamShape(mesh, centre, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
 
 
-def _with_roller(mesh: Mesh, linkage: Linkage, place: Place) -> CamShape:
+def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
     """The disk of a roller on a follower that swings."""
     assert mesh.law is not None
-    centre, pivot = (place(FRAME, axis(linkage, link, FRAME)) for link in (mesh.i, mesh.j))
+    centre, pivot = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
     turn = np.linspace(0, 2 * np.pi, STEPS)
-    rise, angle = mesh.law(turn)[0], _cam_angle(mesh, place)
+    rise, angle = mesh.law(turn)[0], scene.turn(mesh.i)
     middle = (float(np.max(rise)) + float(np.min(rise))) / 2
     outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
     arm = ARM * (centre - pivot) * complex(unit(outward * math.acos(ARM)))

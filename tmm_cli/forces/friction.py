@@ -18,7 +18,7 @@ from tmm_cli.groups.linear import solve
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Friction
 from tmm_cli.structure.assur import Structure
-from tmm_cli.tolerances import FRICTION_AGREES, RESTS
+from tmm_cli.tolerances import FRICTION_AGREES, FRICTION_LOCKS, FRICTION_ROUNDED, RESTS
 from tmm_cli.vectors import Real, Vector, unit
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
@@ -136,10 +136,10 @@ def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
                 step = solve(matrix, (np.abs(force) - sizes).T).T
                 sizes = sizes + step
                 last = np.max(np.abs(step), axis=0) / (np.max(np.abs(sizes), axis=0) + 1e-300)
-                if not bool(np.any(last > 1e-15)):
+                if not bool(np.any(last > FRICTION_ROUNDED)):
                     break
             # a size below zero, or none that agrees: more friction than the driver can overcome
-            locked |= ~(last < 1e-9) | np.any(sizes < -1e-9 * np.max(np.abs(sizes), axis=0), axis=0)
+            locked |= ~(last < FRICTION_LOCKS) | np.any(sizes < -FRICTION_LOCKS * np.max(np.abs(sizes), axis=0), axis=0)
     return np.where(locked, np.abs(start), sizes), locked
 
 

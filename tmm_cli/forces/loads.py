@@ -10,7 +10,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.springs import spring_loads
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import Strokes, output_place
-from tmm_cli.linkage import Load
+from tmm_cli.tolerances import SEAM
 from tmm_cli.vectors import Real, pi
 
 
@@ -36,27 +36,16 @@ def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[App
 
 
 def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
-    """The loads of the task."""
+    """The loads of the task; those of working strokes act always where there are none."""
     for load in motion.linkage.loads:
         size = np.ones(np.shape(motion.q))
         if load.table is not None:
             size = load.table(table_argument(load.table.against, motion, strokes))
-        size = WHEN[load.when](load, size, motion, strokes)
+        if load.working_stroke_only and strokes is not None and strokes.strokes:
+            size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
         turned = motion.poses[load.link].z if load.follows else 1.0
         force, moment = load.force * size * turned, load.moment * size
         yield Applied(load.name, "load", load.link, load.at, force, moment, load.name)
-
-
-def always(load: Load, size: Real, motion: Motion, strokes: Strokes | None) -> Real:
-    """A load that acts all the time."""
-    return size
-
-
-def in_working_stroke(load: Load, size: Real, motion: Motion, strokes: Strokes | None) -> Real:
-    """A load that acts in working strokes; always where there are none."""
-    if strokes is None or not strokes.strokes:
-        return size
-    return np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
 
 
 def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
@@ -69,7 +58,7 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi
-        return np.mod(driver.sense * (motion.q - start) + 1e-12, cycle) - 1e-12
+        return np.mod(driver.sense * (motion.q - start) + SEAM, cycle) - SEAM
     assert strokes is not None and first is not None
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
@@ -79,4 +68,3 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
 
 
 KINDS = (weights_and_inertia, given_loads, spring_loads)  # what acts on links, each from a motion and its strokes
-WHEN = {"always": always, "working stroke": in_working_stroke}  # the size of a load, by the time at which it acts

@@ -17,9 +17,8 @@ from tmm_cli.groups.state import PairReaction, Wrench
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Driver, Linkage
 from tmm_cli.structure.assur import Group, Pair, Structure
+from tmm_cli.tolerances import INFINITELY_FAR
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
-
-FAR = 1e9  # times the size of the links
 
 
 @dataclass(frozen=True)
@@ -181,7 +180,7 @@ def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reac
 
 def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
     """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
-    far = FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
+    far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 

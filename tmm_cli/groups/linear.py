@@ -33,7 +33,7 @@ def solve(matrix: Real, right: Real) -> Real:
 def _refined(matrix: Real, right: Real) -> Real:
     """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
     near = rounded(matrix)
-    found = exactly(solve(near, rounded(right)))
+    found: Real = exactly(solve(near, rounded(right)))
     for _ in range(ROUNDS):
         rest = right - np.sum(matrix * found[..., None, :], axis=-1)
         found = found + solve(near, rounded(rest))

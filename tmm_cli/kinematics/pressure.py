@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import NO_PRESSURE
+from tmm_cli.tolerances import NO_GAIN, NO_PRESSURE
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -55,7 +55,7 @@ class Pressure:
 
     @property
     def gain(self) -> float:
-        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - 1e-12 else float("inf")
+        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - NO_GAIN else float("inf")
 
     @property
     def holds(self) -> bool:

@@ -13,11 +13,10 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Linkage, Load, Request, Slide
 from tmm_cli.roots import roots
 from tmm_cli.structure.naming import output_link
-from tmm_cli.tolerances import RESTS, SAME_PLACE
+from tmm_cli.tolerances import NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
 from tmm_cli.vectors import Real
 
 PARTS = 64  # of a stroke, through which an angle is followed
-DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
 
 
 @dataclass(frozen=True)
@@ -201,7 +200,7 @@ def find_strokes(
         slope = curve.slope(q)
     turns, rests = _stops(curve, q, slope, sense)
     turns = np.mod(turns, cycle)
-    turns = np.where(cycle - turns < 1e-12, 0.0, turns)
+    turns = np.where(cycle - turns < SEAM, 0.0, turns)
     order = np.argsort(turns)
     turns, rests = turns[order], rests[order]
     again = np.diff(turns, append=turns[:1] + cycle) < SAME_PLACE  # found at both ends of the scan
@@ -242,9 +241,9 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
         goes_on = stops.copy()
         goes_on[still] = roots(curve.slope, q[first[still] - 1], q[first[still]])
     rests = goes_on - stops
-    rests[rests < DWELL] = 0.0
+    rests[rests < NO_DWELL] = 0.0
     ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
-    true = (rests > 0) | (np.abs(curve.slope(ends)) < 1e-6 * np.nanmax(np.abs(slope)))
+    true = (rests > 0) | (np.abs(curve.slope(ends)) < NO_JUMP * np.nanmax(np.abs(slope)))
     return ends[true], rests[true]
 
 

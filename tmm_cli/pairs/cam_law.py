@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.tolerances import NO_JUMP_OF_CAM
 from tmm_cli.vectors import Real, pi
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]
@@ -101,7 +102,7 @@ class CamLaw:
         found = [
             float(np.mod(start + self.start, TAU))
             for start, now, before in zip(self._table[0], ends, [ends[-1], *ends[:-1]], strict=True)
-            if abs(now[0] - before[1]) > 1e-9 * most
+            if abs(now[0] - before[1]) > NO_JUMP_OF_CAM * most
         ]
         return tuple(sorted(found))
 

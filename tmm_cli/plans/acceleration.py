@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 
 from tmm_cli.kinematics.motion import Motion
@@ -18,22 +19,27 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
     fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
     ends = ends_of(linkage, POLE, lambda point: motion.named(point).a[k])
     vectors: list[NamedVector] = []
+
+    def parts(link: str, base: str, local: complex, letter: str) -> Iterable[NamedVector]:
+        """Normal part (towards the base) and tangential part of a point's acceleration about another of its link."""
+        turning, start = motion.link(link), 0j if base in fixed else ends[letter_of[base]]
+        radius = complex((local - linkage.local(link, base)) * motion.poses[link].z[k])
+        bend = start - complex(turning.omega[k] ** 2) * radius
+        end, name = bend + 1j * complex(turning.epsilon[k]) * radius, f"({letter}{letter_of[base]})"
+        return NamedVector(f"n{name}", start, bend, "normal"), NamedVector(f"t{name}", bend, end, "tangential")
+
+    def told(link: str) -> list[str]:
+        """From the pivot on the frame on, else from a hinge with another moving link."""
+        return sorted(hinge_points(linkage, link), key=lambda p: p not in fixed)
+
     for link in linkage.moving:
-        told = sorted(hinge_points(linkage, link), key=lambda p: p not in fixed)  # from the pivot on
-        for base, point in pairwise(told):
+        for base, point in pairwise(told(link)):
             if point not in fixed:
-                start = 0j if base in fixed else ends[letter_of[base]]
-                arm = linkage.local(link, point) - linkage.local(link, base)
-                vectors += _parts(motion, link, arm, start, f"{letter_of[point]}{letter_of[base]}", k)
+                vectors += parts(link, base, linkage.local(link, point), letter_of[point])
     for slide, letter, under, local in stones(motion, ends, k):
         ends[under] = complex(motion.point(slide.carrier, local).a[k])
-        # from the carrier's pivot on the frame, else from a point in which it is hinged to another moving link
-        told = sorted(hinge_points(linkage, slide.carrier), key=lambda p: p not in fixed)
-        if told:
-            base = told[0]
-            start = 0j if base in fixed else ends[letter_of[base]]
-            arm = local - linkage.local(slide.carrier, base)
-            vectors += _parts(motion, slide.carrier, arm, start, f"{under}{letter_of[base]}", k)
+        for base in told(slide.carrier)[:1]:
+            vectors += parts(slide.carrier, base, local, under)
         sliding = motion.slide(slide)
         bend = ends[under] + complex(sliding.coriolis[k])
         vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))
@@ -42,12 +48,3 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
         if linkage.links[link].mass:
             ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).a[k])
     return Plan((*absolute(ends, POLE), *vectors), ends)
-
-
-def _parts(motion: Motion, link: str, arm: complex, start: complex, name: str, k: int) -> list[NamedVector]:
-    """Normal part (towards the base) and tangential part of a point's acceleration about another of its link."""
-    turning = motion.link(link)
-    radius = complex(arm * motion.poses[link].z[k])
-    bend = start - complex(turning.omega[k] ** 2) * radius
-    end = bend + 1j * complex(turning.epsilon[k]) * radius
-    return [NamedVector(f"n({name})", start, bend, "normal"), NamedVector(f"t({name})", bend, end, "tangential")]

@@ -96,14 +96,10 @@ def _borne(
             yield load.name, complex(load.force[k]), kind
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
-        driver = balance.driver
-        if (
-            balance.kind == "force"
-            and link in (driver.link, driver.base)
-            and not {driver.link, driver.base} <= {*links}
-        ):
-            name, vector = balance_name(driver.link, several), complex(balance.vector[k])
-            yield (name, vector, "load") if link == driver.link else (f"−{name}", -vector, "load")
+        own, base = balance.driver.link, balance.driver.base
+        if balance.kind == "force" and link in (own, base) and not {own, base} <= {*links}:
+            name, vector = balance_name(own, several), complex(balance.vector[k])
+            yield (name, vector, "load") if link == own else (f"−{name}", -vector, "load")
 
 
 def _polygon(parts: Iterable[Part]) -> Plan:

@@ -94,6 +94,6 @@ def reaction_name(by: str, on: str, part: str = "") -> str:
     return f"R{subscript(both)}{part}"
 
 
-def balance_name(link: str, several: bool) -> str:
-    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4."""
-    return "Fb" + (subscript(link) if several else "")
+def balance_name(link: str, several: bool, *, turns: bool = False) -> str:
+    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
+    return ("Mb" if turns else "Fb") + (subscript(link) if several else "")

@@ -27,7 +27,8 @@ _JOINT = re.compile(r"\s*[*·/]|\s+")
 
 _ANGLE_IN: Final = ("sin", "cos", "tan")
 _ANGLE_OUT: Final = ("asin", "acos", "atan")
-FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, "atan2", "sqrt", "abs", "min", "max", "hypot")
+_OF_MANY: Final = ("atan2", "hypot", "min", "max")
+FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, *_OF_MANY, "sqrt", "abs")
 
 
 def taken(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
@@ -195,45 +196,34 @@ class Parser:
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
         if not least <= len(given) <= most:
             raise self.fault(_("{name} wants another number of arguments").format(name=name))
-        first = given[0]
-        compute = self.units.functions[name]
+        return self.of_many(name, given) if name in _OF_MANY else self.of_one(name, given[0])
+
+    def of_one(self, name: str, given: PhysicalValue) -> PhysicalValue:
+        compute, dimension = self.units.functions[name], given.dimension
+        if name == "abs":
+            return PhysicalValue(abs(given.value), dimension)
         if name in _ANGLE_IN:
-            angle = taken(first, ANGLE, self.units)
+            angle = taken(given, ANGLE, self.units)
             if angle is None:
-                raise self.fault(
-                    _("{name} wants an angle, not {dimension}").format(name=name, dimension=first.dimension)
-                )
+                raise self.fault(_("{name} wants an angle, not {dimension}").format(name=name, dimension=dimension))
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault(_("tan of a right angle has no value"))
             return PhysicalValue(compute(angle), None)
-        what = f"{name} of {first.value:.6g}"
-        if name in _ANGLE_OUT:
-            if first.dimension not in (None, NUMBER):
-                raise self.fault(
-                    _("{name} wants a number, not {dimension}").format(name=name, dimension=first.dimension)
-                )
-            return PhysicalValue(self.real(what, lambda: compute(first.value)), ANGLE)
-        if name == "sqrt":
-            dimension = first.dimension and _half(first.dimension)
-            if first.dimension is not None and dimension is None:
-                raise self.fault(_("{dimension} has no square root").format(dimension=first.dimension))
-            return PhysicalValue(self.real(what, lambda: compute(first.value)), dimension)
-        if name == "abs":
-            return PhysicalValue(abs(first.value), first.dimension)
-        return self.of_many(name, given)
+        if name in _ANGLE_OUT and dimension not in (None, NUMBER):
+            raise self.fault(_("{name} wants a number, not {dimension}").format(name=name, dimension=dimension))
+        root = _half(dimension) if dimension else None
+        if name == "sqrt" and dimension is not None and root is None:
+            raise self.fault(_("{dimension} has no square root").format(dimension=dimension))
+        value = self.real(f"{name} of {given.value:.6g}", lambda: compute(given.value))
+        return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
     def of_many(self, name: str, given: list[PhysicalValue]) -> PhysicalValue:
-        total = given[0]
-        for other in given[1:]:  # the sum has the dimension of all, or they do not fit
-            a, b, dimension = self.alike(total, other)
-            total = PhysicalValue(a + b, dimension)
-        values = [self.alike(one, PhysicalValue(0.0, total.dimension))[0] for one in given]
-        dimension = total.dimension
-        if name == "atan2":
-            return PhysicalValue(self.units.functions[name](*values), ANGLE)
-        if name == "hypot":
-            return PhysicalValue(self.units.functions[name](*values), dimension)
-        return PhysicalValue(self.units.functions[name](values), dimension)
+        """atan2, hypot, min or max of values that all have one dimension, or none."""
+        compute = self.units.functions[name]
+        dimension = next((one.dimension for one in given if one.dimension is not None), None)
+        values = [self.alike(PhysicalValue(0.0, dimension), one)[1] for one in given]
+        value = compute(values) if name in ("min", "max") else compute(*values)
+        return PhysicalValue(value, ANGLE if name == "atan2" else dimension)
 
     def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
         """Both values in one dimension, a bare one taken in the file's unit of the other's."""

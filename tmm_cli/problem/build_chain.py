@@ -14,11 +14,12 @@ from tmm_cli.problem.record import ChainProblem
 from tmm_cli.problem.schema_parts import MAX_LINKS
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.problem.values import ValueReader, check_name
+from tmm_cli.problem.values import Part, ValueReader, check_name
 from tmm_cli.structure.contours import reached
 from tmm_cli.structure.spatial import KINDS, SpatialChain, SpatialPair
 
 PART: Path = ("structure", "spatial")
+BARE = ValueReader({}, UnitSystem())
 
 
 def load_chain(path: str) -> ChainProblem:
@@ -33,9 +34,11 @@ def build_chain(tree: Tree) -> ChainProblem:
     spatial = shape.structure.spatial
     with placed_in(tree):
         chain = _chain(spatial)
+        if spatial.output is not None:
+            BARE.known(spatial.output, chain.links, (*PART, "output"), "moving link")
         return ChainProblem(
-            name, shape.title or name, chain, _output(spatial, chain), _local(spatial, chain), spatial.wanted,
-            UnitSystem({}), shape.description,
+            name, shape.title or name, chain, spatial.output, _local(spatial, chain), spatial.wanted, BARE.units,
+            shape.description,
         )  # fmt: skip
 
 
@@ -43,15 +46,16 @@ def _chain(spatial: schema_chain.Spatial) -> SpatialChain:
     links = _links(spatial)
     pairs = []
     for name, pair in spatial.pairs.items():
-        path: Path = (*PART, "pairs", name)
-        check_name(name, path, "pair")
-        for number, link in enumerate(pair.between):
-            ValueReader.known(link, dict.fromkeys((FRAME, *links)), (*path, "between", number), "link")
-        ValueReader.different(pair.between, (*path, "between"))
-        i, j = pair.between
-        pairs.append(SpatialPair(name, i, j, _freedoms(pair, path), pair.kind or ""))
+        part = Part(pair, (*PART, "pairs", name), BARE)
+        check_name(name, part.path, "pair")
+        i, j = part.two_links((FRAME, *links))
+        part.one_of("kind", "freedoms")
+        pairs.append(SpatialPair(name, i, j, KINDS[pair.kind] if pair.kind else pair.freedoms or 0, pair.kind or ""))
     chain = SpatialChain(links, tuple(pairs))
-    _one_piece(chain)
+    there = reached(chain.pairs)
+    if apart := [link for link in links if link not in there]:  # W would count a chain of its own
+        message = _("no pairs join link {link} to the frame").format(link=apart[0])
+        raise ProblemError(message, path=(*PART, "pairs"), key=True)
     return chain
 
 
@@ -75,30 +79,9 @@ def _links(spatial: schema_chain.Spatial) -> tuple[str, ...]:
     return tuple(given)
 
 
-def _freedoms(pair: schema_chain.SpatialPair, path: Path) -> int:
-    ValueReader.one_of(pair, ("kind", "freedoms"), path)
-    return KINDS[pair.kind] if pair.kind is not None else pair.freedoms or 0
-
-
-def _one_piece(chain: SpatialChain) -> None:
-    """Every link hangs on the frame by some way of pairs: otherwise W would count a chain of its own."""
-    there = reached(chain.pairs)
-    for link in chain.links:
-        if link not in there:
-            raise ProblemError(
-                _("no pairs join link {link} to the frame").format(link=link), path=(*PART, "pairs"), key=True
-            )
-
-
-def _output(spatial: schema_chain.Spatial, chain: SpatialChain) -> str | None:
-    if spatial.output is None:
-        return None
-    return ValueReader.known(spatial.output, dict.fromkeys(chain.links), (*PART, "output"), "moving link")
-
-
 def _local(spatial: schema_chain.Spatial, chain: SpatialChain) -> int | None:
     if not isinstance(spatial.local, dict):
         return spatial.local
     for link in spatial.local:
-        ValueReader.known(link, dict.fromkeys(chain.links), (*PART, "local", link), "moving link", key=True)
+        BARE.known(link, chain.links, (*PART, "local", link), "moving link", key=True)
     return sum(spatial.local.values())

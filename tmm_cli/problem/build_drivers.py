@@ -1,96 +1,147 @@
-"""Drivers of a problem file."""
+"""Drivers of a problem file, where they stand in the sketch, and the positions that it asks for."""
 
 from __future__ import annotations
 
+import cmath
+from typing import Literal
+
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Slide
+from tmm_cli.linkage import FRAME, Driver, Link, Request, Sketch
 from tmm_cli.problem import schema
+from tmm_cli.problem.build_links import Members
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
-from tmm_cli.problem.values import ValueReader, unjoined
+from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
 
 FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
+UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
+MAX_WORK = 2_000_000  # positions times links
 
 
-def build_drivers(
-    shape: schema.File,
-    links: dict[str, Link],
-    hinges: tuple[Hinge, ...],
-    slides: tuple[Slide, ...],
-    values: ValueReader,
-) -> tuple[Driver, ...]:
+def build_drivers(shape: schema.File, members: Members, values: ValueReader) -> tuple[Driver, ...]:
     """All drivers in the order of the file."""
     if isinstance(shape.driver, schema.Driver):
-        return (_driver(shape.driver, links, hinges, slides, values, ("driver",), True),)
+        return (_driver(Part(shape.driver, ("driver",), values), members, True),)
     if not shape.driver:
         raise ProblemError(_("there is no driver"), path=("driver",), found="[]", allowed=_("{link: 1, speed: 60 rpm}"))
+    parts = [Part(given, ("driver", number), values) for number, given in enumerate(shape.driver)]
     found: list[Driver] = []
-    for number, given in enumerate(shape.driver):
-        driver = _driver(given, links, hinges, slides, values, ("driver", number), number == 0)
+    for part in parts:
+        driver = _driver(part, members, part is parts[0])
         if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in found):
-            raise ProblemError(
-                _("this link is driven already"), path=("driver", number, "link"), found=quote(driver.link)
-            )
+            raise part.refusal("link", _("this link is driven already"), quote(driver.link))
         found.append(driver)
-    size = max((abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values()),
-               default=0.0) or 1.0  # fmt: skip
-    for number, driver in enumerate(found[1:], 1):
-        lead, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (found[0], driver))
-        if lead > 0 and own > FASTER * lead:
-            raise ProblemError(
-                _("a driver is far faster than the first one"), path=("driver", number, "speed"),
-                found=str(shape.driver[number].speed), allowed=_("the fastest driver first"),
-            )  # fmt: skip
-    if len(found) > 1 and found[0].rate == 0:
-        raise ProblemError(
-            _("the first of several drivers counts the positions: it must move"), path=("driver", 0, "speed"),
-            found=str(shape.driver[0].speed),
-        )  # fmt: skip
+    lead, size = found[0], _size(members.links)
+    for part, driver in zip(parts[1:], found[1:], strict=True):
+        first, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (lead, driver))
+        if first > 0 and own > FASTER * first:
+            faster = _("a driver is far faster than the first one")
+            raise part.refusal("speed", faster, str(part.given.speed), _("the fastest driver first"))
+    if len(found) > 1 and lead.rate == 0:
+        still = _("the first of several drivers counts the positions: it must move")
+        raise parts[0].refusal("speed", still, str(parts[0].given.speed))
     return tuple(found)
 
 
-def _driver(
-    given: schema.Driver, links: dict[str, Link], hinges: tuple[Hinge, ...], slides: tuple[Slide, ...],
-    values: ValueReader, path: Path, first: bool,
-) -> Driver:  # fmt: skip
-    link = values.known(given.link, {n: 0 for n in links if n != FRAME}, (*path, "link"), "link")
-    base = values.known(given.on, links, (*path, "on"), "link")
-    values.different((link, base), (*path, "on"))
-    pivots = [h.point for h in hinges if base in h.links and link in h.links]
-    runs = [s for s in slides if {s.carrier, s.runner} == {base, link}]
-    if not pivots and not runs:
-        raise unjoined(link, base, hinges, slides, (*path, "link"))
-    turns = bool(pivots)
-    speed = values.number(given.speed, ANGULAR_SPEED if turns else SPEED, (*path, "speed"))
-    acceleration = values.number(
-        given.acceleration, ANGULAR_ACCELERATION if turns else ACCELERATION, (*path, "acceleration")
-    )
-    if speed < 0 and "turns" in given.model_fields_set:
-        raise ProblemError(
-            _("a negative speed and a sense of rotation say the sense twice"), path=(*path, "speed"),
-            found=str(given.speed), allowed=_("a positive speed with turns: ccw or cw"),
-        )  # fmt: skip
-    if given.end is not None:
-        values.known(given.end, links[link].points, (*path, "end"), f"point of link {link}")
-    if first == (given.at is not None):
-        raise ProblemError(
-            _("the place of the first driver stands in the sketch, that of each other one here"), path=(*path, "at"),
-            allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"), key=True,
-        )  # fmt: skip
+def _size(links: dict[str, Link]) -> float:
+    """The largest distance of two points of one link (m)."""
+    spans = (abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values())
+    return max(spans, default=0.0) or 1.0
+
+
+def _driver(part: Part, members: Members, first: bool) -> Driver:
+    given: schema.Driver = part.given
+    link = part.known("link", [name for name in members.links if name != FRAME], "link")
+    base = part.known("on", members.links, "link")
+    part.values.different((link, base), (*part.path, "on"))
+    pivot, slide = members.hinge(link, base), members.slide(link, base)
+    if pivot is None and slide is None:
+        raise members.unjoined(link, base, (*part.path, "link"))
+    turns = pivot is not None
     want = ANGLE if turns else LENGTH
-    at = 0.0 if given.at is None else values.number(given.at, want, (*path, "at"))
+    speed = part.number("speed", ANGULAR_SPEED if turns else SPEED)
+    acceleration = part.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
+    if speed < 0 and "turns" in given.model_fields_set:
+        twice = _("a negative speed and a sense of rotation say the sense twice")
+        raise part.refusal("speed", twice, str(given.speed), _("a positive speed with turns: ccw or cw"))
+    if given.end is not None:
+        part.known("end", members.links[link].points, f"point of link {link}")
+    if first == (given.at is not None):
+        raise part.refusal(
+            "at", _("the place of the first driver stands in the sketch, that of each other one here"), at_key=True,
+            allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"),
+        )  # fmt: skip
+    at = 0.0 if given.at is None else part.number("at", want)
     stroke = None
     if given.stroke is not None:
-        low, high = (values.number(value, want, (*path, "stroke", k)) for k, value in enumerate(given.stroke))
+        low, high = (part.values.number(value, want, (*part.path, "stroke", k)) for k, value in enumerate(given.stroke))
         if not low < high:
-            raise ProblemError(
-                _("a stroke goes from its lesser end to its greater one"), path=(*path, "stroke"),
-                found=str(given.stroke),
-            )  # fmt: skip
+            raise part.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(given.stroke))
         stroke = (low, high)
     return Driver(
-        link, "turn" if turns else "slide", pivots[0] if turns else runs[0].name, abs(speed),
+        link, "turn" if turns else "slide", pivot or (slide.name if slide else ""), abs(speed),
         acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
         given.end or "", base, at, stroke,
     )  # fmt: skip
+
+
+def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
+    """The sketch of the file, or of one that says nothing of it any place of the driver."""
+    given = dict(shape.sketch)
+    wanted = ANGLE if driver.kind == "turn" else LENGTH
+    if not given:
+        return Sketch(UNTOLD_SKETCH if driver.kind == "turn" else 0.0)
+    if "at" not in given:
+        raise ProblemError(
+            _("the driver's place in the sketch is missing"), path=("sketch", "at"),
+            allowed=_("at: {wanted}").format(wanted=wanted),
+        )  # fmt: skip
+    at = values.number(given.pop("at"), wanted, ("sketch", "at"))
+    if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
+        beyond = _("the sketch shows the driver beyond its stroke")
+        raise ProblemError(beyond, path=("sketch", "at"), found=str(shape.sketch["at"]))
+    owners = {p: n for n, link in links.items() for p in link.points}
+    points, angles = {}, {}
+    for name, value in given.items():
+        path: Path = ("sketch", name)
+        if name in owners and isinstance(value, list):
+            points[name] = values.vector(value, LENGTH, path)
+        elif name in links and name != FRAME and not isinstance(value, list):
+            angles[name] = values.number(value, ANGLE, path)
+        else:
+            values.known(name, {**owners, **links}, path, "point or link", key=True)
+            raise ProblemError(
+                _("a point has coordinates and a link has an angle"), path=path, found=quote(value),
+                allowed="[x, y]" if name in owners else _("an angle"),
+            )  # fmt: skip
+    return Sketch(at, points, angles)
+
+
+def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Request:
+    """Which positions the file asks for."""
+    given = shape.positions
+    part = Part(given, ("positions",), values)
+    wanted = ANGLE if driver.kind == "turn" else LENGTH
+    places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ()))
+    count = len(places) or given.count
+    if count * len(shape.links) > MAX_WORK:
+        most = _("at most {most}").format(most=MAX_WORK // len(shape.links))
+        raise part.refusal("count", _("too many positions for so many links"), str(count), most)
+    for k, number in enumerate(given.detail):
+        if not 0 <= number < count:
+            raise ProblemError(
+                _("there is no such position"), path=("positions", "detail", k), found=str(number),
+                allowed=_("0 to {last}").format(last=count - 1),
+            )  # fmt: skip
+    if given.from_ is not None and driver.kind == "slide" and not places:
+        raise part.refusal(
+            "from", _("positions of a driven slider go from one end of its way to the other"), str(given.from_),
+            _("driver: {stroke: [first, last]}, or positions: {at: [...]}"), at_key=True,
+        )  # fmt: skip
+    start: float | Literal["working stroke"] = 0.0
+    if given.from_ == "working stroke":
+        start = "working stroke"
+    elif given.from_ is not None:
+        start = values.number(given.from_, wanted, ("positions", "from"))
+    return Request(count, start, places, tuple(given.detail))

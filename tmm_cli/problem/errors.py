@@ -89,13 +89,14 @@ class ProblemError(Exception):
         if self.allowed is not None:
             lines.append(_("allowed: {allowed}").format(allowed=self.allowed))
         if self.near is not None:
-            same = self.found is not None and latin(self.found.strip("'")) == latin(self.near)
-            same = same and self.found != quote(self.near)
             told = _("did you mean '{near}'?")
-            if same:
-                told = _("did you mean '{near}' in Latin letters?")
-                if not self.near.isascii():
-                    told = _("did you mean '{near}' in Cyrillic letters?")
+            if (
+                self.found is not None
+                and self.found != quote(self.near)
+                and latin(self.found) == latin(quote(self.near))
+            ):
+                latin_meant = _("did you mean '{near}' in Latin letters?")
+                told = latin_meant if self.near.isascii() else _("did you mean '{near}' in Cyrillic letters?")
             lines.append(told.format(near=self.near))
         return "\n  ".join(lines)
 

@@ -14,7 +14,7 @@ from typing import Final
 
 from tmm_cli.errors import _
 from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import ProblemError, quote, under
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem, plain_text
 from tmm_cli.quantities import ANGLE, Dimension
@@ -39,11 +39,8 @@ def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: Uni
 def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
     value = taken(found, want, units)
     if value is None:
-        raise UnitError(
-            _("{want} is wanted here").format(want=want),
-            found=f"{quote(source)}, {units.show(found)}",
-            allowed=want.example,
-        )
+        given = f"{quote(source)}, {units.show(found)}"
+        raise UnitError(_("{want} is wanted here").format(want=want), found=given, allowed=want.example)
     return value
 
 
@@ -62,10 +59,9 @@ def evaluate_quantity(
         return PhysicalValue(units.number(source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError(
-            _("this is too long"),
-            found=quote(source),
+            _("this is too long"), found=quote(source),
             allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
-        )
+        )  # fmt: skip
     found = Parser(plain_text(source), parameters, units, pi).whole()
     if not math.isfinite(found.value):
         raise ProblemError(_("this number is too large"), found=quote(source))
@@ -101,8 +97,6 @@ def resolve_parameters(
         cycle: list[str] = error.args[1][::-1]
         raise ProblemError(_("parameters go round in a circle"), path=(cycle[0],), found=" -> ".join(cycle)) from None
     for name in order:
-        try:
+        with under(name):
             found[name] = evaluate_quantity(raw[name], found, units)
-        except ProblemError as error:
-            raise error.at(name) from None
     return {name: found[name] for name in raw}

@@ -7,41 +7,27 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from tmm_cli.problem.schema import File, Output, Tabulated
+from tmm_cli.problem.schema import File
 from tmm_cli.problem.schema_chain import SpatialFile
-from tmm_cli.problem.schema_parts import OnLine
 
 
 def file_schema(tasks: Iterable[type[BaseModel]]) -> dict[str, Any]:
-    """Made by pydantic from the shape; models that have validators of their own around them are put in by name.
+    """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`."""
+    definitions: dict[str, Any] = {}
 
-    tasks: the shapes of the blocks that may stand under `synthesis`.
-    """
-    schema = File.model_json_schema(by_alias=True)
-    definitions = schema.setdefault("$defs", {})
-    for model in (OnLine, Output, Tabulated, SpatialFile):
+    def schema(model: type[BaseModel]) -> dict[str, Any]:
         inner = model.model_json_schema(by_alias=True)
-        for name, definition in inner.pop("$defs", {}).items():
-            definitions.setdefault(name, definition)
-        definitions.setdefault(model.__name__, inner)
-    shapes = [shape.model_json_schema(by_alias=True) for shape in tasks]
-    for inner in shapes:
-        for name, definition in inner.pop("$defs", {}).items():
-            definitions.setdefault(name, definition)
-    definitions["Synthesis"] = {"anyOf": shapes}
-    whole = {
-        "$defs": schema.pop("$defs"),
+        definitions.update({**inner.pop("$defs", {}), **definitions})
+        return inner
+
+    planar = schema(File)
+    planar["properties"]["synthesis"]["anyOf"] = [{"$ref": "#/$defs/Synthesis"}]
+    definitions["SpatialFile"] = schema(SpatialFile)
+    definitions["Synthesis"] = {"anyOf": [schema(task) for task in tasks]}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$defs": definitions,
         "if": {"required": ["structure"]},
         "then": {"$ref": "#/$defs/SpatialFile"},
-        "else": schema,
+        "else": planar,
     }
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_referred(whole)}
-
-
-def _referred(part: Any) -> Any:
-    """The same schema with {"$comment": NAME} as a reference to the model NAME."""
-    if isinstance(part, dict):
-        if set(part) == {"$comment"}:
-            return {"$ref": f"#/$defs/{part['$comment']}"}
-        return {key: _referred(value) for key, value in part.items()}
-    return [_referred(value) for value in part] if isinstance(part, list) else part

@@ -55,12 +55,8 @@ def read_file(path: str | os.PathLike[str]) -> Tree:
 
 
 def _too_large(file: str, found: str) -> ProblemError:
-    return ProblemError(
-        _("the file is too large"),
-        found=found,
-        allowed=_("at most {max_bytes} bytes").format(max_bytes=MAX_BYTES),
-        file=file,
-    )
+    allowed = _("at most {max_bytes} bytes").format(max_bytes=MAX_BYTES)
+    return ProblemError(_("the file is too large"), found=found, allowed=allowed, file=file)
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -86,12 +82,9 @@ def read_text(text: str, file: str) -> Tree:
         raise _too_large(file, f"{len(text)} characters")
     if hidden := HIDDEN.search(text):
         raise ProblemError(
-            _("a control or invisible character"),
-            found=f"U+{ord(hidden[0]):04X}",
-            allowed=_("printable text"),
-            file=file,
-            mark=_mark_at(text, hidden.start()),
-        )
+            _("a control or invisible character"), found=f"U+{ord(hidden[0]):04X}", allowed=_("printable text"),
+            file=file, mark=_mark_at(text, hidden.start()),
+        )  # fmt: skip
     if tab := _TAB.search(text):
         raise tab_error(file, _mark_at(text, text.index("\t", tab.start())))
     composer = Composer(text, file)

@@ -1,12 +1,8 @@
-"""What went wrong with a file, said once in the file's own terms: from pydantic's errors and from the stages'."""
+"""What a stage refuses, in the words and at the place of the file."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, get_args, get_origin
-
-from pydantic import BaseModel, ValidationError, WithJsonSchema
+from typing import TYPE_CHECKING
 
 from tmm_cli.errors import (
     AmbiguousSketchError,
@@ -21,166 +17,14 @@ from tmm_cli.errors import (
     UnknownPositionError,
     _,
 )
-from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.reader import decimal_comma_hint
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.schema_parts import Strict
-from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.quantities import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
-ModelAt = Callable[[Path], type[BaseModel] | None]
-
-
-def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part: Path = ()) -> ProblemError:
-    """The first mistake in the shape of a file, by its place; model: the shape of what stands at the path `part`."""
-    meant = _meant(_flat(error, part), tree)
-
-    def model_at(path: Path) -> type[BaseModel] | None:
-        return _model(model, path[len(part) :]) if path[: len(part)] == part else schema.File
-
-    refusals = [(kind, _refusal(kind, path, context, tree, model_at)) for kind, path, context in meant]
-    misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
-    # a key that stands there misspelt is not missing
-    located = [r.located(tree.file, tree) for kind, r in refusals if kind != "missing" or r.path not in misspelt]
-    return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
-
-
-def _flat(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dict[str, Any]]]:
-    for item in error.errors():
-        inner = item.get("ctx", {}).get("error")
-        if isinstance(inner, ValidationError):
-            yield from _flat(inner, (*prefix, *item["loc"]))
-        else:
-            yield item["type"], (*prefix, *item["loc"]), {**item.get("ctx", {}), "msg": item["msg"]}
-
-
-def _meant(errors: Iterable[tuple[str, Path, dict[str, Any]]], tree: Tree) -> list[tuple[str, Path, dict[str, Any]]]:
-    """Errors with paths into the data; a branch of a union that the data was not meant for is left out."""
-    meant: list[tuple[str, Path, dict[str, Any]]] = []
-    rest: list[tuple[str, Path, dict[str, Any]]] = []
-    for kind, loc, context in errors:
-        path: list[str | int] = []
-        data: Any = tree.data
-        fits = True
-        for number, step in enumerate(loc):
-            last = number == len(loc) - 1
-            if (isinstance(data, dict) and step in data) or (isinstance(data, list) and isinstance(step, int)):
-                path.append(step)
-                data = _at(data, (step,))
-            elif last and kind in ("missing", "extra_forbidden"):
-                path.append(step)
-            else:  # the name of a union's branch
-                fits = fits and isinstance(data, list) == str(step).startswith("list")
-        (meant if fits else rest).append((kind, tuple(path), context))
-    return meant or rest
-
-
-def _refusal(kind: str, path: Path, context: dict[str, Any], tree: Tree, model: ModelAt) -> ProblemError:
-    data = _at(tree.data, path)
-    if kind == "extra_forbidden":
-        names = _keys(path[:-1], model)
-        key = str(path[-1])
-        return ProblemError(
-            _("unknown key"), path=path, found=quote(key), allowed=", ".join(names), near=nearest(key, names), key=True
-        )
-    if kind == "missing":
-        return ProblemError(
-            _("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=_describe(path, model)
-        )
-    if kind == "literal_error":
-        words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
-        described = _describe(path, model) or ""
-        return ProblemError(
-            _("this word is not known here"), path=path, found=quote(data),
-            allowed=described if "[" in described else words,  # a list may stand here too
-            near=nearest(str(data), words.split(", ")),
-        )  # fmt: skip
-    hint = decimal_comma_hint(tree, path)
-    message = _words(kind, context)
-    return ProblemError(message, path=path, found=quote(data), allowed=hint or _describe(path, model))
-
-
-def _at(data: Any, path: Path) -> Any:
-    """The value at a path, None when it is not in the data."""
-    for step in path:
-        if isinstance(data, dict):
-            data = data.get(step)
-        elif isinstance(data, list) and isinstance(step, int) and step < len(data):
-            data = data[step]
-        else:
-            return None
-    return data
-
-
-def _words(kind: str, context: dict[str, Any]) -> str:
-    """What is wrong with a value, by pydantic's kind of error."""
-    if kind.startswith("int_"):
-        return _("a whole number is wanted")
-    if kind == "greater_than_equal":
-        return _("at least {least} is wanted").format(least=context["ge"])
-    if kind == "less_than_equal":
-        return _("at most {most} is wanted").format(most=context["le"])
-    if kind in ("too_long", "string_too_long"):
-        return _("this is too long: at most {most}").format(most=context["max_length"])
-    if kind == "too_short" and context["min_length"] > 1:
-        return _("{number} are wanted here").format(number=context["min_length"])
-    words = {
-        "string_type": _("text is wanted"),
-        "list_type": _("a list [..., ...] is wanted"),
-        "dict_type": _("keys with values are wanted"),
-        "model_type": _("keys with values are wanted"),
-        "model_attributes_type": _("keys with values are wanted"),
-        "too_short": _("there is nothing here"),
-    }
-    return words.get(kind) or str(context["msg"])
-
-
-def _model(here: type[BaseModel] | None, path: Path) -> type[BaseModel] | None:
-    """The model of what stands at a path inside another."""
-    named = False  # whether the next key is one of the user's own names
-    for step in path:
-        if isinstance(step, int) or here is None or named:
-            named = False
-            continue
-        field = here.model_fields.get(step)
-        here = None if field is None else _inside([field.annotation, *field.metadata])
-        named = field is not None and get_origin(field.annotation) is dict
-    return here
-
-
-def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
-    """The model among the parts of an annotation; where a validator stands for it, it is named in the JSON Schema."""
-    for part in parts:
-        if isinstance(part, type) and issubclass(part, BaseModel):
-            return part
-        if isinstance(part, WithJsonSchema):
-            named = re.search(r"'\$comment': '(\w+)'", str(part.json_schema))
-            inside: Iterable[Any] = [m for m in Strict.__subclasses__() if named and m.__name__ == named[1]]
-        else:
-            inside = get_args(part)
-        if found := _inside(inside):
-            return found
-    return None
-
-
-def _keys(path: Path, model: ModelAt) -> list[str]:
-    here = model(path)
-    return [field.alias or name for name, field in here.model_fields.items()] if here else []
-
-
-def _describe(path: Path, model: ModelAt) -> str | None:
-    while path and isinstance(path[-1], int):  # an item is described with its list
-        path = path[:-1]
-    here = model(path[:-1]) if path else None
-    for name, field in here.model_fields.items() if here else ():
-        if path[-1] in (name, field.alias):
-            return field.description
-    return None
 
 
 def refusal(error: LinkageError, problem: Problem) -> ProblemError:

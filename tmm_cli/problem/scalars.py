@@ -35,11 +35,8 @@ def plain_value(text: str) -> Scalar:
         return _BOOL[text]
     if _INT.fullmatch(text):
         if len(text) > MAX_DIGITS:
-            raise ProblemError(
-                _("the number is too long"),
-                found=quote(text),
-                allowed=_("at most {max_digits} digits").format(max_digits=MAX_DIGITS),
-            )
+            allowed = _("at most {max_digits} digits").format(max_digits=MAX_DIGITS)
+            raise ProblemError(_("the number is too long"), found=quote(text), allowed=allowed)
         return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
     if _FLOAT.fullmatch(text):
         return finite_float(text)

@@ -9,13 +9,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field
 
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
-    NAMES,
-    VALUE,
     Name,
     Place,
     Strict,
@@ -78,10 +76,6 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
-# the block of a task is plain data here; tmm_cli.synthesis.reading checks it
-Synthesis = Annotated[Any, WithJsonSchema({"anyOf": [{"$comment": "Synthesis"}]})]
-
-
 class Mass(Strict):
     """Mass properties of a link."""
 
@@ -114,18 +108,15 @@ def _moment(found: Any) -> Any:
     return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
 
-_TABLE = {"$comment": "Tabulated"}
-
-
 class Load(Strict):
     """A force, a moment, or both, on a link."""
 
     on: Name = Field(description="the link")
     at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
-    force: Annotated[Any, BeforeValidator(_force), WithJsonSchema({"anyOf": [{"type": "array"}, _TABLE]})] = Field(
+    force: Annotated[list[Any] | Tabulated | None, BeforeValidator(_force)] = Field(
         default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
     )
-    moment: Annotated[Any, BeforeValidator(_moment), WithJsonSchema({"anyOf": [VALUE, _TABLE]})] = Field(
+    moment: Annotated[Value | Tabulated | None, BeforeValidator(_moment)] = Field(
         default=None, description="positive counterclockwise; a value, or {against, table}"
     )
     axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
@@ -222,12 +213,9 @@ class Output(Strict):
     )
 
 
-def _output(found: Any) -> Any:
-    return Output.model_validate(found) if isinstance(found, dict) else Output(link=checked_name(found))
-
-
-def _outputs(found: Any) -> Any:
-    return [_output(item) for item in found] if isinstance(found, list) else [_output(found)]
+def _outputs(found: Any) -> list[Output]:
+    several = found if isinstance(found, list) else [found]
+    return [Output.model_validate(one if isinstance(one, dict) else {"link": checked_name(one)}) for one in several]
 
 
 class Positions(Strict):
@@ -257,7 +245,7 @@ class File(Strict):
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
-    synthesis: Synthesis = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
+    synthesis: Any = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)
@@ -274,8 +262,8 @@ class File(Strict):
     masses: dict[Name, Mass] = Field(default_factory=dict)
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
-    output: Annotated[
-        Any, BeforeValidator(_outputs), WithJsonSchema({"anyOf": [*NAMES, {"$comment": "Output"}, {"type": "array"}]})
-    ] = Field(default=[], max_length=20, description="a link, or {link, working}, or several of them in a list")
+    output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
+        default=[], max_length=20, description="a link, or {link, working}, or several of them in a list"
+    )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)

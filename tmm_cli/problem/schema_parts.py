@@ -47,14 +47,6 @@ Vector = Annotated[
 ]
 
 
-def _place(found: Any) -> Any:
-    if isinstance(found, str):
-        return checked_name(found)
-    if isinstance(found, dict):
-        return OnLine.model_validate(found)
-    return checked_vector(found)
-
-
 class Strict(BaseModel):
     """Every key is known or refused."""
 
@@ -70,8 +62,10 @@ class OnLine(Strict):
     side: Value = Field(default=0, description="distance to the left of the line")
 
 
-Place = Annotated[
-    Any,
-    BeforeValidator(_place),
-    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array"}, {"$comment": "OnLine"}]}),
-]
+def _place(found: Any) -> Any:
+    if isinstance(found, str):
+        return checked_name(found)
+    return OnLine.model_validate(found) if isinstance(found, dict) else checked_vector(found)
+
+
+Place = Annotated[str | list[Any] | OnLine, BeforeValidator(_place)]

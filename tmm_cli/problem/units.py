@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.errors import _
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (
     ANGLE,
@@ -32,7 +32,7 @@ class UnitError(ProblemError):
     """A unit that is not known, or that measures something else."""
 
 
-_SHORT: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
+_LONG: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
 
 @dataclass(frozen=True)
@@ -73,43 +73,40 @@ class PhysicalValue:
     dimension: Dimension | None = None
 
 
-def _symbols() -> dict[str, Unit]:
-    milli, kilo = Fraction(1, 1000), Fraction(1000)
-    rows: list[tuple[str, Dimension, Fraction | int]] = [
-        ("m м", LENGTH, 1),
-        ("mm мм", LENGTH, milli),
-        ("cm см", LENGTH, Fraction(1, 100)),
-        ("dm дм", LENGTH, Fraction(1, 10)),
-        ("um μm мкм", LENGTH, milli**2),
-        ("km км", LENGTH, kilo),
-        ("in", LENGTH, Fraction(127, 5000)),
-        ("rad рад", ANGLE, 1),
-        ("s sec с сек", TIME, 1),
-        ("ms мс", TIME, milli),
-        ("min мин", TIME, 60),
-        ("h ч", TIME, 3600),
-        ("kg кг", MASS, 1),
-        ("g г", MASS, milli),
-        ("t т", MASS, 1000),
-        ("N Н", FORCE, 1),
-        ("kN кН", FORCE, 1000),
-        ("MN МН", FORCE, 1_000_000),
-        ("Nm Нм", MOMENT, 1),
-        ("kNm кНм", MOMENT, 1000),
-        ("Nmm Нмм", MOMENT, milli),
-        ("%", NUMBER, Fraction(1, 100)),
-    ]
-    table = {name: Unit(kind, Fraction(scale)) for names, kind, scale in rows for name in names.split()}
-    table |= dict.fromkeys(("deg", "°", "град"), Unit(ANGLE, Fraction(1, 180), 1))
-    table |= dict.fromkeys(("rev", "turn", "об"), Unit(ANGLE, Fraction(2), 1))
-    table |= dict.fromkeys(("rpm",), _PER_MINUTE)
-    table |= dict.fromkeys(("Hz", "Гц"), Unit(ANGULAR_SPEED, Fraction(2), 1))
-    return table
-
-
-# A bare "per minute" counts turns in machine theory; a bare "per second" counts radians.
-_PER_MINUTE: Final = Unit(ANGULAR_SPEED, Fraction(1, 30), 1)
-SYMBOLS: Final[Mapping[str, Unit]] = _symbols()
+_ROWS: Final = (  # names, what the unit measures, and how much it is in SI and radians
+    ("m м", LENGTH, "1"),
+    ("mm мм", LENGTH, "1/1000"),
+    ("cm см", LENGTH, "1/100"),
+    ("dm дм", LENGTH, "1/10"),
+    ("um μm мкм", LENGTH, "1/1000000"),
+    ("km км", LENGTH, "1000"),
+    ("in", LENGTH, "127/5000"),
+    ("rad рад", ANGLE, "1"),
+    ("deg ° град", ANGLE, "pi/180"),
+    ("rev turn об", ANGLE, "pi*2"),
+    ("s sec с сек", TIME, "1"),
+    ("ms мс", TIME, "1/1000"),
+    ("min мин", TIME, "60"),
+    ("h ч", TIME, "3600"),
+    ("rpm", ANGULAR_SPEED, "pi/30"),
+    ("Hz Гц", ANGULAR_SPEED, "pi*2"),
+    ("kg кг", MASS, "1"),
+    ("g г", MASS, "1/1000"),
+    ("t т", MASS, "1000"),
+    ("N Н", FORCE, "1"),
+    ("kN кН", FORCE, "1000"),
+    ("MN МН", FORCE, "1000000"),
+    ("Nm Нм", MOMENT, "1"),
+    ("kNm кНм", MOMENT, "1000"),
+    ("Nmm Нмм", MOMENT, "1/1000"),
+    ("%", NUMBER, "1/100"),
+)
+SYMBOLS: Final[Mapping[str, Unit]] = {
+    name: Unit(kind, Fraction(scale.replace("pi/", "1/").replace("pi*", "")), int("pi" in scale))
+    for names, kind, scale in _ROWS
+    for name in names.split()
+}
+_PER_MINUTE: Final = SYMBOLS["rpm"]  # a bare "per minute" counts turns in machine theory, a bare "per second" radians
 _LOOKALIKES: Final = {latin(name): unit for name, unit in SYMBOLS.items()}
 
 _SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
@@ -173,31 +170,20 @@ class UnitSystem:
         """
         self._names = {kind.dimension: kind.default for kind in KINDS.values()}
         for key, name in (names or {}).items():
-            full = key.replace("_", " ")
-            full = _SHORT.get(full, full)
+            full = _LONG.get(key, key.replace("_", " "))
             if full not in KINDS or full == "number":
-                allowed = [_key(kind) for kind in KINDS if kind != "number"]
-                near = nearest(key, allowed)
+                short = {long: short for short, long in _LONG.items()}
+                keys = [short.get(kind, kind) for kind in KINDS if kind != "number"]
                 raise ProblemError(
-                    _("unknown key"),
-                    path=(key,),
-                    found=quote(key),
-                    allowed=", ".join(allowed),
-                    near=near,
-                    key=True,
-                )
+                    _("unknown key"), path=(key,), found=quote(key), allowed=", ".join(keys),
+                    near=nearest(key, keys), key=True,
+                )  # fmt: skip
             kind = KINDS[full]
-            try:
+            with under(key):
                 found = parse_unit(name).dimension
-            except UnitError as error:
-                raise error.at(key) from None
-            if not found.fits(kind.dimension):
-                raise UnitError(
-                    _("wrong unit"),
-                    path=(key,),
-                    found=f"{quote(name)}, {found}",
-                    allowed=_("a unit of {full}, e.g. {default}").format(full=full, default=kind.default),
-                )
+                if not found.fits(kind.dimension):
+                    allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
+                    raise UnitError(_("wrong unit"), found=f"{quote(name)}, {found}", allowed=allowed)
             self._names[kind.dimension] = name
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
@@ -241,10 +227,6 @@ class UnitSystem:
             return f"a bare number ({quantity.value:.6g})"
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
         return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
-
-
-def _key(kind: str) -> str:
-    return next((short for short, full in _SHORT.items() if full == kind), kind)
 
 
 def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import cmath
 import re
 from collections.abc import Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel
 
 from tmm_cli.errors import _
-from tmm_cli.linkage import Hinge, Slide
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.expressions import evaluate
 from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
@@ -33,21 +32,18 @@ class ValueReader:
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI."""
-        try:
+        with under(*path):
             return evaluate(value, self.parameters, self.units, want)
-        except ProblemError as error:
-            raise error.at(*path) from None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
         """A value in SI that must be above zero (or not below)."""
         number = self.number(value, want, path)
         if number < 0 or (number == 0 and not zero):
+            message = _("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")
             raise ProblemError(
-                (_("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")).format(want=want),
-                path=path,
-                found=quote(value) if isinstance(value, str) else str(value),
+                message.format(want=want), path=path, found=quote(value) if isinstance(value, str) else str(value),
                 allowed=_("zero or more") if zero else _("more than zero"),
-            )
+            )  # fmt: skip
         return number
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
@@ -69,35 +65,20 @@ class ValueReader:
         return self.vector(value, LENGTH, path)
 
     @staticmethod
-    def known(name: str, names: Mapping[str, Any], path: Path, what: str, *, key: bool = False) -> str:
+    def known(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
         """The name, if there is one like it."""
         if name in names:
             return name
         raise ProblemError(
-            _("there is no {what} of that name").format(what=what),
-            path=path,
-            found=quote(name),
-            allowed=", ".join(names) or None,
-            near=nearest(name, names),
-            key=key,
-        )
+            _("there is no {what} of that name").format(what=what), path=path, found=quote(name),
+            allowed=", ".join(names) or None, near=nearest(name, names), key=key,
+        )  # fmt: skip
 
     @staticmethod
     def different(links: Sequence[str], path: Path) -> None:
         """Refuse one link in two places where different ones are wanted."""
         if len(set(links)) < len(links):
             raise ProblemError(_("different links are wanted"), path=path, found=", ".join(links))
-
-    @staticmethod
-    def one_of(given: BaseModel, keys: Sequence[str], path: Path) -> str:
-        """The one of these keys that is given."""
-        told = [key for key in keys if getattr(given, key) is not None]
-        if len(told) != 1:
-            raise ProblemError(
-                _("one of these keys is wanted"), path=path, found=", ".join(told) or None, allowed=", ".join(keys),
-                key=True,
-            )  # fmt: skip
-        return told[0]
 
     def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
         """Two points of a link written together, CD or C-D."""
@@ -119,6 +100,49 @@ class ValueReader:
         )
 
 
+@dataclass(frozen=True)
+class Part:
+    """A part of the file in its shape (schema): its values by key, each refused at its own place."""
+
+    given: Any
+    path: Path
+    values: ValueReader
+
+    def number(self, key: str, want: Dimension) -> float:
+        return self.values.number(getattr(self.given, key), want, (*self.path, key))
+
+    def positive(self, key: str, want: Dimension, *, zero: bool = False) -> float:
+        return self.values.positive(getattr(self.given, key), want, (*self.path, key), zero=zero)
+
+    def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
+        return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
+
+    def known(self, key: str, names: Iterable[str], what: str) -> str:
+        return self.values.known(getattr(self.given, key), names, (*self.path, key), what)
+
+    def two_links(self, links: Iterable[str]) -> tuple[str, str]:
+        """The two links it is between, which are not the same."""
+        i, j = (self.values.known(n, links, (*self.path, "between", k), "link")
+                for k, n in enumerate(self.given.between))  # fmt: skip
+        self.values.different((i, j), (*self.path, "between"))
+        return i, j
+
+    def one_of(self, *keys: str) -> str:
+        """The one of these keys that is given."""
+        told = [key for key in keys if getattr(self.given, key) is not None]
+        if len(told) != 1:
+            found, allowed = ", ".join(told) or None, ", ".join(keys)
+            raise self.refusal("", _("one of these keys is wanted"), found, allowed)
+        return told[0]
+
+    def refusal(
+        self, key: str, message: str, found: str | None = None, allowed: str | None = None, *, at_key: bool = False
+    ) -> ProblemError:
+        """Of the value of a key, or of the part itself (key ""); at_key: of the key, whatever its value."""
+        path = (*self.path, key) if key else self.path
+        return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
+
+
 def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
     """Refuse a name that is taken, or cannot go into tables, drawings and file names: letters and figures only."""
     pattern = LINK_NAME if what == "link" else POINT_NAME
@@ -130,16 +154,6 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
         )  # fmt: skip
     if name in taken:
         raise ProblemError(_("this name is taken"), path=path, found=quote(name), key=True)
-
-
-def unjoined(link: str, base: str, hinges: Iterable[Hinge], slides: Iterable[Slide], path: Path) -> ProblemError:
-    """The refusal of a link that none of these pairs joins to its base; it names those that they do join to it."""
-    pairs = [h.links for h in hinges] + [(s.carrier, s.runner) for s in slides]
-    joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
-    return ProblemError(
-        _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
-        found=quote(link), allowed=", ".join(joined) or None,
-    )  # fmt: skip
 
 
 def planar(x: float, y: float) -> complex:

@@ -2,7 +2,7 @@
 
 Ordinarily the margins of the groups say how many digits are true (accuracy.margins), and only positions where that is
 less than a table prints are judged. When digits are asked for all are: tables and result.json are made by their own
-functions from the results in longdouble and from those with changed lengths too, and compared number by number; so no
+functions from the results in double-doubles and from those with changed lengths too, and compared one by one; so no
 quantity can be forgotten, and none needs a formula of its own.
 """
 
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.digits import PAPER, Digits, U, is_angle, judged
+from tmm_cli.accuracy.digits import PAPER, Digits, is_angle, judged
 from tmm_cli.accuracy.margins import FEWEST, relative, sizes
 from tmm_cli.accuracy.searches import blur, searched
 from tmm_cli.accuracy.wide import Wide, coarsely
@@ -30,6 +30,7 @@ from tmm_cli.results.as_json import numbers
 from tmm_cli.results.cells import cells, keys_of, parallel, reader
 from tmm_cli.results.coarse import by_margins
 from tmm_cli.results.table import Column, Table
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real, Record, mapped
 
 DENSE = 361  # places of a trajectory
@@ -148,7 +149,7 @@ def accuracy(results: Results, full: bool = False) -> AccuracyReport:
         if 0 < len(chosen) < count:
             there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
         if len(chosen):
-            away = start + 3 * U * np.abs(motion.q[chosen])
+            away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
             digits = judged(there, cells, mu=mu, blur=away)
     for key, bound in digits.bound.items():
         if is_angle(key):  # no direction is farther from another one than half a turn
@@ -171,7 +172,7 @@ def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
             size = _most(values if units is None else values[[unit == units[k] for unit in units]])
             bound, share, paper = (_most(part[k]) for part in digits)
             if size > 0 and bound < size:  # else it is nothing but rounding
-                true = np.floor(-np.log10(2 * max(bound / size, U)))
+                true = np.floor(-np.log10(2 * max(bound / size, ROUNDOFF)))
                 yield name, bound / size, true, 100 * share / size, 100 * paper / size
 
 

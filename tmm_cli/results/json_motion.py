@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
 from typing import Any, NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
@@ -151,7 +153,7 @@ def _pins(results: Results) -> dict[str, dict[str, Vector]]:
         pairs = [r for r in results.reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
         if len(hinge.links) > 2:
             found[hinge.point] = {
-                link: sum(r.onto(link) for r in pairs if link in (r.on, r.by)) for link in hinge.links
+                link: reduce(add, [r.onto(link) for r in pairs if link in (r.on, r.by)]) for link in hinge.links
             }
     return found
 

@@ -21,6 +21,7 @@ from functools import cached_property
 from itertools import combinations, pairwise, permutations
 
 from tmm_cli.schemes.isomorphism import Form, canonical
+from tmm_cli.structure.graph import reach
 
 MOST_LINKS = 11  # 12 links with W = 1 are 6856 chains, and minutes of work
 
@@ -208,11 +209,4 @@ def _connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
         if i in links and j in links:
             beside[i].append(j)
             beside[j].append(i)
-    seen = {next(iter(links))}
-    todo = list(seen)
-    while todo:
-        for other in beside[todo.pop()]:
-            if other not in seen:
-                seen.add(other)
-                todo.append(other)
-    return len(seen) == len(links)
+    return len(reach(beside, next(iter(links)))) == len(links)

@@ -16,7 +16,7 @@ the same when their links correspond, the frame to the frame, cranks to cranks a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -136,12 +136,7 @@ class Scheme:
     @cached_property
     def directions(self) -> tuple[int, ...]:
         """For every link the first of those that keep their direction to it: joined by sliding pairs alone."""
-        first = list(range(self.links + 1))
-        for i, j, kind in self.joints:
-            if kind == "P":
-                low, high = sorted((first[i], first[j]))
-                first = [low if k == high else k for k in first]
-        return tuple(first)
+        return _first_joined(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
 def schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(TYPES)) -> tuple[Scheme, ...]:
@@ -184,9 +179,13 @@ def attached(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
 
 def _in_one_piece(scheme: Scheme) -> bool:
     """Whether the moving links, every crank among them, hold together without the frame."""
-    piece = list(range(scheme.links + 1))
-    for i, j, _ in scheme.joints:
-        if i and j:
-            low, high = sorted((piece[i], piece[j]))
-            piece = [low if k == high else k for k in piece]
-    return len(set(piece[1:])) == 1
+    return len(set(_first_joined(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
+
+
+def _first_joined(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+    """For every link, 0 to `links`, the first of those that these pairs join it to, itself among them."""
+    first = list(range(links + 1))
+    for i, j in pairs:
+        low, high = sorted((first[i], first[j]))
+        first = [low if k == high else k for k in first]
+    return tuple(first)

@@ -43,12 +43,14 @@ class Contour:
 
 def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...]:
     """Independent contours of the links that pairs join to the frame; `links` says in which order they are named."""
-    way, left = _tree(pairs)
+    ways = _ways(pairs)
     rank = {link: number for number, link in enumerate((FRAME, *links))}
     found = []
-    for pair in left:
-        one, other = _path(pair.i, way), _path(pair.j, way)
-        while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0] and one[-2][1] is other[-2][1]:
+    for pair in pairs:
+        if pair.i not in ways or pair.j not in ways or pair in (ways[pair.i][0][1], ways[pair.j][0][1]):
+            continue  # out of reach, or itself on a way
+        one, other = list(ways[pair.i]), list(ways[pair.j])
+        while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0]:
             one.pop()
             other.pop()
         if (rank[_second(one, other)], len(one) == 1) > (rank[_second(other, one)], len(other) == 1):
@@ -76,39 +78,24 @@ def classification(structure: Structure) -> tuple[str, ...]:
 
 def reached(pairs: Sequence[Joint]) -> set[str]:
     """The links that some way of pairs joins to the frame, the frame among them."""
-    return set(_tree(pairs)[0])
+    return set(_ways(pairs))
 
 
 Way = list[tuple[str, Joint | None]]  # links on the way to the frame, each with the pair that leads on
 
 
-def _tree(pairs: Sequence[Joint]) -> tuple[dict[str, tuple[str, Joint] | None], list[Joint]]:
-    """For every link the next one on its shortest way to the frame, and the pairs that no such way uses."""
-    joined: dict[str, list[Joint]] = {}
-    for pair in pairs:
-        joined.setdefault(pair.i, []).append(pair)
-        joined.setdefault(pair.j, []).append(pair)
-    way: dict[str, tuple[str, Joint] | None] = {FRAME: None}
-    used: set[int] = set()
+def _ways(pairs: Sequence[Joint]) -> dict[str, Way]:
+    """The shortest way to the frame of every link that has one."""
+    ways: dict[str, Way] = {FRAME: [(FRAME, None)]}
     todo = [FRAME]
     for link in todo:  # grows while it is walked: nearest links first
-        for pair in joined.get(link, ()):
-            after = pair.j if link == pair.i else pair.i
-            if after not in way:
-                way[after] = (link, pair)
-                used.add(id(pair))
-                todo.append(after)
-    return way, [p for p in pairs if id(p) not in used and p.i in way and p.j in way]
-
-
-def _path(link: str, way: dict[str, tuple[str, Joint] | None]) -> Way:
-    path: Way = []
-    step = way[link]
-    while step is not None:
-        path.append((link, step[1]))
-        link = step[0]
-        step = way[link]
-    return [*path, (link, None)]
+        for pair in pairs:
+            if link in (pair.i, pair.j):
+                after = pair.j if link == pair.i else pair.i
+                if after not in ways:
+                    ways[after] = [(after, pair), *ways[link]]
+                    todo.append(after)
+    return ways
 
 
 def _second(path: Way, other: Way) -> str:

@@ -13,7 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
+Node = TypeVar("Node", int, str)
 FREEDOMS = 3
 PIN_FREEDOMS = 2
 
@@ -43,8 +45,8 @@ class Count:
     under_constrained: tuple[str, ...]
 
 
-def reach(out: Mapping[str, Iterable[str]], *starts: str) -> dict[str, None]:
-    """All that the given bodies depend on, themselves included."""
+def reach(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
+    """All that can be reached from these nodes, themselves included, in the order in which they are met."""
     seen = dict.fromkeys(starts)
     todo = list(starts)
     while todo:

@@ -3,11 +3,12 @@
     block.py   the task's keys in a problem file: `Shape`, and `read(shape, values) -> Task`, which raises ProblemError;
                `parameters(shape)`, where what may be found depends on what is asked
     solver.py  its numbers, SI and radians: the frozen record `Task`, PARAMETERS (kinds by name of what may be found),
-               and `solve(task) -> Outcome`, which raises Infeasible with the reason and one value that could be met
+               `refuse(task)`, which raises Infeasible with the reason, and `solve(task) -> Outcome`, which does so too
 
 and further files where one would be too long. block.py is the edge: it alone knows pydantic and units. What rooms share
-stands beside them: record.py (what a task gives), measures.py (what is measured on its mechanism), mean_ratio.py (k),
-construction.py (drawings as records). A new task is a new room, and a line here.
+stands beside them: record.py (what a task gives), refusals.py (the nearest value that is feasible), measures.py (what
+is measured on the mechanism), mean_ratio.py (k), construction.py (drawings as records). A new task is a new room, and a
+line here.
 """
 
 from __future__ import annotations

@@ -86,7 +86,7 @@ def checked(tree: Tree) -> Block:
         shape = block(given["task"]).Shape
         found: Block = shape.model_validate(given)
     except ValidationError as error:
-        from tmm_cli.problem.refusals import shape_error  # only a bad file needs its words
+        from tmm_cli.problem.shape_errors import shape_error  # only a bad file needs its words
 
         raise shape_error(error, tree, shape, ("synthesis",)) from None
     return found

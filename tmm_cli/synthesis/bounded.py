@@ -2,36 +2,48 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Final
 
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED, Dimension
 from tmm_cli.synthesis.record import SMALLEST
 
 MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
 # what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
-# a large k is refused by its task, with the largest that can be
-SIZES: Final = {NUMBER: ("k", "ratio", "frame_ratio", "rod_ratio"), ANGLE: ("pressure",)}
+# k is refused by its task, which knows the bounds of it
+SIZES: Final = {NUMBER: ("ratio", "frame_ratio", "rod_ratio"), ANGLE: ("pressure",)}
 PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
 
 
 class Bounded(ValueReader):
-    """The sense of a file's values, for a task that computes a mechanism."""
+    """The sense of a file's values, for a task that computes a mechanism.
+
+    others: values (SI) in the place of the file's own; given: what was read, with its dimension. Both by their paths.
+    """
+
+    def __init__(
+        self, parameters: Mapping[str, PhysicalValue], units: UnitSystem, others: Mapping[Path, float] | None = None
+    ) -> None:
+        super().__init__(parameters, units)
+        self.others = others or {}
+        self.given: dict[Path, tuple[float, Dimension]] = {}
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI. Raises ProblemError where no mechanism has it."""
-        found = super().number(value, want, path)
+        found = self.others[path] if path in self.others else super().number(value, want, path)
+        self.given[path] = found, want
         most, key = MOST.get(want), path[-1] if path else ""
-        if most is None or (path and path[0] in PLAIN):
+        if most is None or key == "k" or (path and path[0] in PLAIN):
             return found
         sized = isinstance(key, str) and key != "e" and (want not in SIZES or key in SIZES[want])
-        least = SMALLEST if sized else 0.0
-        if (abs(found) <= most or key == "k") and (found == 0 or abs(found) >= least):
+        if (SMALLEST if sized else -most) <= found <= most:
             return found
-        low, high = (f"{self.units.from_si(bound, want):.6g}" for bound in (least, most))
+        low, high = (f"{self.units.from_si(bound, want):.6g}" for bound in (SMALLEST, most))
         symbol = self.units.symbol(want)
         raise ProblemError(
             _("this is too large for a mechanism") if abs(found) > most

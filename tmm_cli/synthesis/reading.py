@@ -15,8 +15,8 @@ from pydantic import BaseModel
 from tmm_cli.errors import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser
-from tmm_cli.problem.build import Builder, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.build import build as build_linkage
+from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
 from tmm_cli.problem.expressions import check_parameter
 from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
@@ -28,7 +28,8 @@ from tmm_cli.synthesis import block, solver
 from tmm_cli.synthesis.blocks import OfTheFile, SynthesisFile, checked
 from tmm_cli.synthesis.bounded import Bounded
 from tmm_cli.synthesis.record import Infeasible, Outcome, sound
-from tmm_cli.synthesis.refusals import refusal, suggested
+from tmm_cli.synthesis.refusals import nearest as nearest_value
+from tmm_cli.synthesis.refusals import refusal
 
 Parameters = dict[str, PhysicalValue]
 GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
@@ -158,22 +159,18 @@ class TaskFile:
     @cached_property
     def task(self) -> Any:
         """What is asked, in the record of the task."""
-        return self.read(self.block)
-
-    def read(self, given: Any) -> Any:
-        """A block in the record of its task. Raises ProblemError."""
-        read = block(given.task).read
+        read = block(self.block.task).read
         try:
             with under("synthesis"):
                 if not self.searches:
-                    return read(given, Bounded(self.early, self.units))
+                    return read(self.block, Bounded(self.early, self.units))
                 if "links" not in self.tree.data:
                     raise ProblemError(
                         _("there is no linkage whose parameters could vary"), allowed=_("links and a driver")
                     )
-                return read(given, ValueReader(self.early, self.units), self.tried)
+                return read(self.block, ValueReader(self.early, self.units), self.tried)
         except Infeasible as error:
-            raise refusal(error, given, self.units).at("synthesis") from None
+            raise refusal(error, self.block, self.units).at("synthesis") from None
         except OfTheFile as error:
             raise error.error from None
 
@@ -189,7 +186,7 @@ class TaskFile:
         assert isinstance(self.shape, schema.File)
         known = self.early | found
         everything = known | parameters(self.late, units, known)
-        return Builder(self.shape, self.tree, ValueReader(everything, units)).problem()
+        return build_shape(self.shape, self.tree, ValueReader(everything, units))
 
     def synthesised(self) -> Synthesised:
         """What the task finds. Raises ProblemError."""
@@ -198,23 +195,27 @@ class TaskFile:
             with under("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
                 outcome = sound(solver(self.block.task).solve(task))
         except Infeasible as error:
-            helps = not isinstance(error.suggestion, tuple) or self.helps(error)
-            raise refusal(error, self.block, self.units, alone=helps).at("synthesis") from None
+            told = self.nearest(error.path) if error.suggestion is None else error.suggestion
+            raise refusal(error, self.block, self.units, told).at("synthesis") from None
         except OfTheFile as error:
             raise error.error from None
         return Synthesised(self.block.task, outcome, self.names)
 
-    def helps(self, error: Infeasible) -> bool:
-        """Whether the task is solved with what a refusal suggests, as it is printed, in the place of what is wrong."""
-        (key, *inside), text = error.path, suggested(error, self.units)
-        here = getattr(self.block, str(key))
-        changed = [text if n in inside else item for n, item in enumerate(here)] if inside else text
-        try:
-            with np.errstate(all="ignore"):
-                sound(solver(self.block.task).solve(self.read(self.block.model_copy(update={str(key): changed}))))
-        except (ProblemError, Infeasible):
-            return False
-        return True
+    def nearest(self, at_fault: Path) -> str:
+        """The nearest feasible value of one of the numbers at this path, the last of them first, in words."""
+        read, refuse, own = block(self.block.task).read, solver(self.block.task).refuse, Bounded(self.early, self.units)
+        read(self.block, own)
+
+        def solved(path: Path, value: float) -> bool:
+            try:
+                refuse(read(self.block, Bounded(self.early, self.units, {path: value})))
+            except (ProblemError, Infeasible):
+                return False
+            return True
+
+        given = {path: own.given[path] for path in reversed(own.given) if path[: len(at_fault)] == at_fault}
+        with np.errstate(all="ignore"):
+            return nearest_value(given, solved, self.units)
 
     def values(self, outcome: Outcome) -> Parameters:
         """The parameters that were found, under the names that the file gives them."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tmm_cli.linkage import Sketch
     from tmm_cli.synthesis.construction import Construction, Diagram
 
-Shown = tuple[Any, ...]  # of a refusal: value (SI), kind, and perhaps which side of it is allowed
+Shown = tuple[Any, ...]  # of a refusal: value (SI), kind, perhaps exact, or below, above: a limit not allowed itself
 SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
@@ -100,16 +100,14 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
     key: which of what was given is at fault, or the way to it inside the block; reason: a text, with `values` in its
-    fields. suggestion: the nearest feasible value of what the key gives, (number in SI, kind, side), or a text; None:
-    no value of it helps. side: `least`, `most` allowed, or `above`, `below` for a limit that is not allowed itself: it
-    is rounded to that side, so that what is printed can be typed in.
+    fields. suggestion: another way, in words; None: the nearest feasible value of what the key gives is searched for.
     """
 
     def __init__(
         self,
         key: str | tuple[str | int, ...],
         reason: str,
-        suggestion: str | Shown | None,
+        suggestion: str | None = None,
         values: Mapping[str, Shown] | None = None,
     ) -> None:
         self.path = (key,) if isinstance(key, str) else key

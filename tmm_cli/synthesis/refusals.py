@@ -1,50 +1,84 @@
-"""Refusals of a task as they are printed: a limit is rounded so that, typed in as it is printed, it is allowed."""
+"""Refusals of a task as they are printed: the reason, and the nearest feasible value of one number that was given."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import ROUND_HALF_EVEN, Decimal
+from functools import partial
 from typing import Any, Final
 
+import numpy as np
 from pydantic import BaseModel
 
 from tmm_cli.errors import _
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import ProblemError, path_text, quote
+from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import KINDS
+from tmm_cli.quantities import ANGLE, KINDS, NUMBER, Dimension
+from tmm_cli.roots import bisect
 from tmm_cli.synthesis.blocks import Block
 from tmm_cli.synthesis.record import Infeasible, Shown
 
 STRICT: Final = Decimal("1e-6")  # relative: how far inside a limit that is not allowed itself
 DIGITS: Final = 6
 LOW, HIGH = ("least", "above"), ("most", "below")
+GROWING: Final = np.geomspace(1e-3, 1e4, 40)
+STEPS: Final = np.concatenate([GROWING, -GROWING])  # changes that are tried, over the given value
+SHARES: Final = np.concatenate([np.geomspace(1e-6, 1, 24), -np.geomspace(1e-6, 1, 24)])
+BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near these, over the distance from them
+HALVINGS: Final = 30
+INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
+ALONE: Final = 1e-3
+NONE: Final = _("another task: no other value of it was found to help")
 
 
-def refusal(error: Infeasible, block: Block, units: UnitSystem, *, alone: bool = True) -> ProblemError:
-    """The reason, and what could be met. alone: the suggestion helps without another change."""
-    allowed, side = suggested(error, units), error.suggestion[-1] if isinstance(error.suggestion, tuple) else ""
-    if side in LOW:
-        allowed = _("{value} or more").format(value=allowed)
-    elif side in HIGH:
-        allowed = _("{value} or less").format(value=allowed)
-    if not alone:
-        allowed = _("{values}; but then another number is refused").format(values=allowed)
+def refusal(error: Infeasible, block: Block, units: UnitSystem, told: str = NONE) -> ProblemError:
+    """The reason, and what could be met: what the room says, else what is told."""
+    if error.suggestion is not None:
+        told = error.suggestion.format(**shown(error.values, units))
     return ProblemError(
         error.reason.format(**shown(error.values, units)), path=error.path, found=_found(block, error.path),
-        allowed=allowed,
+        allowed=told,
     )  # fmt: skip
 
 
-def suggested(error: Infeasible, units: UnitSystem) -> str:
-    """The value that could be met, as it is typed in, or what is said in its place."""
-    if error.suggestion is None:
-        return _("another task: no other value of this one helps")
-    if isinstance(error.suggestion, str):
-        return error.suggestion.format(**shown(error.values, units))
-    return shown({"": error.suggestion}, units)[""]
+def nearest(
+    given: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
+) -> str:
+    """The nearest feasible value of the first of these numbers (SI) that has one, as it is typed in.
+
+    solved: whether the task is, with another value at a path.
+    """
+    for path, (value, want) in given.items():
+        found = _nearest(value, want, partial(solved, path))
+        if found is not None:
+            number = _rounded(units, found, want, "least" if found > value else "most")
+            if not solved(path, units.si(number, want)):
+                number = float(units.from_si(found, want))
+            told = f"{number:.15g} {units.symbol(want)}".rstrip()
+            return _("the nearest is {name}: {value}").format(name=path_text(path), value=told)
+    return NONE
 
 
-def _found(block: Block, path: tuple[str | int, ...]) -> str | None:
+def _nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
+    """The feasible value that is nearest to one that is not: changes are tried, the least first, and halved."""
+    places = [value + (abs(value) or 1.0) * STEPS]
+    places += [fixed + abs(value - fixed) * SHARES for fixed in BESIDE.get(want, (0.0,))]
+    reach = 2 * np.pi if want == ANGLE else np.inf
+    last = {-1.0: np.array(value), 1.0: np.array(value)}
+    for place in sorted(np.concatenate(places).tolist(), key=lambda place: abs(place - value)):
+        side = 1.0 if place > value else -1.0
+        if abs(place - value) <= reach and solved(place):
+            edge = float(bisect(lambda x: np.asarray(solved(float(x))), np.array(place), last[side], HALVINGS)[0])
+            if abs(edge - value) < ALONE * abs(place - value):  # all but the given value itself is good
+                return float(place)
+            inside = edge + side * INWARDS * min(abs(edge), abs(edge - value))
+            return inside if solved(inside) else edge
+        last[side] = np.array(place)
+    return None
+
+
+def _found(block: Block, path: Path) -> str | None:
     """What stands there; of bounds all of them."""
     given = _at(block, path)
     if path == ("vary",):
@@ -62,7 +96,7 @@ def _told(own: Any) -> str:
     return f"{{{', '.join(f'{key}: {_told(v) if isinstance(v, list) else v}' for key, v in given.items())}}}"
 
 
-def _at(block: Any, path: tuple[str | int, ...]) -> Any:
+def _at(block: Any, path: Path) -> Any:
     for step in path:
         own = isinstance(step, int) or isinstance(block, dict)
         block = block[step] if own else getattr(block, str(step), getattr(block, f"{step}_", None))
@@ -80,13 +114,12 @@ def _text(units: UnitSystem, value: Any, kind: str, side: str = "") -> str:
     dimension = KINDS[kind].dimension
     number = float(units.from_si(float(value), dimension))
     if side in (*LOW, *HIGH):
-        number = _rounded(units, float(value), kind, side)
+        number = _rounded(units, float(value), dimension, side)
     return f"{number:.{15 if side == 'exact' else DIGITS}g} {units.symbol(dimension)}".rstrip()
 
 
-def _rounded(units: UnitSystem, value: float, kind: str, side: str) -> float:
+def _rounded(units: UnitSystem, value: float, dimension: Dimension, side: str) -> float:
     """A limit in the file's unit with so many digits as are printed, nothing beyond it."""
-    dimension = KINDS[kind].dimension
     exact = Decimal(float(units.from_si(value, dimension)))
     if not exact.is_finite() or exact == 0:
         return float(exact)

@@ -1,8 +1,7 @@
 """A tape as a program: straight-line NumPy calls on registers that are there before the data come.
 
 Memory is taken once, each call writes where its result is wanted, and long data go through in chunks that stay in the
-processor's cache. Data of fewer positions than variants lie with
-the variants on the last axis, where NumPy is quick.
+processor's cache. Data of fewer positions than variants lie with the variants on the last axis, where NumPy is quick.
 """
 
 from __future__ import annotations
@@ -123,15 +122,10 @@ class _Code:
         self.slots = {t.number: k for k, t in enumerate(ordered)}
         self.truths = sum(t.truth for t in ordered)
         writer = _Writer(full, self.slots)
-        self.source, self.operations, self.kinds, self.outer = (
-            writer.source,
-            len(writer.lines),
-            writer.kinds,
-            writer.outer,
-        )
+        self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
         names: dict[str, Any] = {f"f_{name}": function for name, function in ONE_BY_ONE.items()}
         names |= {"copy": np.copyto, "where": np.where, "read": _read} | writer.constants
-        exec(compile(self.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
+        exec(compile(writer.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
 
@@ -226,20 +220,8 @@ class _Writer:
                         self.outer.append(arg.number)
                         self._where[arg.number] = f"i{len(self.outer) - 1}"
         self._last = {number: where[-1] for number, where in uses.items()}
-        # a product with a number that is wanted with the other sign alone is one with the negative number
-        self._turned = {
-            t.args[0].number for t in terms
-            if t.op == "negative" and t.args[0].op == "multiply" and t.args[0].number in own
-            and len(uses[t.args[0].number]) == 1 and t.args[0].number not in slots
-            and any(not isinstance(a, Term) for a in t.args[0].args)
-        }  # fmt: skip
         for k, term in enumerate(terms):
-            if term.number not in self._turned:
-                self._write(k, term)
-            else:
-                for arg in term.args:
-                    if isinstance(arg, Term):
-                        self._last[arg.number] = max(self._last[arg.number], uses[term.number][0])
+            self._write(k, term)
         head = [f"i{k}" for k in range(len(self.outer))] + [f"o{k}" for k in range(len(slots))]
         head += [f"r{k}" for k in range(len(self.kinds))]
         body = "\n    ".join(self.lines or ["pass"])
@@ -262,8 +244,6 @@ class _Writer:
 
     def _write(self, k: int, term: Term) -> None:
         op, args = term.op, term.args
-        if op == "negative" and args[0].number in self._turned:
-            op, args = "multiply", tuple(a if isinstance(a, Term) else -a for a in args[0].args)
         read = [self._constant(a) if isinstance(a, tuple) else self._name(a) for a in args]
         if op != "where":
             self._release(k, args)

@@ -8,6 +8,7 @@ in the next sum.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -174,12 +175,11 @@ def _multiply(tape: Tape, a: Any, b: Any) -> Any:
 
 def _gathered(tape: Tape, a: Any, b: Any) -> Any:
     """Factors that are the same everywhere, or in all positions, are multiplied among themselves."""
-    if isinstance(a, Term) and isinstance(b, Term):
-        for one, other in ((a, b), (b, a)):
-            if one.op == "divide" and one.args[1] is other:
-                return one.args[0]  # (x / y) y
-        if a is b and a.op == "absolute":
-            return tape.apply("multiply", a.args[0], a.args[0])
+    for one, other in ((a, b), (b, a)):
+        if isinstance(one, Term) and isinstance(other, Term) and one.op == "divide" and one.args[1] is other:
+            return one.args[0]  # (x / y) y
+    if isinstance(a, Term) and a is b and a.op == "absolute":
+        return tape.apply("multiply", a.args[0], a.args[0])
     for one, other in ((a, b), (b, a)):
         if isinstance(one, Term) and one.op == "multiply" and axes_of(other) < one.axes:
             for x, factor in (one.args, one.args[::-1]):
@@ -213,18 +213,16 @@ def _negative(tape: Tape, a: Any) -> Any:
     return None
 
 
-def _and(tape: Tape, a: Any, b: Any) -> Any:
-    for one, other in ((a, b), (b, a)):
-        if not isinstance(one, Term):
-            return other if one else False
-    return a if a is b else None
+def _joined(settles: bool) -> Callable[[Tape, Any, Any], Any]:
+    """Two truths, where one that is known may settle it: False an `and`, True an `or`."""
 
+    def joined(tape: Tape, a: Any, b: Any) -> Any:
+        for one, other in ((a, b), (b, a)):
+            if not isinstance(one, Term):
+                return settles if bool(one) == settles else other
+        return a if a is b else None
 
-def _or(tape: Tape, a: Any, b: Any) -> Any:
-    for one, other in ((a, b), (b, a)):
-        if not isinstance(one, Term):
-            return True if one else other
-    return a if a is b else None
+    return joined
 
 
 def _absolute(tape: Tape, a: Any) -> Any:
@@ -233,6 +231,6 @@ def _absolute(tape: Tape, a: Any) -> Any:
 
 SIMPLER = {
     "add": _add, "subtract": _subtract, "multiply": _multiply, "divide": _divide, "negative": _negative,
-    "absolute": _absolute, "sqrt": _sqrt, "bitwise_and": _and, "logical_and": _and, "bitwise_or": _or,
-    "logical_or": _or,
+    "absolute": _absolute, "sqrt": _sqrt, "bitwise_and": _joined(False), "logical_and": _joined(False),
+    "bitwise_or": _joined(True), "logical_or": _joined(True),
 }  # fmt: skip

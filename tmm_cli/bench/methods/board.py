@@ -15,10 +15,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.bench.methods.wrapped import Wrapped
+from tmm_cli.bench.methods.precision import Wrapped
 from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.sequence import driven_state, drives_at, frame_state
-from tmm_cli.groups.state import Accel, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.state import (
+    Accel,
+    Accels,
+    GroupReactions,
+    PairReaction,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+)
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.acceleration import acceleration_plan
@@ -69,7 +80,7 @@ class Polygon(Wrapped):
 
     grid: Real
 
-    def reactions(self, at: Placement, poses: Mapping[str, Pose], on: tuple[Wrench, ...]) -> GroupReactions:
+    def reactions(self, at: Placement, poses: Poses, on: tuple[Wrench, ...]) -> GroupReactions:
         laid_off = tuple(Wrench(snapped(wrench.force, self.grid), wrench.moment) for wrench in on)
         found = self.inner.reactions(at, poses, laid_off)
         return replace(found, outer=tuple(map(self._read, found.outer)), inner=tuple(map(self._read, found.inner)))
@@ -115,7 +126,7 @@ class Board:
         """A point of a link that is drawn, in its axes."""
         return next(iter(self.case.linkage.links[link].points.values()), 0j)
 
-    def draw(self, links: tuple[str, ...], found: Mapping[str, Pose], known: Mapping[str, Pose]) -> dict[str, Pose]:
+    def draw(self, links: tuple[str, ...], found: Poses, known: Poses) -> dict[str, Pose]:
         """Poses as the drawing shows them."""
         drawn = dict(known)
         for link in self._order(links):
@@ -133,9 +144,7 @@ class Board:
             drawn[link] = Pose(start - one * z, z)
         return drawn
 
-    def lay_off(
-        self, links: tuple[str, ...], found: Mapping[str, Rate], poses: Mapping[str, Pose], known: Mapping[str, Rate]
-    ) -> dict[str, Rate]:
+    def lay_off(self, links: tuple[str, ...], found: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
         """Rates as the velocity plan shows them."""
         drawn = dict(known)
         for link in self._order(links):
@@ -151,7 +160,7 @@ class Board:
             drawn[link] = Rate.through(v, cross(other - one, u - v) / np.abs(other - one) ** 2, one)
         return drawn
 
-    def normals(self, links: tuple[str, ...], poses: Mapping[str, Pose], rates: Mapping[str, Rate]) -> dict[str, Rate]:
+    def normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
         """Rates whose normal accelerations w^2 l are vectors of the grid."""
         laid = dict(rates)
         for link in links:
@@ -164,12 +173,7 @@ class Board:
         return laid
 
     def accelerate(
-        self,
-        links: tuple[str, ...],
-        found: Mapping[str, Accel],
-        poses: Mapping[str, Pose],
-        rates: Mapping[str, Rate],
-        known: Mapping[str, Accel],
+        self, links: tuple[str, ...], found: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
         """Accelerations as their plan shows them."""
         drawn = dict(known)
@@ -214,30 +218,27 @@ class Board:
         return self.case.motion(q, poses, first, second), tuple(placements)
 
 
-def prepare(millimetres: float) -> Callable[[Case], Callable[[Real], Answers]]:
+def prepare(millimetres: float, case: Case) -> Callable[[Real], Answers]:
     """The board on which points are read to so many millimetres."""
 
-    def of(case: Case) -> Callable[[Real], Answers]:
-        def at(q: Real) -> Answers:
-            exact = move(case.linkage, case.kernels, q, case.law)
-            scales = Scales.of(case, exact, react(exact, case.structure, case.loads(exact)))
-            x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
-            speed = np.abs(exact.rate)
-            motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
-            forces = {links: millimetres * scale for links, scale in scales.forces.items()}
-            polygons = tuple(Polygon(k.group, k.size, k, forces[k.group.links]) for k in case.kernels)
-            motion = replace(motion, kernels=polygons, placements=placements)
-            plan = react(motion, case.structure, case.loads(motion))
-            frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)
-            found = from_plan(case, motion, replace(plan, frames=frames))
-            assert found.positions and found.velocities and found.accelerations
-            return replace(
-                found,
-                positions={name: snapped(value, x) for name, value in found.positions.items()},
-                velocities={name: snapped(value, v) for name, value in found.velocities.items()},
-                accelerations={name: snapped(value, a) for name, value in found.accelerations.items()},
-            )
+    def at(q: Real) -> Answers:
+        exact = move(case.linkage, case.kernels, q, case.law)
+        scales = Scales.of(case, exact, react(exact, case.structure, case.loads(exact)))
+        x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
+        speed = np.abs(exact.rate)
+        motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
+        forces = {links: millimetres * scale for links, scale in scales.forces.items()}
+        polygons = tuple(Polygon(k.group, k.size, k, forces[k.group.links]) for k in case.kernels)
+        motion = replace(motion, kernels=polygons, placements=placements)
+        plan = react(motion, case.structure, case.loads(motion))
+        frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)
+        found = from_plan(case, motion, replace(plan, frames=frames))
+        assert found.positions and found.velocities and found.accelerations
+        return replace(
+            found,
+            positions={name: snapped(value, x) for name, value in found.positions.items()},
+            velocities={name: snapped(value, v) for name, value in found.velocities.items()},
+            accelerations={name: snapped(value, a) for name, value in found.accelerations.items()},
+        )
 
-        return at
-
-    return of
+    return at

@@ -18,28 +18,22 @@ from tmm_cli.kinematics.motion import move
 from tmm_cli.vectors import Real
 
 
-def prepare(step: float) -> Callable[[Case], Callable[[Real], Answers]]:
+def prepare(step: float, case: Case) -> Callable[[Real], Answers]:
     """The method with one step of the driver (rad, or the linkage's size for a driver that slides)."""
+    h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
 
-    def of(case: Case) -> Callable[[Real], Answers]:
-        h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
+    def answer(q: Real) -> Answers:
+        back, on = q - h, q + h
+        here, less, more = (move(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on))
+        half = (on - back) / 2  # as it was rounded
+        first, second = {}, {}
+        for name, pose in here.poses.items():
+            behind, ahead = less.poses[name], more.poses[name]
+            # angles against the middle one, so that a full turn between them does no harm
+            a, b = np.angle(behind.z * np.conj(pose.z)), np.angle(ahead.z * np.conj(pose.z))
+            first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
+            second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
+        motion = replace(case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements)
+        return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
 
-        def answer(q: Real) -> Answers:
-            back, on = q - h, q + h
-            here, less, more = (move(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on))
-            half = (on - back) / 2  # as it was rounded
-            first, second = {}, {}
-            for name, pose in here.poses.items():
-                behind, ahead = less.poses[name], more.poses[name]
-                # angles against the middle one, so that a full turn between them does no harm
-                a, b = np.angle(behind.z * np.conj(pose.z)), np.angle(ahead.z * np.conj(pose.z))
-                first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
-                second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
-            motion = replace(
-                case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements
-            )
-            return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
-
-        return answer
-
-    return of
+    return answer

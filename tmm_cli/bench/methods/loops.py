@@ -213,29 +213,25 @@ def _followed(case: Case) -> tuple[Loops, Nodes]:
     return loops, follow(case, loops)
 
 
-def prepare(tolerance: float) -> Callable[[Case], Callable[[Real], Answers]]:
+def prepare(tolerance: float, case: Case) -> Callable[[Real], Answers]:
     """The method that stops when every loop closes within the tolerance, a share of the linkage's size (or rad)."""
+    loops, nodes = _followed(case)
 
-    def of(case: Case) -> Callable[[Real], Answers]:
-        loops, nodes = _followed(case)
+    def at(q: Real) -> Answers:
+        poses = loops.poses(close(loops, nodes.near(q), q, tolerance), q)
+        links, R = loops.rows.matrix(poses), loops.transformation(poses)
+        J = links @ R
+        free, given = J[..., loops.free], J[..., loops.given]
+        still = np.zeros(len(q))
+        speeds = loops.all(solve(free, -given), still + 1)
+        first, bent = loops.states(poses, speeds, [still] * len(speeds))
+        accels = by_links(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
+        bends = np.einsum("nrc,nc->nr", links, accels) + loops.rows.velocity_terms(poses, first)
+        first, second = loops.states(poses, speeds, loops.all(solve(free, -bends), still))
+        motion = case.motion(q, poses, first, second)
+        on = case.wrenches(motion)
+        loads = by_links(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
+        forces, balancing = loops.forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
+        return answers(case, motion, forces, balancing)
 
-        def at(q: Real) -> Answers:
-            poses = loops.poses(close(loops, nodes.near(q), q, tolerance), q)
-            links, R = loops.rows.matrix(poses), loops.transformation(poses)
-            J = links @ R
-            free, given = J[..., loops.free], J[..., loops.given]
-            still = np.zeros(len(q))
-            speeds = loops.all(solve(free, -given), still + 1)
-            first, bent = loops.states(poses, speeds, [still] * len(speeds))
-            accels = by_links(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
-            bends = np.einsum("nrc,nc->nr", links, accels) + loops.rows.velocity_terms(poses, first)
-            first, second = loops.states(poses, speeds, loops.all(solve(free, -bends), still))
-            motion = case.motion(q, poses, first, second)
-            on = case.wrenches(motion)
-            loads = by_links(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
-            forces, balancing = loops.forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
-            return answers(case, motion, forces, balancing)
-
-        return at
-
-    return of
+    return at

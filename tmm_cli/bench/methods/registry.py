@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+
 from tmm_cli.bench.methods import board, differences, loops, multibody, precision, taped
-from tmm_cli.bench.methods.case import Method
+from tmm_cli.bench.methods.case import Answers, Case, Method
+from tmm_cli.vectors import Real
+
+
+def family(
+    name: str, prepare: Callable[[float, Case], Callable[[Real], Answers]], settings: Mapping[str, float],
+    *, timed: bool = True,
+) -> tuple[Method, ...]:  # fmt: skip
+    """Methods that differ in one setting."""
+    return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
+
 
 OURS = Method("closed", "closed", precision.double)
 TAPED = Method("taped", "taped", taped.prepare)
 METHODS: tuple[Method, ...] = (
     OURS,
     TAPED,
-    *(Method(f"newton-{k}", "newton", loops.prepare(10.0**-k), 10.0**-k) for k in range(2, 16)),
+    *family("newton", loops.prepare, {f"{k}": 10.0**-k for k in range(2, 16)}),
     Method("multibody", "multibody", multibody.prepare),
-    *(Method(f"differences-{k}", "differences", differences.prepare(10.0**-k), 10.0**-k) for k in range(1, 9)),
+    *family("differences", differences.prepare, {f"{k}": 10.0**-k for k in range(1, 9)}),
     Method("single", "single", precision.single),
     Method("extended", "extended", precision.extended),
-    *(Method(f"board-{mm:.2f}", "board", board.prepare(mm), mm, timed=False) for mm in (0.25, 0.5)),
+    *family("board", board.prepare, {f"{mm:.2f}": mm for mm in (0.25, 0.5)}, timed=False),
 )
 LEFT_OUT = ("newton-3", "newton-5", "newton-7", "newton-9", "newton-11", "newton-13", "differences-5", "differences-7")
 FEWER = tuple(method for method in METHODS if method.name not in LEFT_OUT)

@@ -16,13 +16,13 @@ from tmm_cli.synthesis.blocks import Block
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
 
 
-def _pose(found: Any) -> Any:
+def _position(found: Any) -> Any:
     if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
-        raise PydanticCustomError("pose", "a place and an angle [x, y, angle] are wanted")
+        raise PydanticCustomError("position", "a place and an angle [x, y, angle] are wanted")
     return found
 
 
-Pose = Annotated[list[Value], BeforeValidator(_pose)]
+Position = Annotated[list[Value], BeforeValidator(_position)]
 Where = Literal["left", "right"]
 DYADS = ("AB", "DC")
 SAME = 1e-12  # half a whole turn more is the same angle
@@ -32,7 +32,7 @@ class Shape(Block):
     """A four-bar ABCD (AB drives) whose coupler takes 2, 3 or 4 positions."""
 
     task: Literal["coupler-positions"]
-    positions: list[Pose] = Field(
+    positions: list[Position] = Field(
         min_length=2, max_length=4, description="[x, y, angle] of the coupler's axes, 2 to 4, in order"
     )
     B: Vector | None = Field(default=None, description="pin of AB in the coupler's axes; or its pivot A")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import Any, Final
 
@@ -11,7 +10,7 @@ import numpy as np
 from tmm_cli.errors import _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
-from tmm_cli.synthesis.coupler_positions.search import FULL, QUICK, THOROUGH, Effort, Limits
+from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
 from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
 from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
 from tmm_cli.synthesis.record import Infeasible
@@ -22,7 +21,6 @@ SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the t
 FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
-EFFORTS: Final = (FULL, THOROUGH, QUICK)  # another layout of the curves may find a strip that one passes over
 DEFECTS: Final = {  # by their numbers in Marks
     1: _("branch defect: some positions are on the other assembly of the four-bar"),
     2: _("order defect: AB does not reach the positions in order by turning one way"),
@@ -32,26 +30,21 @@ POLE: Final = _("{point} does not move between these positions, or not against t
 NO_LINKS: Final = _("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 
 
-class Defective(Infeasible):
-    """A four-bar that takes the positions, but not one after the other."""
-
-
 def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
-    """Dyads AB and DC, and what they are worth. Raises Infeasible, without a suggestion where a search may find one."""
+    """Dyads AB and DC, and what they are worth. Raises Infeasible."""
     one, other = both(task)
-    names = {"C": (_("B and C"), one.pin - other.pin), "D": (_("A and D"), one.pivot - other.pivot)}
-    by_pivot = any(side.pivot is not None for side in task.sides.values())
-    for point in "DC" if by_pivot else "CD":
-        if not abs(names[point][1]) > SAME * task.size:
-            raise Infeasible(
-                _key_of(task, "DC"),
-                _("{names} are one point: that is no four-bar").format(names=names[point][0]),
-                None,
-            )
+    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME * task.size:
+        raise Infeasible(_key_of(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
     mark = marks(task.poses, one, other)
     if mark.defect and not task.keep:
-        raise Defective("positions", DEFECTS[int(mark.defect)], None)
+        raise Infeasible("positions", DEFECTS[int(mark.defect)], _others(task))
     return one, other, mark
+
+
+def _others(task: Task) -> str | None:
+    """What is told where a link is free on Burmester's curves, which are searched only for what is asked."""
+    searched = len(task.places) == 4 and len(task.sides) < 2 and not task.still
+    return _("other positions, or links by AB_turn and DC_turn") if searched else None
 
 
 def _key_of(task: Task, name: str) -> str:
@@ -79,15 +72,15 @@ def dyad(task: Task, name: str) -> Dyads:
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
     if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME * task.size:
-        raise Infeasible(point, POLE.format(point=point), None)
+        raise Infeasible(point, POLE.format(point=point))
     if len(places) == 3:
         found = centre(places)
         if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME:
             reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
-            raise Infeasible(point, reason.format(point=point), None)
+            raise Infeasible(point, reason.format(point=point))
     else:
         if not side.length > abs(places[1] - places[0]) / 2:
-            raise Infeasible(name, _("{name} does not reach both places").format(name=name), None)
+            raise Infeasible(name, _("{name} does not reach both places").format(name=name))
         found = beside(places, side.length, SIDES[side.side])
     fixed = np.asarray(given, np.clongdouble)
     return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
@@ -98,18 +91,12 @@ def given_on_curves(task: Task) -> dict[str, Dyads]:
     found = {name: of_turn(task, name) if side.near is None else of_near(task, name)
              for name, side in task.sides.items()}  # fmt: skip
     for name, own in found.items():
-        if exists(task, own):
-            continue
-        length = float(abs(task.poses.on_frame(own.pin)[..., 0] - own.pivot))
-        if not np.isfinite(length):
-            reason = _("no link through the four positions turns by this angle from the first to the second")
-            raise Infeasible(f"{name}_turn", reason, None)
-        reason = _(
-            "{link} of this turn is {length} long, or its ends are as far from the positions: near the turn of the "
-            "coupler itself links grow beyond all bounds"
-        )
-        values = {"link": (name, "word"), "length": (length, "length")}
-        raise Infeasible(f"{name}_turn", reason, None, values)
+        if not exists(task, own):
+            reason = _(
+                "no link of sensible length turns by this angle from the first position to the second: near the turn "
+                "of the coupler itself links grow beyond all bounds"
+            )
+            raise Infeasible(f"{name}_turn", reason, _others(task))
     return found
 
 
@@ -136,7 +123,7 @@ def of_near(task: Task, name: str) -> Dyads:
         found.append((distance, turn, branch))
     distance, turn, branch = min(found)
     if not np.isfinite(distance):
-        raise Infeasible(f"{name[0]}_near", NO_LINKS, None)
+        raise Infeasible(f"{name[0]}_near", NO_LINKS, _others(task))
     return by_turn(task.poses, np.asarray(turn, np.longdouble), branch)
 
 
@@ -148,43 +135,26 @@ def exists(task: Task, found: Dyads) -> Any:
         return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME * task.size)
 
 
-def limits(task: Task, given: Mapping[str, Dyads]) -> Limits:
-    """What is sensible beside the dyads that are given."""
+def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
+    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
     first, size = task.poses.places[0], task.size
     frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
     box = None if task.within is None else task.outside
-    return Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
-
-
-def searched(
-    task: Task, given: Mapping[str, Dyads], loose: bool = False, efforts: tuple[Effort, ...] = EFFORTS
-) -> tuple[Dyads, Dyads, float] | None:
-    """The best dyads beside those that are given and their transmission angle (rad), of the first search with a sound
-    four-bar, else of the last; None: there are none. loose: branches are not asked for."""
-    found, bounds = None, limits(task, given)
-    for effort in efforts:
-        found = best_on_curves(task.poses, task.size, bounds, dict(given), loose, effort)
-        if found is None or found[2] > SURE:
-            break
-    return found
-
-
-def best(task: Task, given: Mapping[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
-    bounds, found = limits(task, given), None
-    for loose in (False, True):  # without a sound one: one whose branches only are not the same
-        found = searched(task, given, loose, EFFORTS[: 1 if loose else None])
+    bounds = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
+    # another layout of the curves may find a strip that one passes over; at last one whose branches are not the same
+    for effort, loose in ((FULL, False), (THOROUGH, False), (FULL, True)):
+        found = best_on_curves(task.poses, size, bounds, given, loose, effort)
         if found is None or found[2] > SURE:
             break
     if found is not None:
-        frame, coupler = abs(found[0].pivot - found[1].pivot), abs(found[0].pin - found[1].pin)
+        frame, coupler = float(abs(found[0].pivot - found[1].pivot)), float(abs(found[0].pin - found[1].pin))
         if bounds.shortest <= min(frame, coupler) and frame <= bounds.frame and coupler <= bounds.coupler:
             return found[:2]
     if task.within is not None:
         reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
-        raise Infeasible("pivots_within", reason, None)
-    raise Infeasible("positions", NO_LINKS, None)
+        raise Infeasible("pivots_within", reason, _("another box, or other positions"))
+    raise Infeasible("positions", NO_LINKS, _others(task))
 
 
 def parallel(task: Task) -> tuple[Dyads, Dyads]:
@@ -204,12 +174,17 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
             _("places on a circle, or a slider"),
         )
     if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
-        _refuse_off_circle(places[3], centre(places[:3]), abs(places[0] - centre(places[:3])))
+        raise Infeasible(
+            ("positions", 3),
+            _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
+              "through the others"),
+            _("a fourth place on that circle, or a coupler that turns"),
+        )  # fmt: skip
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():
         if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
             reason = _("the coupler does not turn: both links turn as its places do on their circle")
-            raise Infeasible(f"{name}_turn", reason, (turn, "angle", "exact"))
+            raise Infeasible(f"{name}_turn", reason, "{turn}", {"turn": (turn, "angle", "exact")})
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
     way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
     frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, task.size)
@@ -225,19 +200,3 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
     ]
     one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
     return one, other
-
-
-def _refuse_off_circle(place: Any, middle: Any, radius: Any) -> None:
-    """The fourth place is not on the circle through the others: raises Infeasible with its nearest y, or x, there."""
-    reason = _(
-        "the coupler does not turn: all its points go on equal circles, and the fourth place is not on that through "
-        "the others"
-    )
-    arm = place - middle
-    text, along, across, start = _("position 4: y {value}"), arm.imag, arm.real, middle.imag
-    if abs(across) >= radius:
-        text, along, across, start = _("position 4: x {value}"), arm.real, arm.imag, middle.real
-    if abs(across) >= radius:
-        raise Infeasible(("positions", 3), reason, _("a fourth place on that circle, or a coupler that turns"))
-    on = start + np.copysign(np.sqrt((radius - across) * (radius + across)), along)
-    raise Infeasible(("positions", 3), reason, text, {"value": (float(on), "length", "exact")})

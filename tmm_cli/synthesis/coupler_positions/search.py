@@ -41,7 +41,6 @@ class Effort:
 
 FULL: Final = Effort(400, 160, 24, ((10, 10, 8), (2, 20, 12)), 512, 9, 60)
 THOROUGH: Final = Effort(120, 40, 12, ((4, 6, 5), (1, 10, 8)), 256, 9, 24)
-QUICK: Final = Effort(60, 16, 8, (), 96, 5, 10)  # finds a sound four-bar in most tasks that have one, in 0.02 s
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,8 @@ from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, by_turn
 from tmm_cli.synthesis.coupler_positions.drawing import construction
 from tmm_cli.synthesis.coupler_positions.dyads import exists, guiding
-from tmm_cli.synthesis.coupler_positions.suggestion import suggested
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Side", "Task", "solve"]
@@ -58,14 +57,14 @@ SOURCES: Final = {  # by the count of positions; 1: four of one angle
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason where no four-bar guides the coupler."""
+    guiding(task)
+
+
 def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
-    try:
-        one, other, mark = guiding(task)
-    except Infeasible as error:
-        if error.suggestion is not None:
-            raise
-        raise suggested(task, error) from None
+    one, other, mark = guiding(task)
     numbers = _parameters(task, one, other)
     plain = np.longdouble if isinstance(task.angles[0], np.longdouble) else float
     values = [Value(name, plain(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]

@@ -19,7 +19,7 @@ from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider.drawing import construction
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
@@ -174,67 +174,41 @@ def _stroke(task: Task) -> Any:
 
 
 def refuse(task: Task) -> None:
-    """Raises Infeasible with the reason and what could be met."""
-    for name in ("stroke", "speed", "crank_speed"):
-        value = getattr(task, name)
-        if value is not None and not value > 0:
-            raise Infeasible(name, _("there is no such motion"), (SMALLEST, QUANTITIES[name][0], "least"))
-    ratio, nu, k, pressure, e = task.ratio, task.nu, task.k, task.pressure, task.e
+    """Raises Infeasible with the reason."""
+    ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
-        raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"),
-                         (0.0, "number", "least"))  # fmt: skip
+        raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"))
     if e is not None and not e > 0:
-        raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"),
-                         (SMALLEST, "length", "least"))  # fmt: skip
+        raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"))
     if ratio is not None and not ratio > 1:
-        raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"),
-                         (1 + (nu or 0.0), "number", "above"))  # fmt: skip
+        raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"))
     if ratio is not None and nu is not None and not nu < ratio - 1:
-        raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"), (ratio - 1, "number", "below"))
-    theta = None if k is None else _refuse_k(task)
-    if pressure is None:
-        return
-    least = 0.0 if theta is None else float(least_pressure(theta))
-    if not pressure < np.pi / 2:
-        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"),
-                         (np.pi / 2, "angle", "below"))  # fmt: skip
-    if not pressure > 0:
-        raise Infeasible("pressure", _("a largest pressure angle is more than zero"),
-                         (max(SMALLEST, least), "angle", "least"))  # fmt: skip
-    if pressure < least:
-        raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"),
-                         (least, "angle", "least"))  # fmt: skip
+        raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"))
+    theta = 0.0 if task.k is None else _refuse_k(task)
+    if pressure is not None and not pressure < np.pi / 2:
+        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
+    if pressure is not None and pressure < least_pressure(theta):
+        raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"))
 
 
 def _refuse_k(task: Task) -> float:
     """Theta, from 0 up to its bound for what else is given."""
-    theta, e, limit = float(theta_of(task.k)), task.e, np.pi / 2
+    theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
-        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"),
-                         (1.0, "number", "least" if e is None else "above"))  # fmt: skip
-    if e is not None and theta == 0:
-        raise Infeasible("k", _("with an offset k is more than 1"), (1.0, "number", "above"))
+        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
+    if task.e is not None and theta == 0:
+        raise Infeasible("k", _("with an offset k is more than 1"))
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
-    elif e is not None:  # the crank's pivot lies on the circle between B2 and the normal through B2: e < H cot(theta)
-        limit = float(np.arctan2(_stroke(task), e))
-    if theta < limit:
-        return theta
-    most = largest_k(task.pressure) if task.pressure is not None and 0 < task.pressure < limit else k_of(limit)
+    elif task.e is not None:  # the pivot O is on the circle between B2 and the place over it: e < H cot(theta)
+        limit = float(np.arctan2(_stroke(task), task.e))
     if theta >= np.pi / 2:
-        reason = _("no crank-slider whose crank turns fully has k of 3 or more")
-    elif task.ratio is not None:
-        reason = _("the crank does not turn fully: k is too large for this ratio of rod and crank")
-    else:
-        reason = _("the crank does not turn fully: k is too large for this stroke and offset")
-    raise Infeasible("k", reason, (float(most), "number", "below"))
-
-
-def largest_k(pressure: Any) -> Any:
-    """The largest k that a limit of the pressure angle allows at any L: `least_pressure` solved for theta."""
-    pressure = np.asarray(pressure, dtype=float)
-    low, high = np.zeros_like(pressure), np.full_like(pressure, np.pi / 2)
-    return k_of(roots(lambda theta: least_pressure(theta) - pressure, low, high))
+        raise Infeasible("k", _("no crank-slider whose crank turns fully has k of 3 or more"))
+    if theta >= limit and task.ratio is not None:
+        raise Infeasible("k", _("the crank does not turn fully: k is too large for this ratio of rod and crank"))
+    if theta >= limit:
+        raise Infeasible("k", _("the crank does not turn fully: k is too large for this stroke and offset"))
+    return theta
 
 
 def solve(task: Task) -> Outcome:

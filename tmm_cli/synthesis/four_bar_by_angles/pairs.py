@@ -152,12 +152,10 @@ def real(found: Bars) -> Any:
 
 
 def chosen(task: Task, found: Bars) -> int:
-    """Which of the four-bars is taken, -1: none has no defect."""
+    """Which of the four-bars is taken; one at least must have no defect, or defects be put up with."""
     if task.choose.isdigit():
         return int(task.choose) - 1
     mark = quality(found, task)
-    fair = np.flatnonzero((mark.defect == "") | task.keep)
-    if not fair.size:
-        return -1
     crank = mark.crank & (task.choose == "crank")
+    fair = np.flatnonzero((mark.defect == "") | task.keep)
     return int(max(fair, key=lambda k: (mark.defect[k] == "", crank[k], not mark.reversed[k], mark.least[k])))

@@ -7,7 +7,6 @@ solutions those without defects are kept: all pairs on one assembly, no place be
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -21,9 +20,8 @@ from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES
 from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, chosen, of_ratios, quality, real, through
 from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes
-from tmm_cli.synthesis.four_bar_by_angles.suggestion import in_order, refuse_found, refuse_inputs
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Task", "solve"]
@@ -42,9 +40,11 @@ DEFECTS: Final = {
     "locks": _("order: the input locks on the way"),
 }
 SHORT_DEFECTS: Final = {"": _("none"), "branch": _("branch"), "locks": _("order")}
-CHOSEN_HAS: Final = {
-    "branch": _("branch defect: this solution has some pairs on its other assembly"),
-    "locks": _("order defect: the input of this solution locks on the way"),
+NO_FOUR_BAR: Final = _("no four-bar passes through these pairs")
+EVERY_ONE_HAS: Final = {
+    "branch": _("branch defect: every four-bar through these pairs has some of them on its other assembly"),
+    "locks": _("order defect: the input of every four-bar through these pairs locks on the way"),
+    "branch and locks": _("every four-bar through these pairs has a branch defect, or its input locks on the way"),
 }
 COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
@@ -55,9 +55,7 @@ FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sens
 
 def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
-    refuse(task)
-    found = through(task)
-    at = _taken(task, found)
+    found, at = take(task)
     one, mark = found.at(at), quality(found.at(at), task)
     any_one = parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
     values, demands = _values(task, one, mark), _demands(task, one, mark)
@@ -87,40 +85,36 @@ def solve(task: Task) -> Outcome:
     )  # fmt: skip
 
 
-def refuse(task: Task) -> None:
-    """Raises Infeasible for lengths that are none and inputs that turn back, or round."""
-    for name, value in task.lengths.items():
-        if not value > 0:
-            rest = {key: other for key, other in task.lengths.items() if other > 0}
-            if not rest:  # the size of the four-bar
-                raise Infeasible(name, _("there is no such link"), (SMALLEST, "length", "least"))
-            best = float(solve(replace(task, lengths=rest)).parameters[name].value)
-            raise Infeasible(name, _("there is no such link"), (best, "length"))
-    steps = np.diff(task.phi)
-    if not task.function and not (np.all(steps > 0) or np.all(steps < 0)):
-        bad = int(np.argmax(steps * (np.sign(steps[0]) or 1.0) <= 0)) + 1
-        reason = _("the input turns back: pair {this} cannot be reached after pair {last} in order")
-        refuse_inputs(task, ("pairs", bad), reason.format(this=bad + 1, last=bad), (bad, bad - 1))
-    if not in_order(task):
-        key, last = ("input", 1) if task.function else ("pairs", len(task.phi) - 1)
-        refuse_inputs(task, (key,), _("the input has come round before the last pair"), (last, 0))
-
-
-def _taken(task: Task, found: Bars) -> int:
-    """The number of the solution that is taken. Raises Infeasible."""
-    at = chosen(task, found)
-    if at < 0 or not found.size:
-        refuse_found(task, found)
+def take(task: Task) -> tuple[Bars, int]:
+    """All four-bars of the task, and the number of the one that is taken. Raises Infeasible."""
+    _refuse_inputs(task)
+    found = through(task)
     defects = quality(found, task).defect
-    fair = " or ".join(str(k + 1) for k in np.flatnonzero((defects == "") | task.keep))
-    others = _("{numbers}; or choose: transmission").format(numbers=fair)
+    fair = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
     if not fair:
-        others = _("1 to {count} with defects: keep; every solution has a defect").format(count=found.size)
-    if at >= found.size:
-        raise Infeasible("choose", _("there is no solution of this number"), others)
-    if defects[at] and not task.keep:
-        raise Infeasible("choose", CHOSEN_HAS[str(defects[at])], others)
-    return at
+        key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
+        raise Infeasible(key, NO_FOUR_BAR if not found.size else EVERY_ONE_HAS[" and ".join(sorted(set(defects)))])
+    if task.choose.isdigit() and task.choose not in fair:
+        reason = _("there is no solution of this number, or it has a defect")
+        raise Infeasible("choose", reason, _("{numbers}; or choose: transmission").format(numbers=" or ".join(fair)))
+    return found, chosen(task, found)
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason where there is no such four-bar."""
+    take(task)
+
+
+def _refuse_inputs(task: Task) -> None:
+    """The input only grows, or only falls, by less than a turn. Raises Infeasible."""
+    steps = np.diff(np.asarray(task.phi, dtype=float))
+    back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
+    if back.size and not task.function:
+        reason = _("the input turns back: pair {this} cannot be reached after pair {last} in order")
+        raise Infeasible(("pairs", int(back[0]), 0), reason.format(this=back[0] + 1, last=back[0]))
+    if back.size or abs(task.span[1] - task.span[0]) >= 2 * np.pi:
+        key = ("input", 1) if task.function else ("pairs", len(task.phi) - 1, 0)
+        raise Infeasible(key, _("the input has come round before the last pair"))
 
 
 def _size(task: Task, one: Bars) -> Any:

@@ -24,9 +24,8 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
     widest,
 )  # fmt: skip
 from tmm_cli.synthesis.four_bar_by_k.drawing import construction, diagrams, listing, side_name
-from tmm_cli.synthesis.mean_ratio import k_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -36,9 +35,14 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "k": ("number", _("k")),
     "l1": ("length", _("crank l1")), "l2": ("length", _("coupler l2")), "l4": ("length", _("frame l4")),
 }  # fmt: skip
+NOT_THERE: Final = {  # by the choice
+    "level": _("no pivot of the admissible arcs is as high as D"),
+    "l1": _("no pivot of the admissible arcs gives such a crank"),
+    "l2": _("no pivot of the admissible arcs gives such a coupler"),
+    "l4": _("no pivot of the admissible arcs is at this distance from D"),
+    "near": _("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
+}
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
-INSIDE: Final = 4e-5  # of a range of lengths: how far from its ends, where the rocker is dead, a length is told
-SOUND: Final = np.radians(80)  # the largest pressure angle of a pivot that is told instead of one with a dead rocker
 
 
 def _pressure(found: Found, __: Task) -> Any:
@@ -105,6 +109,7 @@ def choose(task: Task) -> Found:
 
     It is looked for with D in the origin: a support that is far away takes no digits.
     """
+    _refuse_numbers(task)
     near = None if task.near is None else task.near - task.support
     centred = replace(task, support=0 * task.support, near=near)
     if task.choose in LEAST:
@@ -112,93 +117,44 @@ def choose(task: Task) -> Found:
     else:
         found = [(w, side) for side in arcs(centred) for w in _crossings(centred, side, EQUATIONS[task.choose])]
     if not found:
-        raise _not_there(centred)
+        words = _("best transmission") if task.choose == "level" else None
+        raise Infeasible("choose" if task.choose == "level" else task.choose, NOT_THERE[task.choose], words)
     goal = LEAST.get(task.choose, _pressure)
     w, side = min(found, key=lambda one: float(goal(at(centred, *one), centred)))
     if task.choose == "near" and w in places(centred, side)[[0, -1]]:
-        raise _dead(centred, complex(task.support))
+        raise Infeasible("near", NOT_THERE["near"])
     f = at(centred, w, side)
     return replace(f, a=task.support + f.a)
 
 
-def _dead(task: Task, support: complex) -> Infeasible:
-    """The nearest place is an end of an arc: tells the nearest pivot whose rocker is far from its dead position."""
-    along = [at(task, places(task, side), side) for side in arcs(task)]
-    a, angle = (np.concatenate([np.atleast_1d(getattr(f, name)) for f in along]) for name in ("a", "pressure"))
-    most = max(float(np.min(angle)), SOUND)
-    here = support + complex(a[np.argmin(np.where(angle <= most, np.abs(a - task.near), np.inf))])
-    return Infeasible(
-        "near", _("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
-        _("[{x}, {y}]: the nearest pivot with a largest pressure angle of {most} or less"),
-        {"x": (here.real, "length"), "y": (here.imag, "length"), "most": (most, "angle")},
-    )  # fmt: skip
-
-
-def _not_there(task: Task) -> Infeasible:
-    """No pivot of the arcs is what was asked for: says what there is."""
-    if task.choose == "level":
-        return Infeasible("choose", _("no pivot of the admissible arcs is as high as D"), _("best transmission"))
-    if task.choose == "l1" and task.k == 1:
-        return Infeasible("l1", _("with k = 1 every crank is half of C1C2"), None)
-    reason = {
-        "l1": _("no pivot of the admissible arcs gives such a crank"),
-        "l2": _("no pivot of the admissible arcs gives such a coupler"),
-        "l4": _("no pivot of the admissible arcs is at this distance from D"),
-    }[task.choose]
-    first = float(task.l3 if task.choose == "l4" else task.l3 * np.sin(task.swing / 2))
-    last = [float(getattr(at(task, places(task, side)[-1], side), task.choose)) for side in arcs(task)]
-    return Infeasible(task.choose, reason, _within(task, float(getattr(task, task.choose)), first, last))
-
-
-def _within(task: Task, given: float, first: float, last: list[float]) -> Shown:
-    """The length (m) nearest to the given one, a little inside the ends of the arcs: there the rocker is dead.
-
-    first: where both arcs begin; last: where each of them ends.
-    """
-    low, high = min(first, *last), max(first, *last)
-    if low < first < high:
-        low, high = (low, first) if given < first else (first, high)
-    width = low if task.k == 1 else high - low
-    if task.k > 1 and given > (low + high) / 2:
-        return high - INSIDE * width, "length", "most"
-    return max(low + INSIDE * min(low, width), SMALLEST), "length", "least"
-
-
 def refuse(task: Task) -> None:
-    """Raises Infeasible with the reason and what could be met."""
-    if not task.l3 > 0:
-        raise Infeasible("l3", _("there is no such link"), (SMALLEST, "length", "least"))
+    """Raises Infeasible with the reason where there is no such pivot."""
+    choose(task)
+
+
+def _refuse_numbers(task: Task) -> None:
     if not task.k >= 1:
-        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"),
-                         (1.0, "number", "above" if task.choose == "best" else "least"))  # fmt: skip
+        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
     against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
     if not 0 < task.swing <= np.pi - 2 * ARC:
-        least, most = max(2 * SMALLEST / float(task.l3), 2 * (theta + ARC) - np.pi), np.pi - 2 * ARC
-        if against:
-            least, most = 2 * SMALLEST / float(task.l3), most - 2 * theta
-        swing = most if half > 0 else least
-        side = "most" if (half > 0) == (way > 0) else "least"
-        raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"),
-                         (float(task.psi1) + way * swing, "angle", side))  # fmt: skip
-    beyond, nearer = np.pi / 2 - half - ARC, np.pi / 2 + half - ARC  # the largest theta of either arc
-    if theta > nearer:
-        reason = _("k is too large for this swing: on the whole circle the rocker would pass its dead position, or "
-                   "stand all but in it")  # fmt: skip
-        raise Infeasible("k", reason, (float(k_of(beyond if against and beyond > 0 else nearer)), "number", "most"))
-    if against and theta > beyond:
+        raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"))
+    if theta > np.pi / 2 + half - ARC:  # the largest theta of the arc on D's side
+        raise Infeasible("k", _("k is too large for this swing: on the whole circle the rocker would pass its dead "
+                                "position, or stand all but in it"))  # fmt: skip
+    if against and theta > np.pi / 2 - half - ARC:  # of the other one
         raise Infeasible("turns", _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
                          "cw" if task.sense > 0 else "ccw")  # fmt: skip
     if theta == 0 and task.choose == "best":
         raise Infeasible(
-            "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is"),
-            (1.0, "number", "above"),
-        )  # fmt: skip
+            "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is")
+        )
+    if theta == 0 and task.choose == "l1":
+        raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"), _("half of C1C2; or another choice of A"))
 
 
 def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
-    refuse(task)
     f = choose(task)
     demands = [
         Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),

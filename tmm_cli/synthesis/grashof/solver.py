@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.errors import _
 from tmm_cli.synthesis.four_bar import CHANGE, SAME, TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Shown, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final[dict[str, str]] = {}
 LINKS: Final = {
@@ -95,12 +95,18 @@ def slotted_lever(task: SlottedLever) -> Condition:
     return Condition(np.where(np.abs(margin) <= same, 3, kind), margin)
 
 
+def refuse(task: Task) -> None:
+    """Raises Infeasible for links that do not close."""
+    if isinstance(task, FourBar) and turning(task).kind < 0:
+        longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
+        reason = _("the links do not close: {link} is as long as the others together, or longer")
+        raise Infeasible(longest, reason, values={"link": (longest, "word")})
+
+
 def solve(task: Task) -> Outcome:
     """The answer for one file. Raises Infeasible for what is no mechanism."""
     lengths = {name: value for name, value in vars(task).items() if name not in ("frame", "driver")}
-    for name, value in lengths.items():
-        if name != "e" and not value > 0:
-            raise Infeasible(name, _("there is no such link"), _least(task, lengths, name))
+    refuse(task)
     given = tuple(Value(name, value, "length", LINKS[name]) for name, value in lengths.items())
     if isinstance(task, FourBar):
         return _four_bar(task, given)
@@ -115,21 +121,8 @@ def solve(task: Task) -> Outcome:
     return Outcome(given, values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
 
 
-def _least(task: Task, lengths: dict[str, Any], name: str) -> Shown:
-    """The least length of a link that is none: with it the links of a four-bar close."""
-    rest = sorted(max(0.0, float(value)) for other, value in lengths.items() if other != name)
-    gap = rest[-1] - sum(rest[:-1]) if isinstance(task, FourBar) else 0.0
-    return (gap, "length", "above") if gap >= SMALLEST else (SMALLEST, "length", "least")
-
-
 def _four_bar(task: FourBar, given: tuple[Value, ...]) -> Outcome:
     found = turning(task)
-    links = {f"l{number}": getattr(task, f"l{number}") for number in range(1, 5)}
-    longest = max(links, key=lambda name: float(links[name]))
-    if found.kind < 0:
-        rest = float(sum(links.values()) - links[longest])
-        raise Infeasible(longest, _("the links do not close: {link} is as long as the others together, or longer"),
-                         (rest, "length", "below"), {"link": (longest, "word")})  # fmt: skip
     change = int(found.kind) >= CHANGE
     at_change, fully, rocks = (
         _("turns fully or rocks: decided in the change positions"), _("turns fully"), _("rocks"),

@@ -11,28 +11,27 @@ from pydantic import BeforeValidator, Field
 
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.errors import MobilityError, _
-from tmm_cli.linkage import Linkage
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import mobility
 from tmm_cli.problem.schema_parts import Name, Strict, Value, Vector
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem.tree import Path
+from tmm_cli.problem.units import PhysicalValue
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, KINDS, LENGTH, Dimension
+from tmm_cli.quantities import ANGLE, KINDS, LENGTH
 from tmm_cli.synthesis.blocks import Block, OfTheFile
 from tmm_cli.synthesis.optimal import task
-from tmm_cli.synthesis.optimal.block_over import Ends, asked_over, driven, within
-from tmm_cli.synthesis.optimal.block_ranges import Range, Ranges, Two, read_ranges, two
+from tmm_cli.synthesis.optimal.block_over import asked_over, driven, place_of
+from tmm_cli.synthesis.optimal.block_ranges import FileWith, Range, Two, read_ranges, two
 from tmm_cli.synthesis.optimal.quantities import QUANTITIES
 from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.task import Task, near
+from tmm_cli.synthesis.optimal.task import Parameter, Task, near
 from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.variants.variant import Make, Variant
+from tmm_cli.variants.variant import Variant
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters
-FEWEST = 8  # candidates in a generation
-MOST_PLACES = 2_000_000_000  # positions of candidates: some minutes for a four-bar
 if TYPE_CHECKING:
     Of = str
 else:
@@ -90,8 +89,8 @@ class Shape(Block):
     positions: int = Field(
         default=72, ge=12, le=720, description="round the cycle, in the search; no fewer than 24 in each of many turns"
     )
-    population: int = Field(default=0, ge=0, le=10_000, description="in a generation; 0: 20 a parameter")
-    generations: int = Field(default=0, ge=0, le=100_000, description="25 times the square of the number of parameters")
+    population: int = Field(default=0, ge=0, le=2000, description="in a generation; 0: 20 a parameter")
+    generations: int = Field(default=0, ge=0, le=20_000, description="25 times the square of the number of parameters")
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
 
@@ -100,221 +99,134 @@ def parameters(shape: Shape) -> dict[str, str]:
     return dict.fromkeys(shape.vary, "length")
 
 
-def read(
-    shape: Shape, sense: ValueReader, file_with: Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
-) -> Task:
+def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
     """The task in SI. Raises ProblemError."""
-    ranges = read_ranges(shape.vary, sense, shape.names, file_with)
-    low, high, kinds = ranges.low, ranges.high, ranges.kinds
-    _check_work(shape)
-    varied = VariedUnits(sense.units)
-    names = [shape.names.get(name, name) for name in low]
+    parameters = read_ranges(shape.vary, sense, shape.names, file_with)
+    files = _Files(parameters, shape, sense, file_with)
+    middles = near([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
+    files.over = asked_over(shape.over, files.plain(middles).linkage.driver, sense)
+    middle = driven(files.plain(middles), files.over)
+    _check_mobility(middle)
+    for k, parameter in enumerate(parameters):
+        for end in (parameter.low, parameter.high):
+            files.variant([*middles[:k], end, *middles[k + 1 :]])
+    constraints = tuple(_constraint(given, middle, sense, n) for n, given in enumerate(shape.constraints))
+    objective, target = _quantity(shape.objective, middle, sense, ("objective",)), shape.objective.target
+    if target is not None:
+        target = sense.number(target, KINDS[_kind(objective, middle)].dimension, ("objective", "target"))
+    return Task(
+        parameters, files.variant, objective, constraints, target, shape.positions, shape.population,
+        shape.generations, shape.seed, files.accepts, _bar(),
+    )  # fmt: skip
 
-    def file(numbers: Sequence[Any]) -> Problem:
-        units = varied if any(isinstance(x, TracedNumber) for x in numbers) else sense.units
-        dimensions = (KINDS[kind].dimension for kind in kinds.values())
-        return file_with({n: PhysicalValue(x, d) for n, x, d in zip(names, numbers, dimensions, strict=True)}, units)
 
-    def said(error: OfTheFile, numbers: Sequence[Any]) -> OfTheFile:
-        """A refusal of the file with the numbers that it is refused with."""
-        refused, values = copy(error.error), []
-        for name, number, kind in zip(low, numbers, kinds.values(), strict=True):
-            value, dimension = number.value if isinstance(number, TracedNumber) else number, KINDS[kind].dimension
-            shown = f"{sense.units.from_si(float(value), dimension):.6g} {sense.units.symbol(dimension)}".rstrip()
-            values.append(f"{name} = {shown}")
-        refused.message = _("with {numbers} the file is refused: {reason}").format(
-            numbers=", ".join(values), reason=refused.message
-        )
-        return OfTheFile(refused)
+class _Files:
+    """The file with other numbers (SI, or TracedNumbers) of what varies."""
 
-    def takes(numbers: Sequence[Any]) -> bool:
+    def __init__(
+        self, parameters: Sequence[Parameter], shape: Shape, sense: ValueReader, file_with: FileWith
+    ) -> None:  # fmt: skip
+        self.parameters, self.names, self.file_with = parameters, shape.names, file_with
+        self.units, self.varied = sense.units, VariedUnits(sense.units)
+        self.over: Any = None
+
+    def plain(self, numbers: Sequence[Any]) -> Problem:
+        """Raises OfTheFile."""
+        found = {
+            self.names.get(p.name, p.name): PhysicalValue(x, KINDS[p.kind].dimension)
+            for p, x in zip(self.parameters, numbers, strict=True)
+        }
+        return self.file_with(found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units)
+
+    def variant(self, numbers: Sequence[Any]) -> Variant:
+        """Raises OfTheFile, which tells the numbers that the file is refused with, and ProblemError."""
         try:
-            file(numbers)
-        except OfTheFile:
-            return False
-        return True
-
-    def first(numbers: Sequence[float]) -> Problem:
-        try:
-            return file(numbers)
+            return driven(self.plain(numbers), self.over)
         except OfTheFile as error:
-            sound = any(takes(list(ends.values())) for ends in (low, high))
-            raise (said(error, numbers) if sound else error) from None
+            refused, told = copy(error.error), []
+            for p, number in zip(self.parameters, numbers, strict=True):
+                value, dimension = getattr(number, "value", number), KINDS[p.kind].dimension
+                shown = f"{self.units.from_si(float(value), dimension):.6g} {self.units.symbol(dimension)}"
+                told.append(f"{p.name} = {shown.rstrip()}")
+            refused.message = _("with {numbers} the file is refused: {reason}").format(
+                numbers=", ".join(told), reason=refused.message
+            )
+            raise OfTheFile(refused) from None
 
-    middles = near(
-        [(a + b) / 2 for a, b in zip(low.values(), high.values(), strict=True)], ranges.values, list(low)
-    ).tolist()
-    over = asked_over(shape.over, first(middles).linkage.driver, sense)
-
-    def make(numbers: Sequence[Any]) -> Variant:
-        return driven(file(numbers), over)
-
-    def tried(numbers: Sequence[Any]) -> Variant:
-        """With other numbers the file is sound: what it is refused for is said of these."""
+    def accepts(self, numbers: Sequence[float]) -> bool:
+        """Whether the file takes them."""
         try:
-            return make(numbers)
-        except OfTheFile as error:
-            raise said(error, numbers) from None
-
-    def accepts(numbers: Sequence[float]) -> bool:
-        try:
-            make(numbers)
+            self.variant(numbers)
         except (OfTheFile, ProblemError):
             return False
         return True
 
-    middle = make(middles)
-    _check_mobility(middle.linkage)
-    ends_at_bounds = list(dict.fromkeys([middle.ends, *_check_bounds(ranges, make, middles)]))
-    constraints = []
-    for n, given in enumerate(shape.constraints):
-        path: tuple[str | int, ...] = ("constraints", n)
-        quantity = _quantity(given, middle, ends_at_bounds, sense, path)
-        dimension = _dimension(quantity, middle.linkage)
-        sides = {
-            key: sense.number(value, dimension, (*path, key))
-            for key in ("least", "most", "equal") if (value := getattr(given, key)) is not None
-        }  # fmt: skip
-        if not sides or ("equal" in sides and len(sides) > 1):
-            raise ProblemError(
-                _("a constraint has a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
-            )
-        equal = sides.get("equal")
-        least, most = sides.get("least", equal), sides.get("most", equal)
-        if least is not None and most is not None and least > most:
-            raise ProblemError(_("the least is more than the most"), path=path, found=two(given.least, given.most))
-        key = "equal" if equal is not None else "least" if most is None else "most"
-        constraints.append(task.Constraint(quantity, least, most, (*path, key)))
-    objective = _quantity(shape.objective, middle, ends_at_bounds, sense, ("objective",))
-    target = shape.objective.target
-    wanted = (
-        None if target is None else sense.number(target, _dimension(objective, middle.linkage), ("objective", "target"))
-    )
-    return Task(
-        low, high, kinds, tried, objective, tuple(constraints), wanted, shape.positions, shape.population,
-        shape.generations, shape.seed, accepts, _bar(), ranges.values,
-    )  # fmt: skip
 
-
-def _check_work(shape: Shape) -> None:
-    """A search ends in our days. Raises ProblemError."""
-    if 0 < shape.population < FEWEST:
-        raise ProblemError(
-            _("a population so small does not evolve"), path=("population",), found=str(shape.population),
-            allowed=_("{least} or more, or 0 for as many as is usual").format(least=FEWEST),
-        )  # fmt: skip
-    each = max(shape.population, 20 * len(shape.vary)) * shape.positions
-    if shape.generations * each > MOST_PLACES:
-        raise ProblemError(
-            _("such a search takes too long"), path=("generations",), found=str(shape.generations),
-            allowed=_("{most} or less of so many candidates at so many positions").format(most=MOST_PLACES // each),
-        )  # fmt: skip
-
-
-def _check_mobility(linkage: Linkage) -> None:
+def _check_mobility(variant: Variant) -> None:
     """What has passive links moves with exact dimensions only, which a parameter may spoil. Raises ProblemError."""
     try:
-        mobile(linkage)
+        mobile(variant.linkage)
     except MobilityError as refusal:
-        from tmm_cli.problem.refusals import mobility
-
         told = mobility(refusal.structure)
         raise ProblemError(
             _("with values in the middle of these bounds {reason}").format(reason=told.message), path=("vary",),
-            found=told.found, allowed=_(
-                "{allowed}; where pairs hold the same twice, a parameter that all their dimensions rest on"
-            ).format(allowed=told.allowed),
+            found=told.found, allowed=told.allowed,
         ) from None  # fmt: skip
 
 
-def _check_bounds(ranges: Ranges, make: Make, middles: Sequence[float]) -> list[Ends]:
-    """Where the driver goes at the bounds; what the file refuses there is said before the search.
-
-    Raises ProblemError.
-    """
-    found = []
-    for n, ends in enumerate((ranges.low, ranges.high)):
-        for k, (name, end) in enumerate(ends.items()):
-            try:
-                found.append(make([*middles[:k], end, *middles[k + 1 :]]).ends)
-            except OfTheFile as error:
-                raise ProblemError(
-                    _("with this bound the file is refused: {reason}").format(reason=error.error.message),
-                    path=ranges.at[name][n], found=ranges.told[name][n],
-                    allowed=error.error.allowed or _("another bound"),
-                ) from None  # fmt: skip
-        make(list(ends.values()))
-    return found
+def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int) -> task.Constraint:
+    path: Path = ("constraints", n)
+    quantity = _quantity(given, variant, sense, path)
+    dimension = KINDS[_kind(quantity, variant)].dimension
+    sides = {
+        key: sense.number(value, dimension, (*path, key))
+        for key in ("least", "most", "equal") if (value := getattr(given, key)) is not None
+    }  # fmt: skip
+    if not sides or ("equal" in sides and len(sides) > 1):
+        raise ProblemError(
+            _("a constraint has a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
+        )
+    least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
+    if least is not None and most is not None and least > most:
+        raise ProblemError(_("the least is more than the most"), path=path, found=two(given.least, given.most))
+    return task.Constraint(quantity, least, most, (*path, list(sides)[-1]))
 
 
-def _dimension(quantity: Goal, linkage: Linkage) -> Dimension:
-    return KINDS[quantity.kind(linkage, mobile(linkage).solved)].dimension
+def _kind(quantity: Goal, variant: Variant) -> str:
+    return quantity.kind(variant.linkage, mobile(variant.linkage).solved)
 
 
-def _quantity(
-    given: Quality, variant: Variant, ends: list[Ends], sense: ValueReader, path: tuple[str | int, ...]
-) -> Goal:  # fmt: skip
-    linkage, kind = variant.linkage, QUANTITIES[given.of]
-    for key in given.model_fields_set & {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}:
+def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path) -> Goal:
+    linkage, kind, name = variant.linkage, QUANTITIES[given.of], ""
+    others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
+    for key in given.model_fields_set & others:
         raise ProblemError(
             _("{quantity} has no {key}").format(quantity=given.of, key=key), path=(*path, key),
             allowed=", ".join(sorted(kind.keys)) or "of", key=True,
         )  # fmt: skip
-    name = ""
+    for needed in (kind.named, kind.given):
+        if needed and not getattr(given, needed):
+            raise ProblemError(_("the key `{key}` is missing").format(key=needed), path=(*path, needed))
     if kind.named:
-        name = getattr(given, kind.named) or ""
-        known = {
-            "pair": [pair.name for pair in mobile(linkage).pairs], "link": linkage.moving,
-            "point": list(dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points)),
-        }[kind.named]  # fmt: skip
-        if not name:
-            raise ProblemError(
-                _("the key `{key}` is missing").format(key=kind.named), path=(*path, kind.named),
-                allowed=", ".join(known),
-            )  # fmt: skip
-        sense.known(name, dict.fromkeys(known), (*path, kind.named), kind.named)
+        name = getattr(given, kind.named)
+        known: dict[str, list[str]] = {
+            "pair": [pair.name for pair in mobile(linkage).pairs], "link": list(linkage.moving),
+            "point": [point for link in linkage.moving for point in linkage.links[link].points],
+        }  # fmt: skip
+        sense.known(name, dict.fromkeys(known[kind.named]), (*path, kind.named), kind.named)
     for n, link in enumerate(given.links):
         sense.known(link, linkage.links, (*path, "links", n), "link")
     wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
     if given.values:
         dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
-    places = [_place(v, variant, ends, sense, (*path, "at", n)) for n, v in enumerate(given.at)]
-    if kind.given and not wanted:
-        raise ProblemError(
-            _("the key `{key}` is missing").format(key=kind.given), path=(*path, kind.given),
-            allowed=_("what is wanted"),
-        )  # fmt: skip
+    places = tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
     if len(places) != len(wanted) and (places or given.values):
         raise ProblemError(
             _("as many angles as {key} are wanted").format(key=kind.given), path=(*path, "at"),
             found=quote(len(places)), allowed=str(len(wanted)),
         )  # fmt: skip
-    return kind(name, tuple(given.links), tuple(map(float, places)), tuple(wanted), given.norm, given.relative)
-
-
-def _place(value: Any, variant: Variant, ends: list[Ends], sense: ValueReader, path: tuple[str | int, ...]) -> float:
-    """A place of the driver's way, on all that it has at the bounds."""
-    turns = variant.linkage.driver.kind == "turn"
-    dimension = ANGLE if turns else LENGTH
-    place = float(sense.number(value, dimension, path))
-    for both in ends[::-1]:
-        found = within(place, both, turns=turns)
-        if found is None and both is not None:
-            low, high = (f"{sense.units.from_si(float(end), dimension):.6g}" for end in both)
-            stroke, several = both == variant.linkage.driver.stroke, len(ends) > 1
-            allowed = {
-                (True, False): _("a place of its stroke, {low} to {high} {unit}"),
-                (True, True): _("a place of its stroke, {low} to {high} {unit} at a bound of what varies"),
-                (False, False): _("a place of its way, {low} to {high} {unit}"),
-                (False, True): _("a place of its way, {low} to {high} {unit} at a bound of what varies"),
-            }[stroke, several]
-            raise ProblemError(
-                _("the driver does not go there"), path=path, found=quote(value),
-                allowed=allowed.format(low=low, high=high, unit=sense.units.symbol(dimension)),
-            )  # fmt: skip
-    assert found is not None
-    return found  # on the way of the middle of the bounds, which is the first of them
+    return kind(name, tuple(given.links), places, tuple(wanted), given.norm, given.relative)
 
 
 def _bar() -> Callable[[int, int], None]:

@@ -10,8 +10,8 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.synthesis.construction import Diagram, Line
+from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.evolution import Evolved
-from tmm_cli.synthesis.optimal.search import Search
 from tmm_cli.synthesis.record import Listing
 from tmm_cli.tolerances import NO_VIOLATION
 from tmm_cli.variants.variant import Places
@@ -55,29 +55,29 @@ def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, qu
     )  # fmt: skip
 
 
-def reached(search: Search, x: Real, n: int) -> tuple[Listing, Diagram]:
+def reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
     """Of the n-th quantity, for shares x of the ranges."""
     two = x[None]
 
     def read(places: Places, key: str) -> Real:
-        found: Real = search.run(two, places)[f"{n}.{key}"][0]
+        found: Real = candidates.run(two, places)[f"{n}.{key}"][0]
         return found
 
-    return (_law if search.quantities[n].of == "law" else _path)(search, n, read)
+    return (_law if candidates.quantities[n].of == "law" else _path)(candidates, n, read)
 
 
-def _name(search: Search, n: int) -> str:
-    return f"{search.quantities[n].of}-{n}" if n else search.quantities[n].of
+def _name(candidates: Candidates, n: int) -> str:
+    return f"{candidates.quantities[n].of}-{n}" if n else candidates.quantities[n].of
 
 
-def _law(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
-    quantity, swings = search.quantities[n], search.overs[n].swings
+def _law(candidates: Candidates, n: int, read: Read) -> tuple[Listing, Diagram]:
+    quantity, swings = candidates.quantities[n], candidates.overs[n].swings
     at, wanted = np.array(quantity.places), np.array(quantity.wanted)
     low, high = float(np.min(at)), float(np.max(at))
-    if search.closed:
-        high = max(high, low + search.cycle)
+    if candidates.closed:
+        high = max(high, low + candidates.cycle)
     else:
-        low, high = min(search.ends[0], low), max(search.ends[1], high)
+        low, high = min(candidates.ends[0], low), max(candidates.ends[1], high)
     q = np.linspace(low, high, CURVE)
     run, there = read(Places(NONE, q), "run"), read(Places(NONE, at), "run")
     if quantity.relative:
@@ -87,7 +87,7 @@ def _law(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
         run = np.unwrap(run)
         run = run + 2 * np.pi * np.round((there[0] - np.interp(at[0], q, run)) / (2 * np.pi))
     kind = "angle" if swings else "length"
-    place = "angle" if search.linkage.driver.kind == "turn" else "length"
+    place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
         ("at", _("driver at"), place), ("wanted", _("wanted"), kind), ("reached", _("reached"), kind),
         ("off", _("deviation"), kind),
@@ -99,12 +99,12 @@ def _law(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
     )  # fmt: skip
     up = (_("angle of the link") if swings else _("run of the link"), kind)
     title = _("Law of motion over the whole way of the driver")
-    drawn = Diagram(_name(search, n), title, (_("driver"), place), up, lines)
-    return Listing(_name(search, n), _("Wanted law and what is reached"), columns, rows), drawn
+    drawn = Diagram(_name(candidates, n), title, (_("driver"), place), up, lines)
+    return Listing(_name(candidates, n), _("Wanted law and what is reached"), columns, rows), drawn
 
 
-def _path(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
-    quantity, wanted = search.quantities[n], np.array(search.quantities[n].wanted)
+def _path(candidates: Candidates, n: int, read: Read) -> tuple[Listing, Diagram]:
+    quantity, wanted = candidates.quantities[n], np.array(candidates.quantities[n].wanted)
 
     def spots(places: Places) -> Vector:
         found: Vector = read(places, "px") + 1j * read(places, "py")
@@ -114,7 +114,7 @@ def _path(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
     if quantity.places:
         there = spots(Places(NONE, np.array(quantity.places)))
     else:
-        there = spots(Places(_closest(lambda shares: spots(Places(shares, NONE)), wanted, search.closed), NONE))
+        there = spots(Places(_closest(lambda shares: spots(Places(shares, NONE)), wanted, candidates.closed), NONE))
     rows: tuple[tuple[float, ...], ...] = tuple(
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
     )
@@ -124,20 +124,20 @@ def _path(search: Search, n: int, read: Read) -> tuple[Listing, Diagram]:
     )  # fmt: skip
     if quantity.places:
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
-        columns = (("at", _("driver at"), "angle" if search.linkage.driver.kind == "turn" else "length"), *columns)
+        columns = (("at", _("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
         Line(_("path"), path.real, path.imag), Line(_("wanted"), wanted.real, wanted.imag, dots=True),
         Line(_("reached"), there.real, there.imag, dots=True),
     )  # fmt: skip
     drawn = Diagram(
-        _name(search, n), _("Path of the point over the whole way of the driver"), (_("x"), "length"),
+        _name(candidates, n), _("Path of the point over the whole way of the driver"), (_("x"), "length"),
         (_("y"), "length"), lines, equal=True,
     )  # fmt: skip
     title = (
         _("Wanted points and those that are reached at these places of the driver") if quantity.places
         else _("Wanted points and the nearest that are reached")
     )  # fmt: skip
-    return Listing(_name(search, n), title, columns, rows), drawn
+    return Listing(_name(candidates, n), title, columns, rows), drawn
 
 
 def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:

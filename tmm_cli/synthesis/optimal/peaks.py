@@ -11,7 +11,6 @@ from math import perm
 
 import numpy as np
 
-from tmm_cli.synthesis.optimal.readings import peaks_of
 from tmm_cli.vectors import Real
 
 WINDOW = 33  # places about a peak
@@ -19,6 +18,7 @@ SIDE = 3  # neighbours on either side
 _FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
 NEWTON = 6
 RIVALS = 8  # highest places of what may jump
+RIVAL = 0.3  # of its range: a lower peak so far below the highest one is no rival
 ZOOMS = 9  # of a peak that may be a jump
 FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
 
@@ -75,3 +75,15 @@ def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float
         middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
         best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
     return best
+
+
+def peaks_of(y: Real, most: int, closed: bool) -> list[int]:
+    """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
+    before, after = np.roll(y, 1), np.roll(y, -1)
+    if not closed:
+        before[0] = after[-1] = -np.inf
+    found = np.flatnonzero((y >= before) & (y > after))
+    if not found.size:
+        return [int(np.argmax(y))]
+    found = found[np.argsort(-y[found], kind="stable")][:most]
+    return [int(k) for k in found if not y[k] < np.max(y) - RIVAL * np.ptp(y)]  # some are kept where not all is known

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,6 +13,17 @@ from tmm_cli.variants.variant import Make
 from tmm_cli.vectors import Real
 
 Keys = tuple[str | int, ...]  # of the block, down to what stands there
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """What varies (SI), and its dimension; values: all that it may have, rising, where these are some only."""
+
+    name: str
+    low: float
+    high: float
+    kind: str
+    values: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -42,29 +53,23 @@ class Constraint:
         missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
         return np.where(np.isnan(missed), np.inf, missed)
 
-    def passed(self, value: float) -> float:
-        """The bound that a value beyond one of them lies beyond."""
-        bound = self.least if self.least is not None and value < self.least else self.most
+    def broken(self, value: float) -> tuple[float, Keys]:
+        """The bound that a value lies beyond, and where it stands."""
+        low = self.least is not None and value < self.least
+        bound = self.least if low else self.most
         assert bound is not None
-        return bound
-
-    def key(self, bound: float) -> Keys:
-        """Where a bound of it stands."""
         both = not self.equal and self.least is not None and self.most is not None
-        return (*self.at[:-1], "least" if bound == self.least else "most") if both else self.at
+        return bound, (*self.at[:-1], "least" if low else "most") if both else self.at
 
 
 @dataclass(frozen=True)
 class Task:
-    """low, high: bounds of what varies, by name (SI); kinds: their dimensions; make: the linkage for numbers in that
-    order, with its driver range. target: the objective is to come near to this. positions: round the cycle, in the
-    search. accepts: whether the file takes such numbers. population, generations: 0 for as many as the number of
-    parameters wants. values: of those that have some only.
+    """make: the linkage for numbers of the parameters (SI), with its driver range. target: the objective is to come
+    near to this. positions: round the cycle, in the search. accepts: whether the file takes such numbers. population,
+    generations: 0 for as many as the number of parameters wants.
     """
 
-    low: dict[str, float]
-    high: dict[str, float]
-    kinds: dict[str, str]
+    parameters: tuple[Parameter, ...]
     make: Make = field(compare=False)
     objective: Goal
     constraints: tuple[Constraint, ...] = ()
@@ -75,34 +80,23 @@ class Task:
     seed: int = 1
     accepts: Callable[[Sequence[float]], bool] = field(default=lambda numbers: True, compare=False)
     progress: Callable[[int, int], None] = field(default=lambda at, of: None, compare=False)
-    values: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-
-    def near(self, numbers: Any) -> Real:
-        """The nearest numbers that the parameters may have, (..., n)."""
-        return near(numbers, self.values, list(self.low))
-
-    def one_sense(self, first: Sequence[float]) -> bool:
-        """Whether no driver goes forth in some candidates and back in others."""
-        senses = set()
-        for k, name in enumerate(self.low):
-            for end in (self.low[name], self.high[name]):
-                numbers = [*first[:k], end, *first[k + 1 :]]
-                if self.accepts(numbers):
-                    linkage = self.make(numbers).linkage
-                    senses.add(tuple(driver.sense for driver in (linkage.driver, *linkage.others)))
-        return len(senses) <= 1
 
     @property
     def free(self) -> list[int]:
-        """Which of them may have all values within their bounds."""
-        return [k for k, name in enumerate(self.low) if name not in self.values]
+        """Which parameters may have all values within their bounds."""
+        return [k for k, parameter in enumerate(self.parameters) if not parameter.values]
+
+    def with_one(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
+        """First numbers with others for parameter k, those that the file takes."""
+        tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
+        return [one for one in tried if self.accepts(one)]
 
 
-def near(numbers: Any, values: Mapping[str, tuple[float, ...]], names: Sequence[str]) -> Real:
-    """The nearest numbers (..., n) of parameters, some of which may have certain values only."""
+def near(numbers: Any, parameters: Sequence[Parameter]) -> Real:
+    """The nearest numbers (..., n) that parameters may have."""
     found = np.array(numbers, dtype=float)
-    for k, name in enumerate(names):
-        if name in values:
-            own = np.array(values[name])
+    for k, parameter in enumerate(parameters):
+        if parameter.values:
+            own = np.array(parameter.values)
             found[..., k] = own[np.searchsorted((own[1:] + own[:-1]) / 2, found[..., k])]
     return found

@@ -8,17 +8,18 @@ D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.errors import _
-from tmm_cli.synthesis.mean_ratio import k_of, theta_of
+from tmm_cli.synthesis.mean_ratio import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.synthesis.shaper.drawing import construction
-from tmm_cli.synthesis.slotted_lever.solver import QUICK_RETURN, STRAIGHT
+from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN, STRAIGHT
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -26,10 +27,8 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "frame_ratio": ("number", _("OC/CD")), "crank": ("length", _("crank OA")), "rod": ("length", _("rod DE")),
     "rod_ratio": ("number", _("DE/CD")), "pressure": ("angle", _("largest pressure angle of the ram")),
 }  # fmt: skip
-KEYS: Final = {  # in the block
-    "frame": "OC", "frame_ratio": "frame_ratio", "crank": "OA", "rod": "DE", "rod_ratio": "rod_ratio",
-}  # fmt: skip
-NO_MOTION: Final = _("there is no such motion")
+FRAMES: Final = {"frame": "OC", "frame_ratio": "frame_ratio", "crank": "OA"}  # and their keys in the block
+RODS: Final = {"rod": "DE", "rod_ratio": "rod_ratio", "pressure": "pressure"}
 
 
 @dataclass(frozen=True)
@@ -78,49 +77,23 @@ def find(task: Task) -> Found:
 
 
 def refuse(task: Task) -> None:
-    """Raises Infeasible with the reason and what could be met."""
-    for name in ("frame", "frame_ratio", "crank"):
-        value = getattr(task, name)
-        if value is not None and not value > 0:
-            raise Infeasible(KEYS[name], NO_MOTION, (SMALLEST, QUANTITIES[name][0], "least"))
+    """Raises Infeasible with the reason."""
     if not task.k > 1:
-        raise Infeasible("k", QUICK_RETURN, (1.0, "number", "above"))
+        raise Infeasible("k", QUICK_RETURN)
     half = float(theta_of(task.k)) / 2
     if not np.pi - 2 * half > STRAIGHT:
-        raise Infeasible("k", _("the lever of a crank that turns fully swings by less than 180 deg"),
-                         (float(k_of(np.pi - STRAIGHT)), "number", "below"))  # fmt: skip
-    most = 1 / (1 + np.sin(half))  # OC/CD
-    if not task.stroke > 0:
-        frame = float(task.frame or 0.0) if task.crank is None else float(task.crank / np.sin(half))
-        least = 2 * np.sin(half) * frame / most
-        raise Infeasible("stroke", NO_MOTION,
-                         (least, "length", "above") if least > SMALLEST else (SMALLEST, "length", "least"))  # fmt: skip
+        raise Infeasible("k", HALF_A_TURN)
     f = find(task)
-    lever = float(f.lever)
-    longest = {"frame": lever * most, "frame_ratio": most, "crank": lever * most * np.sin(half)}
-    if not f.frame < lever * most:
-        name = next(name for name in longest if getattr(task, name) is not None)
-        raise Infeasible(KEYS[name], _("the stone would pass the hinge D of the rod"),
-                         (longest[name], QUANTITIES[name][0], "below"))  # fmt: skip
-    _refuse_rod(task, half, lever)
+    if not f.frame < f.lever / (1 + np.sin(half)):
+        raise Infeasible(_key(task, FRAMES), _("the stone would pass the hinge D of the rod"))
+    steepest = f.pressure if task.pressure is None else task.pressure
+    if not steepest < np.pi / 2 - half:  # where the lever turns back, half its swing from the middle
+        raise Infeasible(_key(task, RODS), _("the ram would turn back before the lever does: the rod is too steep"))
 
 
-def _refuse_rod(task: Task, half: float, lever: float) -> None:
-    """A rod so steep where the lever turns back, half its swing from the middle, that the ram turns back before."""
-    steep, steepest = _("the ram would turn back before the lever does: the rod is too steep there"), np.pi / 2 - half
-    if task.pressure is not None:
-        if not task.pressure > 0:
-            raise Infeasible("pressure", _("a largest pressure angle is more than zero"), (SMALLEST, "angle", "least"))
-        if not task.pressure < steepest:
-            raise Infeasible("pressure", steep, (steepest, "angle", "below"))
-        return
-    share = float(np.sin(half / 2) ** 2 / np.cos(half))
-    name, value, least = (
-        ("rod", task.rod, lever * share) if task.rod is not None else ("rod_ratio", task.rod_ratio, share)
-    )
-    if not value > least:
-        limit = (least, QUANTITIES[name][0], "above") if least > SMALLEST else (SMALLEST, QUANTITIES[name][0], "least")
-        raise Infeasible(KEYS[name], steep if value > 0 else NO_MOTION, limit)
+def _key(task: Task, names: Mapping[str, str]) -> str:
+    """In the block, of the one that is given."""
+    return next(key for name, key in names.items() if getattr(task, name) is not None)
 
 
 def solve(task: Task) -> Outcome:

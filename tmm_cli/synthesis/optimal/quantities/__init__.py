@@ -1,4 +1,4 @@
-"""What a mechanism can be optimised for or held to: one file a quantity, and a line here."""
+"""What a mechanism can be optimised for or held to: one class a quantity, and its name here."""
 
 from __future__ import annotations
 
@@ -6,30 +6,13 @@ from collections.abc import Mapping
 from typing import Final
 
 from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.quantities.box import Box
-from tmm_cli.synthesis.optimal.quantities.k import K
-from tmm_cli.synthesis.optimal.quantities.law import Law
-from tmm_cli.synthesis.optimal.quantities.length import Length
-from tmm_cli.synthesis.optimal.quantities.margin import Margin
-from tmm_cli.synthesis.optimal.quantities.mass import Mass
-from tmm_cli.synthesis.optimal.quantities.moment import Moment
-from tmm_cli.synthesis.optimal.quantities.path import Path
-from tmm_cli.synthesis.optimal.quantities.pressure import Pressure
-from tmm_cli.synthesis.optimal.quantities.reaction import Reaction
-from tmm_cli.synthesis.optimal.quantities.speed import Speed
-from tmm_cli.synthesis.optimal.quantities.stroke import Stroke
+from tmm_cli.synthesis.optimal.quantities.deviation import Law, Path
+from tmm_cli.synthesis.optimal.quantities.forces import Moment, Reaction
+from tmm_cli.synthesis.optimal.quantities.sizes import Box, Length, Mass
+from tmm_cli.synthesis.optimal.quantities.strokes import K, Speed, Stroke
+from tmm_cli.synthesis.optimal.quantities.transmission import Margin, Pressure
 
-QUANTITIES: Final[Mapping[str, type[Goal]]] = {  # as problem files write them
-    "length": Length,
-    "mass": Mass,
-    "box": Box,
-    "pressure": Pressure,
-    "moment": Moment,
-    "reaction": Reaction,
-    "margin": Margin,
-    "stroke": Stroke,
-    "k": K,
-    "speed": Speed,
-    "path": Path,
-    "law": Law,
-}
+ALL: Final[tuple[type[Goal], ...]] = (
+    Length, Mass, Box, Pressure, Moment, Reaction, Margin, Stroke, K, Speed, Path, Law,
+)  # fmt: skip
+QUANTITIES: Final[Mapping[str, type[Goal]]] = {quantity.of: quantity for quantity in ALL}  # as problem files write them

@@ -7,6 +7,7 @@ It is written on the tape with the linkage (`outputs`), and then read off coarse
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
@@ -21,8 +22,7 @@ from tmm_cli.roots import least, top
 from tmm_cli.structure.naming import output_link
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import highest, peak
-from tmm_cli.synthesis.optimal.readings import peaks_of
+from tmm_cli.synthesis.optimal.peaks import highest, peak, peaks_of
 from tmm_cli.variants.batch import reactions_of
 from tmm_cli.vectors import Real
 
@@ -40,19 +40,19 @@ class Over:
     """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
 
     swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
-    counts: as the quantity has them. taped: many places cost little.
+    taped: many places cost little.
     """
 
+    linkage: Linkage
     swings: bool
     closed: bool = True
     cycle: float = 2 * np.pi
     rough: bool = False
-    counts: tuple[int, ...] = ()
     taped: bool = True
 
 
 @dataclass(frozen=True)
-class Goal:
+class Goal(ABC):
     """What a task asks of it. name: of the pair, the point or the link; links: those whose lengths count.
 
     places: of the driver (rad or m), with the wanted values there; a path without places is to pass through the points
@@ -76,6 +76,48 @@ class Goal:
     moves: ClassVar[bool] = True  # hangs on where the driver goes
     lowest: ClassVar[bool] = False  # its least value in a cycle counts, and as an objective it is made largest
 
+    @abstractmethod
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        """What is to be written down for it."""
+
+    @abstractmethod
+    def coarse(self, read: Read, over: Over) -> Real:
+        """From places all over the driver range (for `places`: from those), (variants,)."""
+
+    @abstractmethod
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        """Pieces of the quantity, (variants, pieces); the largest counts (of `lowest`: the least).
+
+        exact: outputs at the quantity's own places; step: of places in windows. Places are shares of the range.
+        """
+
+    @abstractmethod
+    def measured(self, results: Results, ends: Ends) -> float:
+        """On an analysed mechanism that goes its whole way, see `measure`."""
+
+    def measure(self, results: Results, ends: Ends) -> float:
+        """On an analysed mechanism (SI, rad), over the driver range between two ends, else over its cycle.
+
+        nan where the mechanism has none.
+        """
+        return self.measured(results, ends) if measures.goes_its_way(results, ends) else measures.NONE
+
+    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+        """What to look at closely, and about which place of a scan of one variant."""
+        return []
+
+    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+        """The quantity of one candidate where windows may not be exact enough; value: from those."""
+        return value
+
+    def smooth(self, pieces: Real) -> Real:
+        """Of pieces what is made least in their place, with derivatives where they are zero."""
+        return pieces
+
+    def open(self, results: Results) -> float:
+        """By how much of it rounding leaves the measured value open."""
+        return 0.0
+
     def kind(self, linkage: Linkage, groups: Any) -> str:
         """Its dimension by name."""
         return self.dimension
@@ -97,51 +139,6 @@ class Goal:
         link = self.output(linkage, groups)
         return link is not None and linkage.slides_on_frame(link)
 
-    def counts(self, linkage: Linkage) -> tuple[int, ...]:
-        """Of points, or of distances on each link."""
-        return ()
-
-    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        """What is to be written down for it."""
-        raise NotImplementedError
-
-    def coarse(self, read: Read, over: Over) -> Real:
-        """From places all over the driver range (for `places`: from those), (variants,)."""
-        raise NotImplementedError
-
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
-        """What to look at closely, and about which place of a scan of one variant."""
-        return []
-
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
-        """Pieces of the quantity, (variants, pieces); the largest counts (of `lowest`: the least).
-
-        exact: outputs at the quantity's own places; step: of places in windows. Places are shares of the range.
-        """
-        raise NotImplementedError
-
-    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
-        """The quantity of one candidate where windows may not be exact enough; value: from those."""
-        return value
-
-    def measure(self, results: Results, ends: Ends) -> float:
-        """On an analysed mechanism (SI, rad), over the driver range between two ends, else over its cycle.
-
-        nan where the mechanism has none.
-        """
-        return self._measured(results, ends) if measures.goes_its_way(results, ends) else measures.NONE
-
-    def _measured(self, results: Results, ends: Ends) -> float:
-        raise NotImplementedError
-
-    def open(self, results: Results) -> float:
-        """By how much of it rounding leaves the measured value open."""
-        return 0.0
-
-    def smooth(self, pieces: Real) -> Real:
-        """Of pieces what is made least in their place, with derivatives where they are zero."""
-        return pieces
-
     def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
         """What is written down for it at places of an analysed mechanism."""
         motion = motion_at(results, q)
@@ -160,7 +157,7 @@ class Constant(Goal):
     def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
         return exact("value")[:, :1]
 
-    def _measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: Ends) -> float:
         return float(self.outputs_of(results, np.array([results.start]))["value"])
 
 
@@ -191,7 +188,7 @@ class Peak(Goal):
             return highest(lambda shares: curve("y", shares), scan, closed=over.closed)
         return value
 
-    def _measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: Ends) -> float:
         total = sum(
             highest_on(lambda q, n=name: np.asarray(self.outputs_of(results, q)[n]), results, ends)  # type: ignore[misc]
             for name in self.curves

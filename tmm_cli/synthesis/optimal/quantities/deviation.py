@@ -1,13 +1,22 @@
-"""How far a motion is from what is wanted of it at several places."""
+"""How far a motion is from what is wanted of it at several places: a path, a law of motion."""
 
 from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows
+from tmm_cli.synthesis.optimal.peaks import peak
+from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
 from tmm_cli.vectors import Real
 
 
@@ -19,13 +28,13 @@ class Deviation(Goal):
     def title(self, linkage: Linkage) -> str:
         return self.largest if self.norm == "largest" else self.text
 
+    @abstractmethod
     def deviations(self, read: Read, over: Over) -> Real:
         """From all that is wanted, (variants, wanted), m or rad."""
-        raise NotImplementedError
 
+    @abstractmethod
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         """The same of an analysed mechanism."""
-        raise NotImplementedError
 
     def counted(self, off: Real) -> Real:
         """Root mean square, or the largest, (variants,)."""
@@ -44,5 +53,101 @@ class Deviation(Goal):
     def smooth(self, pieces: Real) -> Real:
         return pieces if self.norm == "largest" else pieces**2
 
-    def _measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: Ends) -> float:
         return float(self.counted(self.deviations_on(results, ends)[None, :])[0])
+
+
+class Law(Deviation):
+    """Of a link, metres or radians; relative: from the first place on."""
+
+    of, text = "law", _("root mean square deviation from the wanted law")
+    largest = _("largest deviation from the wanted law")
+    keys, named, given = ("link", "values", "at", "relative", "norm"), "link", "values"
+
+    def output(self, linkage: Linkage, groups: Any) -> str | None:
+        return self.name
+
+    def kind(self, linkage: Linkage, groups: Any) -> str:
+        return "length" if self.slides(linkage, groups) else "angle"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        return {"run": output_place(motion, self.name)}
+
+    def deviations(self, read: Read, over: Over) -> Real:
+        off = read("run") - np.array(self.wanted)
+        off = off - off[:, :1] if self.relative else off
+        turned: Real = np.angle(np.exp(1j * off)) if over.swings else off
+        return turned
+
+    def deviations_on(self, results: Results, ends: Ends) -> Real:
+        run = output_place(motion_at(results, np.array(self.places)), self.name)
+        over = Over(results.linkage, not results.linkage.slides_on_frame(self.name))
+        found: Real = self.deviations(lambda __: run[None, :], over)[0]
+        return found
+
+
+class Path(Deviation):
+    """Of a point from wanted points, metres; without places it is to pass through them in any of its positions."""
+
+    of, text = "path", _("root mean square distance from the wanted points")
+    largest = _("largest distance from the wanted points")
+    keys, named, given = ("point", "through", "at", "norm"), "point", "through"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        place = motion.spot(self.name)
+        return {"px": place.real, "py": place.imag}
+
+    def deviations(self, read: Read, over: Over) -> Real:
+        x, y = read("px"), read("py")
+        if self.places:
+            apart: Real = np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
+            return apart
+        return nearest(x, y, np.array(self.wanted), closed=over.closed)
+
+    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+        place = read("px")[0] + 1j * read("py")[0]
+        return [] if self.places else [(w, int(np.argmin(np.abs(place - w)))) for w in self.wanted]
+
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        if self.places:
+            return super().fine(parts, exact, over, step)
+        squares = [-((read("px") - w.real) ** 2 + (read("py") - w.imag) ** 2) for w, __, read in parts]
+        off = np.sqrt(np.maximum(np.stack([-peak(square) for square in squares], axis=1), 0))
+        return off if self.norm == "largest" else self.counted(off)[:, None]
+
+    def deviations_on(self, results: Results, ends: Ends) -> Real:
+        if self.places:
+            apart: Real = np.abs(motion_at(results, np.array(self.places)).spot(self.name) - np.array(self.wanted))
+            return apart
+
+        def near(wanted: complex) -> float:
+            return highest_on(lambda q: -(np.abs(motion_at(results, q).spot(self.name) - wanted) ** 2), results, ends)
+
+        return np.sqrt(np.maximum([-near(wanted) for wanted in self.wanted], 0.0))
+
+
+def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
+    """Distances of a polygon (variants, corners) from points, (variants, points).
+
+    Of the corner that is nearest, and of the sides that meet there.
+    """
+    x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
+    square, rows, corners = (x * x + y * y) / 2, np.arange(len(x)), x.shape[1]
+    near, work, other = np.empty((len(wanted), len(x)), dtype=int), np.empty_like(x), np.empty_like(x)
+    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
+        np.multiply(x, w.real, out=work)
+        np.subtract(square, work, out=work)
+        np.multiply(y, w.imag, out=other)
+        np.subtract(work, other, out=work)
+        np.argmin(work, axis=1, out=k)
+    wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
+    px, py = x[rows, near] - wx, y[rows, near] - wy
+    best = px * px + py * py
+    after = np.where(near + 1 == corners, 0 if closed else near, near + 1)
+    for beside in (near - 1 if closed else np.maximum(near - 1, 0), after):
+        sx, sy = x[rows, beside] - wx - px, y[rows, beside] - wy - py
+        with np.errstate(all="ignore"):
+            share = np.minimum(np.maximum(-(px * sx + py * sy) / (sx * sx + sy * sy), 0), 1)
+        best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
+    found: Real = np.sqrt(best).T
+    return found

@@ -1,8 +1,9 @@
-"""Largest balancing moment on the driver, or force where it slides."""
+"""Forces: what balances the driver, reactions."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -11,12 +12,12 @@ from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import Linkage
-from tmm_cli.quantities import BALANCING
+from tmm_cli.quantities import BALANCING, REACTION_SIZE
 from tmm_cli.synthesis.optimal.quantities.base import Peak
 
 
 class Moment(Peak):
-    """N m, or N."""
+    """On the driver, N m, or N where it slides."""
 
     of, text, forces = "moment", _("largest balancing moment"), True
 
@@ -29,3 +30,14 @@ class Moment(Peak):
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         assert reactions is not None
         return {"y": np.abs(BALANCING.value(reactions.balance))}
+
+
+class Reaction(Peak):
+    """In a pair, N; of a compound hinge the largest of its pairs."""
+
+    of, text, forces, dimension = "reaction", _("largest reaction in the pair"), True, "force"
+    keys, named = ("pair",), "pair"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        assert reactions is not None
+        return {"y": reduce(np.maximum, [REACTION_SIZE.value(r) for r in reactions.all if r.pair.name == self.name])}

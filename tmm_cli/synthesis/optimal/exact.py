@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_cli.synthesis.optimal.candidates import Candidates, reader
 from tmm_cli.synthesis.optimal.evolution import Evolved
 from tmm_cli.synthesis.optimal.peaks import WINDOW
 from tmm_cli.synthesis.optimal.polish import Local, polish
 from tmm_cli.synthesis.optimal.quantities.base import Peak
-from tmm_cli.synthesis.optimal.search import Search, reader
 from tmm_cli.variants.variant import Places
 from tmm_cli.vectors import Real
 
@@ -32,31 +32,31 @@ class Best:
     evolved: Evolved
 
 
-def exactly(search: Search, x: Real) -> list[float]:
+def exactly(candidates: Candidates, x: Real) -> list[float]:
     """Objective and constrained quantities of x in 0..1, as exactly as they will be measured; nan: it has none."""
     with np.errstate(all="ignore"):
-        found, coarse = _pieces_near(search, x)(x), search.values(x[None])
-        values = [float(_value(search, n, pieces)[0]) for n, pieces in enumerate(found)]
-        scan, two = search.over(search.scan), search.numbers(x[None])
-        for n, (quantity, over) in enumerate(zip(search.quantities, search.overs, strict=True)):
+        found, coarse = _pieces_near(candidates, x)(x), candidates.values(x[None])
+        values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
+        scan, two = candidates.over(candidates.scan), candidates.numbers(x[None])
+        for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
             def curve(name: str, shares: Real, n: int = n) -> Real:
-                there: Real = search.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
+                there: Real = candidates.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
                 return there
 
             if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                 values[n] = np.nan
             else:
-                values[n] = quantity.closest(values[n], curve, scan[search.along(n, search.scan)], over)
-        if search.single:
-            there = search.run(x[None], Places(scan, search.with_sketch(np.zeros(0))))
-            values[1] = -1.0 if search.turned_over(there, search.scan)[0] else values[1]
+                values[n] = quantity.closest(values[n], curve, scan[candidates.along(n, candidates.scan)], over)
+        if candidates.single:
+            there = candidates.run(x[None], Places(scan, candidates.with_sketch(np.zeros(0))))
+            values[1] = -1.0 if candidates.turned_over(there, candidates.scan)[0] else values[1]
     return values
 
 
-def polished(search: Search, x: Real) -> Real:
+def polished(candidates: Candidates, x: Real) -> Real:
     """The best place near x, whose numbers that have some values only stay as they are."""
-    whole, free = x, search.task.free
+    whole, free = x, candidates.task.free
 
     def all_of(some: Real) -> Real:
         """Candidates with all their numbers."""
@@ -64,31 +64,31 @@ def polished(search: Search, x: Real) -> Real:
         found[:, free] = some
         return found
 
-    for narrow in NARROWER if search.taped else FEWER:
-        before, pieces = x, _pieces_near(search, x, narrow)
-        top = float(np.max(np.abs(_objective(search, pieces(x)[0])))) or 1.0
+    for narrow in NARROWER if candidates.taped else FEWER:
+        before, pieces = x, _pieces_near(candidates, x, narrow)
+        top = float(np.max(np.abs(_objective(candidates, pieces(x)[0])))) or 1.0
         with np.errstate(all="ignore"):
-            best = polish(lambda some: _local(search, pieces(all_of(some)), top), x[free])  # noqa: B023
+            best = polish(lambda some: _local(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
         x = all_of(best[None])[0]
         if not narrow and float(np.max(np.abs(x - before))) < SETTLED:
             break
     return x
 
 
-def _pieces_near(search: Search, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
     """Pieces of every quantity near x, exactly: windows are where x has its peaks.
 
     narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
     """
-    scan = search.over(search.scan)
-    found = search.run(x[None], Places(scan, np.zeros(0)))
-    half = max(narrow / search.count, ABOUT / search.scan)
+    scan = candidates.over(candidates.scan)
+    found = candidates.run(x[None], Places(scan, np.zeros(0)))
+    half = max(narrow / candidates.count, ABOUT / candidates.scan)
     step = 2 * half / (WINDOW - 1)
     blocks, parts = [], []
     at = 0
-    for n, (quantity, over) in enumerate(zip(search.quantities, search.overs, strict=True)):
+    for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
         own = []
-        for what, k in quantity.windows(reader(found, n, search.along(n, search.scan)), over):
+        for what, k in quantity.windows(reader(found, n, candidates.along(n, candidates.scan)), over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)
@@ -96,46 +96,42 @@ def _pieces_near(search: Search, x: Real, narrow: float = 0.0) -> Callable[[Real
             own.append((what, float(first), slice(at, at + WINDOW)))
             at += WINDOW
         parts.append(own)
-    blocks.append(np.zeros(1))
-    at, exact = at + 1, []
-    for quantity in search.quantities:
-        exact.append(slice(at, at + len(quantity.places)) if quantity.places else slice(at - 1, at))
-        at += len(quantity.places)
-    places = Places(np.concatenate(blocks), search.places.driver)
+    places = Places(np.concatenate([*blocks, np.zeros(1)]), candidates.places.driver)
+    exact = [own or slice(at, at + 1) for own in candidates.own_places(at + 1)]
 
     def pieces(some: Real) -> list[Real]:
-        out = search.program(search.numbers(np.atleast_2d(some)), places)
+        out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
         return [
             quantity.fine(
                 [(what, first, reader(out, n, where)) for what, first, where in parts[n]], reader(out, n, exact[n]),
-                search.overs[n], step,
+                candidates.overs[n], step,
             )
-            for n, quantity in enumerate(search.quantities)
+            for n, quantity in enumerate(candidates.quantities)
         ]  # fmt: skip
 
     return pieces
 
 
-def _value(search: Search, n: int, pieces: Real) -> Real:
+def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
     """A quantity from its pieces, (variants,)."""
-    found: Real = (np.min if search.quantities[n].lowest else np.max)(pieces, axis=1)
+    found: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
     return found
 
 
-def _objective(search: Search, pieces: Real) -> Real:
+def _objective(candidates: Candidates, pieces: Real) -> Real:
     """What is made least, with derivatives where it is zero."""
-    target, objective = search.task.target, search.task.objective
+    target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
-        off = (_value(search, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
+        off = (_value(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
         return np.hstack([off, -off])
     return -pieces if objective.lowest else objective.smooth(pieces)
 
 
-def _local(search: Search, found: list[Real], top: float) -> Local:
+def _local(candidates: Candidates, found: list[Real], top: float) -> Local:
     """What the polish needs of the pieces of some candidates."""
     least, equal = [], []
-    for n, (constraint, pieces) in enumerate(zip(search.constraints, found[1:], strict=True), 1):
-        value = _value(search, n, pieces)[:, None]
+    for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
+        value = _value(candidates, n, pieces)[:, None]
         if constraint.equal:
             equal.append((value - constraint.least) / constraint.scale)
             continue
@@ -145,4 +141,4 @@ def _local(search: Search, found: list[Real], top: float) -> Local:
         if constraint.most is not None:
             least.append((constraint.most - (pieces if each and not lowest else value)) / constraint.scale)
     none = np.zeros((len(found[0]), 0))
-    return Local(_objective(search, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))
+    return Local(_objective(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))

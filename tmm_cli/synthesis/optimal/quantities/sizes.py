@@ -1,9 +1,10 @@
-"""Box that the moving points need: width + height."""
+"""Sizes: link lengths, mass, the box that the moving points need."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import reduce
+from itertools import combinations, product
 from typing import Any, Final
 
 import numpy as np
@@ -12,23 +13,46 @@ from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.synthesis.optimal.peaks import peak
-from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Over, Peak, Read, Windows
-from tmm_cli.synthesis.optimal.readings import peaks_of, sums
+from tmm_cli.synthesis.optimal.peaks import peak, peaks_of
+from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Constant, Over, Peak, Read, Windows
 from tmm_cli.vectors import Real
 
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # right, left, top, bottom
 OF_A_SIDE = 3  # points that may come to bear on a side
 
 
+class Length(Constant):
+    """Sum of link lengths, m, of all links or of some: of each the largest distance of its points, of the frame that of
+    its hinges.
+    """
+
+    of, text, keys = "length", _("sum of link lengths"), ("links",)
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        linkage = motion.linkage
+        hinged = {hinge.point for hinge in linkage.hinges if FRAME in hinge.links}
+        found: Any = 0.0
+        for link in self.links or tuple(linkage.links):
+            places = [at for name, at in linkage.links[link].points.items() if link != FRAME or name in hinged]
+            found = found + reduce(np.maximum, [np.abs(a - b) for a, b in combinations(places, 2)], 0.0)
+        return {"value": found}
+
+
+class Mass(Constant):
+    """Of the moving links, kg."""
+
+    of, text, dimension = "mass", _("mass of the moving links"), "mass"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        linkage = motion.linkage
+        return {"value": sum(linkage.links[name].mass for name in linkage.moving)}
+
+
 class Box(Peak):
-    """Metres. A curve to look at closely is a side and a point, whose own path is smooth."""
+    """Width + height of the moving points, m. A curve to look at closely is a side and a point: its path is smooth."""
 
     of, text = "box", _("box of the moving points, width + height")
     curves = ("y0", "y1", "y2", "y3")
-
-    def counts(self, linkage: Linkage) -> tuple[int, ...]:
-        return (len(_points(linkage)),)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         spots = [motion.spot(point) for point in _points(motion.linkage)]
@@ -42,18 +66,18 @@ class Box(Peak):
     def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
         found: list[tuple[Any, int]] = []
         for side, (axis, sign) in enumerate(SIDES):
-            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(*over.counts)}
+            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_points(over.linkage)))}
             tops = [(y[at], k, at) for k, y in ys.items() for at in peaks_of(y, MOST_PEAKS, over.closed)]
-            tops.sort(reverse=True)
-            found += [((side, k), at) for __, k, at in tops[:OF_A_SIDE]]
+            found += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
         return found
 
     def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        """Sums of one peak of each side, in all ways: the largest is the sum of the largest ones."""
         sides: list[list[Real]] = [[], [], [], []]
         for (side, k), __, read in parts:
             axis, sign = SIDES[side]
             sides[side].append(peak(sign * read(f"{CLOSELY}{axis}{k}")))
-        return sums(sides)
+        return np.stack([np.sum(some, axis=0) for some in product(*sides)], axis=1)
 
 
 def _points(linkage: Linkage) -> list[str]:

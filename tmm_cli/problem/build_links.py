@@ -1,0 +1,223 @@
+"""Links of a problem file, the turning and sliding pairs between them, and slips that leave one of them unused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from tmm_cli.errors import _
+from tmm_cli.linkage import FRAME, Hinge, Link, Slide
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.tree import Path
+from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
+from tmm_cli.quantities import ANGLE, LENGTH
+
+
+@dataclass(frozen=True)
+class Members:
+    """Links and their lower pairs: what drivers, higher pairs and loads of the file are put on."""
+
+    links: dict[str, Link]
+    hinges: tuple[Hinge, ...]
+    slides: tuple[Slide, ...]
+
+    def hinge(self, link: str, base: str) -> str | None:
+        """The point in which two links are hinged."""
+        return next((h.point for h in self.hinges if {link, base} <= set(h.links)), None)
+
+    def slide(self, link: str, base: str) -> Slide | None:
+        """The sliding pair of two links."""
+        return next((s for s in self.slides if {s.carrier, s.runner} == {link, base}), None)
+
+    def unjoined(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
+        """The refusal of a link that no pair of these kinds joins to its base; it names those that are joined to it."""
+        pairs = [h.links for h in self.hinges if "R" in kinds]
+        pairs += [(s.carrier, s.runner) for s in self.slides if "P" in kinds]
+        joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
+        return ProblemError(
+            _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
+            found=quote(link), allowed=", ".join(joined) or None,
+        )  # fmt: skip
+
+
+def build_links(shape: schema.File, values: ValueReader) -> Members:
+    """Links in the order of the file, hinges where they share points, and slides."""
+    reader = _Reader(shape, values)
+    slides = reader.slides()
+    owners: dict[str, list[str]] = {}
+    for name, link in reader.links.items():
+        for point in link.points:
+            owners.setdefault(point, []).append(name)
+    hinges = tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
+    return Members(reader.links, hinges, slides)
+
+
+class _Reader:
+    """Reads links, then slides, which need all links."""
+
+    def __init__(self, shape: schema.File, values: ValueReader) -> None:
+        self.shape, self.values = shape, values
+        frame = {}
+        for name, place in shape.points.items():
+            check_name(name, ("points", name), "point")
+            frame[name] = values.vector(place, LENGTH, ("points", name))
+        self.links = {FRAME: Link(FRAME, frame)}
+        for name, link in shape.links.items():
+            check_name(name, ("links", name), "link")
+            if name == FRAME:
+                raise ProblemError(_("0 is the frame; see points"), path=("links", name), key=True)
+            self.links[name] = Link(name, self.points(link, name), label=link.name or "")
+
+    def points(self, link: schema.Link, name: str) -> dict[str, complex]:
+        part, given = Part(link, ("links", name), self.values), link.points
+        where: Path = (*part.path, "points")
+        if isinstance(given, dict):
+            if link.length is not None:
+                raise part.refusal("length", _("coordinates say the length already"))
+            points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in given.items()}
+        else:
+            points = self.listed(given, part)
+        if not points:
+            raise part.refusal("points", _("a link has at least one point"), allowed="[A, B]")
+        for number, point in enumerate(points):
+            check_name(point, (*where, point if isinstance(given, dict) else number), "point")
+        for point, place in link.also.items():
+            check_name(point, (*part.path, "also", point), "point", points)
+            points[point] = self.values.place(place, points, (*part.path, "also", point), name)
+        return points
+
+    def listed(self, given: list[str], part: Part) -> dict[str, complex]:
+        """Points that stand in a list: at most two, whose distance is the length."""
+        if len(set(given)) < len(given):
+            raise part.refusal("points", _("a point is named twice"), str(given))
+        if len(given) > 2:
+            raise part.refusal(
+                "points", _("three points and more need coordinates in the link's own axes"), ", ".join(given),
+                f"{{{given[0]}: [0, 0], {given[1]}: [x, 0], {given[2]}: [x, y]}}",
+            )  # fmt: skip
+        if len(given) < 2:
+            if part.given.length is not None:
+                raise part.refusal("length", _("a length belongs to two points"))
+            return dict.fromkeys(given, 0j)
+        if part.given.length is None:
+            wanted = _("length: the distance from {first} to {second}").format(first=given[0], second=given[1])
+            raise part.refusal("length", _("the length of this link is missing"), allowed=wanted)
+        return {given[0]: 0j, given[1]: planar(part.positive("length", LENGTH), 0.0)}
+
+    def slides(self) -> tuple[Slide, ...]:
+        for name in self.shape.guides:
+            check_name(name, ("guides", name), "guide")
+        found: list[Slide] = []
+        for name, link in self.shape.links.items():
+            many = isinstance(link.slides, list)
+            for number, slide in enumerate(link.sliding):
+                path: Path = ("links", name, "slides", number) if many else ("links", name, "slides")
+                found.append(self.slide(Part(slide, path, self.values), name, {s.name for s in found}))
+        return tuple(found)
+
+    def slide(self, part: Part, runner: str, taken: set[str]) -> Slide:
+        given: schema.Slide = part.given
+        points, guides = self.links[runner].points, self.shape.guides
+        point = given.point or next(iter(points))
+        self.values.known(point, points, (*part.path, "point"), f"point of link {runner}")
+        if given.on in guides:
+            if any(told is not None for told in (given.along, given.through, given.angle)):
+                raise ProblemError(_("guide {on} says where it runs already").format(on=given.on), path=part.path)
+            name, line = given.on, Part(guides[given.on], ("guides", given.on), self.values)
+            carrier = line.known("on", self.links, "link")
+        elif given.on in self.links:
+            carrier, name, line = given.on, f"{point}'", part
+        else:
+            among = _("guides: {guides}; links: {links}").format(
+                guides=", ".join(guides) or _("none"), links=", ".join(self.links)
+            )
+            raise ProblemError(
+                _("there is no such guide or link"), path=(*part.path, "on"), found=quote(given.on), allowed=among,
+                near=nearest(given.on, [*guides, *(n for n in self.links if n != runner)]),
+            )  # fmt: skip
+        self.values.different((runner, carrier), (*part.path, "on"))
+        through, angle = self.guide(line, carrier)
+        turned = part.number("turned", ANGLE)
+        name = name if name not in taken else f"{name}.{runner}"
+        return Slide(name, carrier, runner, through, angle, points[point], turned, point)
+
+    def guide(self, part: Part, carrier: str) -> tuple[complex, float]:
+        """A point on a guide and its direction, in the axes of the link that carries it."""
+        given: schema.Guide | schema.Slide = part.given
+        points = self.links[carrier].points
+        along, placed = given.along, given.through is not None or given.angle is not None
+        if along is None and not placed and carrier != FRAME and len(points) == 2:
+            along = "-".join(points)
+        if along is not None and placed:
+            raise part.refusal("along", _("along says through and angle already"))
+        if along is not None:
+            first, second = self.values.two_points(along, points, (*part.path, "along"))
+            through, angle = points[first], phase(points[second] - points[first])
+        elif given.through is not None:
+            through = part.place("through", points, carrier)
+            angle = 0.0 if given.angle is None else part.number("angle", ANGLE)
+        else:
+            allowed = _("along: CD, or through: [x, y] and angle")
+            raise part.refusal("through", _("where does this guide run?"), allowed=allowed)
+        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle
+
+
+def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:
+    """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
+    links = members.links
+    joined = {name for h in members.hinges for name in h.links} | {
+        n for s in members.slides for n in (s.carrier, s.runner)
+    }
+    for name in shape.links:
+        if name not in joined:
+            raise ProblemError(
+                _("this link is joined to nothing"), path=("links", name), found=", ".join(links[name].points),
+                allowed=_("a point that another link or the frame has too, or slides"), key=True,
+            )  # fmt: skip
+    used = {s.on for link in shape.links.values() for s in link.sliding}
+    for guide in shape.guides:
+        if guide not in used:
+            raise ProblemError(_("nothing slides on this guide"), path=("guides", guide), found=quote(guide), key=True)
+    shared = {h.point for h in members.hinges}
+    everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
+    elsewhere = _points_named(shape, data, links, everything)
+    for name, link in links.items():
+        given = list(link.points) if name == FRAME else shape.links[name].points
+        running = {s.at for s in members.slides if s.runner == name}
+        for number, point in enumerate(given if isinstance(given, list) else ()):
+            if point in shared or point in elsewhere or link.points[point] in running:
+                continue
+            path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
+            raise ProblemError(
+                _("this point is named nowhere else"), path=path, found=quote(point),
+                allowed=_("a point of another link; a point that is only watched has coordinates (see also:)"),
+                near=nearest(point, [p for p in everything if p != point and p not in link.points]),
+                key=name == FRAME,
+            )  # fmt: skip
+
+
+def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]) -> set[str]:
+    """Points that are named beside the links' own lists of points, alone or two together (CD, C-D)."""
+    pairs = {a + b: (a, b) for a in everything for b in everything}
+    found: set[str] = set()
+    for word in _words({**data, "parameters": {}, "title": "", "description": ""}):
+        found |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
+    for slide in (s for link in shape.links.values() for s in link.sliding):
+        if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
+            found |= set(links[slide.on].points)  # its two points are the guide
+    return found
+
+
+def _words(part: Any) -> Iterator[str]:
+    """Every text of a file that may name a point, the links' own lists of points left out."""
+    if isinstance(part, dict):
+        yield from part
+        part = [value for key, value in part.items() if key != "points"]
+    if isinstance(part, list):
+        for value in part:
+            yield from _words(value)
+    elif isinstance(part, str):
+        yield part

@@ -1,0 +1,124 @@
+"""The first mistake in the shape of a file: pydantic's errors in the file's own terms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from tmm_cli.errors import _
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.reader import decimal_comma_hint
+from tmm_cli.problem.tree import Path, Tree
+
+KEYS_WANTED = _("keys with values are wanted")
+WORDS = {  # what is wrong with a value, by pydantic's kind of error
+    "int": _("a whole number is wanted"),
+    "greater_than_equal": _("at least {ge} is wanted"),
+    "less_than_equal": _("at most {le} is wanted"),
+    "too_long": _("this is too long: at most {max_length}"),
+    "string_too_long": _("this is too long: at most {max_length}"),
+    "too_short": _("{min_length} are wanted here"),
+    "empty": _("there is nothing here"),
+    "string_type": _("text is wanted"),
+    "list_type": _("a list [..., ...] is wanted"),
+    "dict_type": KEYS_WANTED,
+    "model_type": KEYS_WANTED,
+    "model_attributes_type": KEYS_WANTED,
+}
+
+
+def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part: Path = ()) -> ProblemError:
+    """The first mistake in the shape of a file, by its place; model: the shape of what stands at the path `part`."""
+    meant: list[tuple[str, ProblemError]] = []
+    others: list[tuple[str, ProblemError]] = []
+    for kind, loc, context in _flat(error, part):
+        path, value, fits = _into(tree.data, loc, kind)
+        inside = path[: len(part)] == part and len(path) > len(part)
+        fields = _fields(model, path[len(part) :]) if inside else _fields(schema.File, path)
+        refusal = _refusal(kind, path, value, context, fields, decimal_comma_hint(tree, path))
+        (meant if fits else others).append((kind, refusal))
+    refusals = meant or others
+    misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
+    # a key that stands there misspelt is not missing
+    located = [r.located(tree.file, tree) for kind, r in refusals if kind != "missing" or r.path not in misspelt]
+    return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
+
+
+def _flat(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dict[str, Any]]]:
+    for item in error.errors():
+        inner = item.get("ctx", {}).get("error")
+        if isinstance(inner, ValidationError):
+            yield from _flat(inner, (*prefix, *item["loc"]))
+        else:
+            yield item["type"], (*prefix, *item["loc"]), {**item.get("ctx", {}), "msg": item["msg"]}
+
+
+def _into(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
+    """The path into the data, the value there, and whether it is of the kind of the unions' branches on the way."""
+    path: list[str | int] = []
+    fits = True
+    step: Any
+    for number, step in enumerate(loc, 1):
+        if step in data if isinstance(data, dict) else isinstance(data, list) and isinstance(step, int):
+            path.append(step)
+            data = data[step]
+        elif kind == "missing" and number == len(loc):
+            path.append(step)
+        else:  # the name of a union's branch
+            fits = fits and isinstance(data, list) == str(step).startswith("list")
+    return tuple(path), data, fits
+
+
+def _fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
+    """The keys that may stand where the path ends, and what its last key is known for; an item counts as its list."""
+    while path and isinstance(path[-1], int):
+        path = path[:-1]
+    named = False  # whether the next key is one of the user's own names
+    for step in path[:-1]:
+        if isinstance(step, int) or here is None or named:
+            named = False
+            continue
+        field = here.model_fields.get(step)
+        here = None if field is None else _inside([field.annotation])
+        named = field is not None and get_origin(field.annotation) is dict
+    known = {field.alias or name: field for name, field in here.model_fields.items()} if here else {}
+    return known, known.get(str(path[-1])) if path else None
+
+
+def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
+    """The model among the parts of an annotation."""
+    for part in parts:
+        found = part if isinstance(part, type) and issubclass(part, BaseModel) else _inside(get_args(part))
+        if found:
+            return found
+    return None
+
+
+def _refusal(
+    kind: str, path: Path, value: Any, context: dict[str, Any], fields: tuple[dict[str, FieldInfo], FieldInfo | None],
+    hint: str | None,
+) -> ProblemError:  # fmt: skip
+    known, field = fields
+    described = field.description if field else None
+    if kind == "extra_forbidden":
+        key = str(path[-1])
+        return ProblemError(
+            _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=nearest(key, known), key=True
+        )
+    if kind == "missing":
+        return ProblemError(_("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=described)
+    if kind == "literal_error":
+        words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
+        return ProblemError(
+            _("this word is not known here"), path=path, found=quote(value),
+            allowed=described if described and "[" in described else words,  # a list may stand here too
+            near=nearest(str(value), words.split(", ")),
+        )  # fmt: skip
+    if kind == "too_short" and context["min_length"] == 1:
+        kind = "empty"
+    message = WORDS.get("int" if kind.startswith("int_") else kind, "{msg}").format(**context)
+    return ProblemError(message, path=path, found=quote(value), allowed=hint or described)

@@ -1,0 +1,191 @@
+"""Candidates of an optimal synthesis: variants of a file's linkage, evaluated a whole generation at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import LinkageError
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import Sketch
+from tmm_cli.synthesis.optimal.checks import check, first_of, one_sense
+from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Over
+from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
+from tmm_cli.synthesis.optimal.task import Constraint, Task, near
+from tmm_cli.variants.one_by_one import OneByOne, variants_of
+from tmm_cli.variants.taped import Taped
+from tmm_cli.variants.variant import Places, alike, sketch_of
+from tmm_cli.vectors import Real
+
+ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
+EACH = 24  # positions of the search in each turn of a cycle of many, at least
+SCAN, SCAN_EACH = 720, 240  # places where peaks are looked for before the polish; in each turn of many, at least
+BLOCK = 125  # candidates at once
+POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
+GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
+FEW, FEW_GENERATIONS = 8, 15  # a parameter, where candidates are moved one by one, which takes 5 to 100 ms each
+FEWEST = 8  # candidates that evolve
+NONE = 1e6  # violation where nothing can be told
+LOST = 10.0  # violation of what cannot be assembled, above all others
+
+
+class Candidates:
+    """Of a task; x (variants, n) are shares of the ranges, 0..1. The first constraint is that all is assembled.
+
+    Raises Infeasible.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self.low, self.high = (np.array([getattr(p, end) for p in task.parameters]) for end in ("low", "high"))
+        self.constraints = (Constraint(Assembles(), least=ROOM), *task.constraints)
+        self.quantities = (task.objective, *(constraint.quantity for constraint in self.constraints))
+        self.first = first_of(task)
+        check(task, self.first)
+        self.variant = task.make(self.first)
+        self.linkage = self.variant.linkage
+        self.groups = mobile(self.linkage).solved
+        self._program()
+        self._places()
+
+    def _program(self) -> None:
+        """What gives all quantities of candidates at places of the driver."""
+        self.program: Taped | OneByOne = variants_of(
+            self.task.make, self.first, self.outputs, forces=any(quantity.forces for quantity in self.quantities),
+            one_sense=one_sense(self.task, self.first),
+        )  # fmt: skip
+        self.taped = isinstance(self.program, Taped)
+        self.coarse = self.program.without(CLOSELY)
+        kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
+        self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
+
+    def _places(self) -> None:
+        """Where the driver goes, and at which of its places candidates are looked at in the search."""
+        ranges = self.program.driver_range(np.array([self.first]))
+        self.closed, self.cycle = ranges.closed, float(ranges.span[0, 0])
+        self.ends = float(ranges.low[0, 0]), float(ranges.low[0, 0] + ranges.span[0, 0])
+        self.turns = max(1, round(self.cycle / (2 * np.pi))) if self.closed else 1
+        self.count, self.scan = max(self.task.positions, EACH * self.turns), max(SCAN, SCAN_EACH * self.turns)
+        rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in self.linkage.loads)
+        self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
+        self.overs = tuple(
+            Over(
+                self.linkage, not quantity.slides(self.linkage, self.groups),
+                self.closed and not (self.jumps and quantity.forces), self.cycle, rough, self.taped,
+            )
+            for quantity in self.quantities
+        )  # fmt: skip
+        own = self.own_places(self.count + self.jumps)
+        self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
+        wanted = np.concatenate([np.zeros(0), *(np.array(quantity.places) for quantity in self.quantities)])
+        self.places = Places(self.over(self.count), self.with_sketch(wanted))
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
+        return {
+            f"{n}.{name}": value for n, quantity in enumerate(self.quantities)
+            for name, value in quantity.outputs(motion, reactions).items()
+        }  # fmt: skip
+
+    @property
+    def population(self) -> int:
+        each, most = (POPULATION, LEAST_POPULATION) if self.taped else (FEW, 2 * FEW)
+        return max(FEWEST, self.task.population or max(most, each * len(self.low)))
+
+    @property
+    def generations(self) -> int:
+        if not self.taped:
+            return self.task.generations or FEW_GENERATIONS * (1 + len(self.low))
+        return self.task.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
+
+    def numbers(self, x: Real) -> Real:
+        """SI numbers of shares of the ranges."""
+        return near(self.low + x * (self.high - self.low), self.task.parameters)
+
+    def shares(self, numbers: Real) -> Real:
+        """Shares of the ranges at which numbers lie."""
+        found: Real = (numbers - self.low) / (self.high - self.low)
+        return found
+
+    def over(self, count: int) -> Real:
+        """Shares of the driver range: of a closed one without its end, but after it where forces are others there."""
+        shares = np.arange(count) / (count if self.closed else count - 1)
+        return np.append(shares, 1.0) if self.jumps else shares
+
+    def along(self, n: int, count: int) -> slice:
+        """Which of these shares count for a quantity."""
+        return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
+
+    def own_places(self, count: int) -> list[slice | None]:
+        """Where a quantity has places of its own, after so many shares."""
+        ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
+        return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
+
+    def with_sketch(self, driver: Real) -> Real:
+        """Places of the driver, and that of the sketch, where it counts."""
+        return np.append(driver, self.linkage.sketch.at) if self.single else driver
+
+    def run(self, x: Real, places: Places) -> Mapping[str, Real]:
+        """All outputs."""
+        return self.program(self.numbers(x), places)
+
+    def evaluate(self, x: Real) -> tuple[Real, Real]:
+        """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // BLOCK))]
+        return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
+
+    def _evaluate(self, x: Real) -> tuple[Real, Real]:
+        with np.errstate(all="ignore"):
+            values = self.values(x)
+            both = zip(self.constraints, values[1:], strict=True)
+            violation = sum(constraint.missed(value) for constraint, value in both)
+            lost = self.constraints[0].missed(values[1])
+            violation = np.where(lost > 0, LOST + 10 * lost, violation)
+            violation = np.where(np.isfinite(violation), violation, NONE)
+            wanted = self.wanted(values[0])
+            return np.where(np.isnan(wanted), np.inf, wanted), violation
+
+    def values(self, x: Real) -> list[Real]:
+        """Objective and constrained quantities, coarsely."""
+        found = self.coarse(self.numbers(x), self.places)
+        values = [
+            quantity.coarse(reader(found, n, self.exact[n]), self.overs[n])
+            for n, quantity in enumerate(self.quantities)
+        ]  # fmt: skip
+        values[1] = np.where(self.turned_over(found, self.count), -1.0, values[1])
+        return values
+
+    def turned_over(self, found: Mapping[str, Real], count: int) -> Real:
+        """Which variants pass a dead position that they do not stop at, (variants,), from so many shares."""
+        over: Any = False
+        for name in self.single:
+            det = np.hstack([found[name][:, :count], found[name][:, -1:]])
+            over = over | (np.min(det, axis=1) * np.max(det, axis=1) <= 0)
+        return np.asarray(over)
+
+    def wanted(self, value: Real) -> Real:
+        """What is made least: of a margin its opposite, of a target the distance from it."""
+        if self.task.target is not None:
+            return np.abs(value - self.task.target) / (abs(self.task.target) or 1.0)
+        return -value if self.task.objective.lowest else value
+
+    def sketch(self, x: Real) -> Sketch | None:
+        """How a candidate looks at the place of the sketch, where the file's own sketch does not show its assembly."""
+        numbers = self.numbers(x)
+        own = self.program.sketch(numbers)
+        try:
+            linkage = self.task.make(numbers.tolist()).linkage
+            shown = sketch_of(linkage, assemble(linkage, mobile(linkage)))
+        except LinkageError:
+            return own
+        return None if alike(own, shown) else own
+
+
+def reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
+    """Outputs of a quantity by name, at some of the places."""
+    return lambda name: found[f"{n}.{name}"][:, where]

@@ -1,0 +1,227 @@
+"""Strokes of the output, which end where its slope changes its sign: their size, times, mean speed."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import output_place, output_slope
+from tmm_cli.linkage import Linkage
+from tmm_cli.synthesis import measures
+from tmm_cli.synthesis.mean_ratio import ratio
+from tmm_cli.synthesis.measures import Ends
+from tmm_cli.synthesis.optimal.peaks import highest, peak, zero
+from tmm_cli.synthesis.optimal.quantities.base import Curve, Goal, Over, Read, Windows
+from tmm_cli.vectors import Real
+
+FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may belong to two strokes
+
+
+class OfStrokes(Goal):
+    """A quantity of the output's strokes. A window is about an end of a stroke, of the angle there, followed."""
+
+    of_a_cycle: ClassVar[bool] = False
+
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
+        if self.output(linkage, groups) is None:
+            return (
+                _("no link is the output, whose stroke this is"),
+                _("output: a link that slides or swings on the frame; or another quantity"),
+            )
+        if self.of_a_cycle and not closed:
+            return (
+                _("this belongs to a driver that turns on and on, and this one goes between two ends"),
+                _("another quantity, or a crank over its cycle"),
+            )
+        return None
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        output = self.output(motion.linkage, tuple(kernel.group for kernel in motion.kernels))
+        assert output is not None
+        return {"slope": output_slope(motion, output), "run": output_place(motion, output)}
+
+    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+        slope = read("slope")[0]
+        moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
+        after = np.roll(moves, -1) if over.closed else np.append(moves[1:], moves[-1:])
+        turns = [int(k) for k in moves[slope[moves] * slope[after] < 0]]
+        turns = turns if over.closed else [0, *turns, len(slope) - 1]
+        if not over.swings:
+            return [(0.0, k) for k in turns]
+        followed = np.unwrap(read("run")[0])
+        return [(float(followed[k]), k) for k in turns]
+
+    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+        return self.between(parts, over, step) if parts else exact("slope")[:, :1] * np.nan
+
+    @abstractmethod
+    def between(self, parts: Windows, over: Over, step: float) -> Real:
+        """Its pieces from windows about the ends of all strokes, (variants, pieces)."""
+
+
+class Stroke(OfStrokes):
+    """Metres, or radians; the longest of several."""
+
+    of, text = "stroke", _("stroke of the output")
+
+    def kind(self, linkage: Linkage, groups: Any) -> str:
+        return "length" if self.slides(linkage, groups) else "angle"
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        travel = travel_of(read, over)
+        if over.closed and np.any(ends_of(read("slope")) > FOUR):
+            return longest(read("run"), travel, turns=over.swings)
+        return travel
+
+    def between(self, parts: Windows, over: Over, step: float) -> Real:
+        runs = runs_of(parts, over)
+        if over.closed and len(parts) > FOUR:
+            return strokes_of(runs).T
+        tops, lows = ([peak(side * run) for run in runs] for side in (1, -1))
+        travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
+        return travel[:, None]
+
+    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+        several = over.closed and ends_of(curve("slope", scan)[None])[0] > FOUR
+        if over.swings or not over.taped or several or np.isnan(value):
+            return value
+        top = highest(lambda shares: curve("run", shares), scan, closed=over.closed)
+        return top + highest(lambda shares: -curve("run", shares), scan, closed=over.closed)
+
+    def measured(self, results: Results, ends: Ends) -> float:
+        return measures.stroke(results, ends)
+
+
+class K(OfStrokes):
+    """Coefficient of change of mean speed, the longer stroke over the shorter in time: 1 and more."""
+
+    of, text, dimension, of_a_cycle = "k", _("k, the longer stroke over the shorter"), "number", True
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        return ratio_of(forward_share(read("slope")))
+
+    def between(self, parts: Windows, over: Over, step: float) -> Real:
+        forward: Any = 0.0
+        for __, start, read in parts:
+            slope = read("slope")
+            forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
+        return ratio_of(np.mod(forward, 1.0))[:, None]
+
+    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+        return ratio(lambda shares: curve("slope", shares), scan)
+
+    def measured(self, results: Results, ends: Ends) -> float:
+        return measures.slower_ratio(results)
+
+    def open(self, results: Results) -> float:
+        return measures.ratio_open(results)
+
+
+class Speed(OfStrokes):
+    """Mean speed of a sliding output over a cycle, m/s; of an accelerated crank over its first from position 0 on."""
+
+    of, text, dimension, of_a_cycle = "speed", _("mean speed of the output"), "speed", True
+
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
+        if not self.slides(linkage, groups) and self.output(linkage, groups) is not None:
+            return (
+                _("the output swings: it has no mean speed in metres a second"),
+                _("an output that slides on the frame, or another quantity"),
+            )
+        return super().unfit(linkage, groups, closed=closed)
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        found, driver = super().outputs(motion, reactions), motion.linkage.driver
+        nothing = 0.0 * found["slope"]
+        return {**found, "rate": driver.rate + nothing, "gain": driver.acceleration + nothing}
+
+    def coarse(self, read: Read, over: Over) -> Real:
+        run = read("run")
+        found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * mean_rate(read, over) / over.cycle
+        return found
+
+    def between(self, parts: Windows, over: Over, step: float) -> Real:
+        found: Real = np.sum(strokes_of(runs_of(parts, over)), axis=0) * mean_rate(parts[0][2], over) / over.cycle
+        return found[:, None]
+
+    def measured(self, results: Results, ends: Ends) -> float:
+        return measures.mean_speed(results)
+
+
+def travel_of(read: Read, over: Over) -> Real:
+    """How far the run goes, coarsely, (variants,); nan where the output turns on and on."""
+    run = read("run")
+    travel: Real = np.max(run, axis=1) - np.min(run, axis=1)
+    if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi, and nearer than pi to the next ones
+        slope = read("slope")[past]
+        turns = np.all(slope > 0, axis=1) | np.all(slope < 0, axis=1)  # such an output has no strokes
+        travel[past] = np.where(turns & over.closed, np.nan, np.ptp(np.unwrap(run[past], axis=1), axis=1))
+    return travel
+
+
+def longest(run: Real, travel: Real, *, turns: bool) -> Real:
+    """The longest stroke of a closed curve that goes to and fro several times, (variants,); travel: its whole range.
+
+    turns: it is an angle that is told within -pi..pi.
+    """
+    step = np.diff(run, axis=1, append=run[:, :1])
+    step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
+    stroke, best = np.zeros(len(run)), np.zeros(len(run))
+    for k in range(2 * run.shape[1]):  # twice round, for the stroke that goes on over the end
+        one = step[:, k % run.shape[1]]
+        stroke = np.where(stroke * one >= 0, stroke + one, one)
+        best = np.maximum(best, np.abs(stroke))
+    return np.minimum(best, travel)
+
+
+def ends_of(slope: Real) -> Real:
+    """How often a curve turns back in a cycle, (variants,); what rests may count twice."""
+    sign = np.sign(slope)
+    found: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
+    return found
+
+
+def runs_of(parts: Windows, over: Over) -> list[Real]:
+    """The run in each window, followed."""
+    runs = []
+    for angle, __, read in parts:
+        run = read("run")
+        runs.append(run - 2 * np.pi * np.round((run - angle) / (2 * np.pi)) if over.swings else run)
+    return runs
+
+
+def strokes_of(runs: list[Real]) -> Real:
+    """Lengths of the strokes between windows, (strokes, variants)."""
+    ends = [np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs]
+    return np.abs(np.diff([*ends, ends[0]], axis=0))
+
+
+def forward_share(slope: Real) -> Real:
+    """Share of the time it moves in which a curve rises, from its slope at equal steps; in a dwell that is zero."""
+    after = np.roll(slope, -1, axis=1)
+    up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
+    with np.errstate(all="ignore"):
+        rests = up + down == 0
+        found: Real = np.sum(np.where(rests, 0.0, up / (up + down)), axis=1) / np.sum(~rests, axis=1)
+    return found
+
+
+def ratio_of(share: Real) -> Real:
+    """k from the share of one of two strokes: the longer over the shorter."""
+    with np.errstate(all="ignore"):
+        found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
+    return found
+
+
+def mean_rate(read: Read, over: Over) -> Real:
+    """The crank's mean speed in the first cycle from position 0 on: half the sum of those at its ends, (variants,)."""
+    rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
+    found: Real = (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2
+    return found

@@ -1,0 +1,68 @@
+"""Transmission of motion: whether it is assembled in all positions, how far from a dead one, under which pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import reduce
+from typing import Any, Final
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.pressure import followers, sides
+from tmm_cli.synthesis import measures
+from tmm_cli.synthesis.measures import Ends
+from tmm_cli.synthesis.optimal.quantities.base import Peak
+
+SIDE: Final = "side"  # outputs whose sign tells on which side of a dead position a group is that has one assembly only
+
+
+class Assembles(Peak):
+    """How far from its end the assembly of a group is, in sizes of the group; below zero it cannot be assembled.
+
+    Every candidate must have it in all positions.
+    """
+
+    of, text, dimension, lowest = "assembles", _("driver goes its whole way (1: yes)"), "number", True
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        both = list(zip(motion.kernels, motion.placements, strict=True))
+        single = [at.det for kernel, at in both if getattr(kernel, "assemblies", 0) == 1]
+        return {f"{SIDE}{k}": det for k, det in enumerate(single)} | {
+            "y": reduce(np.maximum, [at.residual / kernel.size for kernel, at in both])
+        }
+
+
+class Margin(Peak):
+    """Least distance of a group from a dead position, 1 at best."""
+
+    of, text, dimension, lowest = "margin", _("least distance from a dead position"), "number", True
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        return {"y": -reduce(np.minimum, [at.margin for at in motion.placements])}
+
+
+class Pressure(Peak):
+    """Largest pressure angle on the output, rad; its curve is the tangent."""
+
+    of, text, dimension = "pressure", _("largest pressure angle"), "angle"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        groups = tuple(kernel.group for kernel in motion.kernels)
+        output = self.output(motion.linkage, groups)
+        outer = [(n, lead) for n, group in enumerate(groups) for lead in followers(group)]
+        outer = [x for x in outer if x[1][0] == output] or outer
+        tangents = []
+        for n, lead in outer:
+            sine, cosine = sides(motion, motion.kernels[n], motion.placements[n], lead)
+            tangents.append(sine / cosine)
+        return {"y": reduce(np.maximum, tangents)}
+
+    def levelled(self, y: Any) -> Any:
+        return np.arctan(y)
+
+    def measured(self, results: Results, ends: Ends) -> float:
+        return measures.pressure(results, ends)
