@@ -1,15 +1,13 @@
 """What the stages lean on: one search for roots, one map over records, registers that know all that a file may ask."""
 
 from dataclasses import dataclass, field
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tmm_cli import load
-from tmm_cli.forces.loads import WHEN
 from tmm_cli.groups import CLOSED
-from tmm_cli.problem import schema
 from tmm_cli.roots import bisect, roots
 from tmm_cli.structure.assur import analyse
 from tmm_cli.vectors import leaves, mapped
@@ -45,10 +43,6 @@ def test_a_map_over_records_meets_every_leaf_at_its_path():
     assert mapped(lambda path, value: value + 1, record, skip=("kept",)) == Part((2.0, Part((3.0,))), {"a": 4.0}, 4.0)
     sums = mapped(lambda path, one, other: one + other, record, record)
     assert dict(leaves(sums)) == {path: 2 * value for path, value in leaves(record)}
-
-
-def test_every_time_at_which_a_load_may_act_is_known_to_the_forces():
-    assert set(WHEN) == set(get_args(schema.Load.model_fields["when"].annotation))
 
 
 @pytest.mark.parametrize("name", ["shaper", "cylinder", "excavator", "press-class-iii"])

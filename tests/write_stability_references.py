@@ -123,7 +123,7 @@ class Fold(Closely):
     def found(self, q):
         """The fold that the way ends in near q: its places, driver, tangent, how the driver bends, the coordinate."""
         X = mp.matrix([mp.mpf(float(x)) for x in self.walked(q)])
-        J, driven = self.jacobian(X, [mp.mpf(q)]), mp.matrix(self.size, 1)
+        J, driven = self.jacobian(X), mp.matrix(self.size, 1)
         driven[self.size - 1] = 1
         V = mp.lu_solve(J, driven)
         k = max((i + 2 for name, i in self.at_row.items() if name != "1"), key=lambda i: abs(V[i]))
