@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.kinematics.motion import move
-from tmm_cli.kinematics.strokes import Strokes, output_run
+from tmm_cli.kinematics.strokes import Strokes, output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.tolerances import ROUNDOFF
@@ -71,11 +72,12 @@ def judged(
     values = of(results)
     judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
     found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
+    chunk = max(CHUNK // (1 + len(lengths(results.linkage))), 1)
     near = near_dead(motion) if motion.where is None else motion.where
     for these, close in ((~near & motion.placed, False), (near, True)):
         places = np.flatnonzero(these)
-        for start in range(0, len(places), CHUNK):
-            chosen = places[start : start + CHUNK]
+        for start in range(0, len(places), chunk):
+            chosen = places[start : start + chunk]
             found[:, :, chosen] = judge.at(chosen, close, mu)
     bound, share, paper = (dict(zip(values, part, strict=True)) for part in found)
     return Digits(bound, share, paper, mu)
@@ -141,27 +143,32 @@ class _Judge:
         base = wide if near else at(results, results.linkage, motion.q[chosen], results.start, chosen)
         rows = self.rows(self.of(base))
         values = np.stack([value[..., chosen] for value in self.values.values()])
-        share, paper, by_q = self.responses(base, first, near, lambda other: self.gap(self.rows(self.of(other)), rows))
+        share, paper, by_q = self.responses(base, rows, first, near)
         bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
         bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
-    def responses(self, base: Results, first: float, near: bool, gap: Callable[[Results], Real]) -> tuple[Real, ...]:
-        """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place."""
+    def responses(self, base: Results, rows: Real, first: float, near: bool) -> tuple[Real, ...]:
+        """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place.
+
+        All in one run: its positions are those of base once for each number that is changed there, the place first.
+        """
         assert base.motion is not None
-        step = _step(base, near)
-        data = lengths(self.results.linkage)
+        step, count, data = _step(base, near), len(base.motion.q), lengths(self.results.linkage)
         sizes: dict[str, float] = {}
         for length in data:
             sizes[length.link] = max(sizes.get(length.link, 0.0), abs(length.value))
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
-        by_q = rounded(gap(at(base, base.linkage, base.motion.q + step * reach, first))) / (step * reach)
-        share, paper = np.zeros(np.shape(by_q)), np.zeros(np.shape(by_q))
-        for length in data:
-            by = step * sizes[length.link]
-            slopes = rounded(gap(at(base, changed(base.linkage, length, by), base.motion.q, first))) / by
-            share, paper = share + slopes * (SHARE * abs(length.value)), paper + slopes * PAPER
-        return share, paper, by_q
+        by = step * np.array([reach, *(sizes[length.link] for length in data)])
+        there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
+        linkage = base.linkage
+        for k, length in enumerate(data, 1):
+            linkage = changed(linkage, length, np.where(number == k, by[k], 0.0))
+        other = at(base, linkage, base.motion.q[there] + np.where(number == 0, by[0], 0.0), first, there)
+        gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
+        slopes = gaps / by[:, None]
+        values = np.array([abs(length.value) for length in data])
+        return SHARE * np.tensordot(slopes[:, 1:], values, (1, 0)), PAPER * slopes[:, 1:].sum(1), slopes[:, 0]
 
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""
@@ -213,6 +220,8 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
 
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
     """Strokes whose output begins where it really is there, which loads tabulated against it are counted from."""
-    places = np.array([s.start for s in strokes.strokes])
-    lows = output_run(move(linkage, kernels, places, DriverMotion(0.0, 1.0, 0.0, 1)), strokes.link)[0]
+    still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
+    lows: list[Any] = [
+        output_place(move(linkage, kernels, still + s.start, law, 0), strokes.link) for s in strokes.strokes
+    ]
     return replace(strokes, strokes=tuple(replace(s, low=x) for s, x in zip(strokes.strokes, lows, strict=True)))

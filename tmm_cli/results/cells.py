@@ -17,6 +17,7 @@ from tmm_cli.vectors import Real
 
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
 COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name != "synthesis")  # a search has its own
+SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]
 
 
@@ -48,7 +49,7 @@ def all_numbers(
 
 def cells(results: Results) -> Cells:
     """The numbers at positions."""
-    return all_numbers(results)[0]
+    return all_numbers(results, set(COMPUTED) - SEARCHED)[0]
 
 
 def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
