@@ -139,13 +139,14 @@ class _Reader:
                 near=nearest(given.on, [*guides, *(n for n in self.links if n != runner)]),
             )  # fmt: skip
         self.values.different((runner, carrier), (*part.path, "on"))
-        through, angle = self.guide(line, carrier)
+        through, angle, ends = self.guide(line, carrier)
+        bounded = carrier != FRAME and not (given.unbounded or line.given.unbounded)
         turned = part.number("turned", ANGLE)
         name = name if name not in taken else f"{name}.{runner}"
-        return Slide(name, carrier, runner, through, angle, points[point], turned, point)
+        return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
 
-    def guide(self, part: Part, carrier: str) -> tuple[complex, float]:
-        """A point on a guide and its direction, in the axes of the link that carries it."""
+    def guide(self, part: Part, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
+        """A point on a guide, its direction, in the axes of the link that carries it, and the points it is along."""
         given: schema.Guide | schema.Slide = part.given
         points = self.links[carrier].points
         along, placed = given.along, given.through is not None or given.angle is not None
@@ -153,8 +154,9 @@ class _Reader:
             along = "-".join(points)
         if along is not None and placed:
             raise part.refusal("along", _("along says through and angle already"))
+        ends = None
         if along is not None:
-            first, second = self.values.two_points(along, points, (*part.path, "along"))
+            first, second = ends = self.values.two_points(along, points, (*part.path, "along"))
             through, angle = points[first], phase(points[second] - points[first])
         elif given.through is not None:
             through = part.place("through", points, carrier)
@@ -162,7 +164,7 @@ class _Reader:
         else:
             allowed = _("along: CD, or through: [x, y] and angle")
             raise part.refusal("through", _("where does this guide run?"), allowed=allowed)
-        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle
+        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle, ends
 
 
 def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:

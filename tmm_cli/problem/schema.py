@@ -33,6 +33,7 @@ class Guide(Strict):
     angle: Value | None = Field(default=None, description="direction, from the x axis of that link")
     along: Name | None = Field(default=None, description="instead of through and angle: two points, CD")
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+    unbounded: bool = Field(default=False, description="on a moving link: it goes on beyond the points of `along`")
 
 
 class Slide(Strict):
@@ -45,6 +46,7 @@ class Slide(Strict):
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
     point: Name | None = Field(default=None, description="the point of this link that runs on the guide; its first")
     turned: Value = Field(default=0, description="angle of this link's axes from those of the link it slides on")
+    unbounded: bool = Field(default=False, description="the guide goes on beyond the points of `along`")
 
 
 class Link(Strict):

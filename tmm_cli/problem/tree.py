@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import Any
 
 Path = tuple[str | int, ...]
@@ -31,6 +32,11 @@ class Tree:
     marks: Mapping[Path, Mark]
     key_marks: Mapping[Path, Mark]
     commas: Mapping[Path, str]
+
+    @property
+    def name(self) -> str:
+        """That of the problem: its file's without the ending; what of it is no text is lost."""
+        return PurePath(self.file).stem.encode(errors="replace").decode()
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:
         """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""

@@ -170,7 +170,7 @@ def solve(task: Task) -> Outcome:
     notes = () if task.k > 1 else (_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
     return Outcome(
         _given(task), _found(task, f), source, tuple(demands),
-        (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),),
+        (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),), output="swing",
     )  # fmt: skip
 
 
