@@ -16,6 +16,7 @@ from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, 
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
 from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, Field, Shape, contents, list_of, properties, record
 from tmm_cli.results.text import plain
+from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.redundancy import space
 from tmm_cli.synthesis.check import measured_on
@@ -37,7 +38,7 @@ FIRST = (
 LAST = (
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
-    Field("warnings", NAMES, "sentences", warnings),
+    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
 LARGE = ("kinematics", "forces")
 
