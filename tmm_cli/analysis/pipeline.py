@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.groups.base import Kernel
     from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
     from tmm_cli.kinematics.pressure import Pressure
+    from tmm_cli.kinematics.slots import Excess
     from tmm_cli.kinematics.strokes import Strokes, Travel
 
 CYCLE = 720  # places over which losses are summed up
@@ -95,6 +96,10 @@ class Results:
     @property
     def travels(self) -> tuple[Travel, ...]:
         return () if self.of else self.mechanism.travels
+
+    @property
+    def slots(self) -> tuple[Excess, ...]:
+        return () if self.of else self.mechanism.slots
 
     @cached_property
     def pressure(self) -> tuple[Pressure, ...]:

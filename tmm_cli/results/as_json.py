@@ -14,7 +14,7 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
-from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, Field, Shape, contents, list_of, properties, record
+from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, TEXT, Field, Shape, contents, list_of, properties, record
 from tmm_cli.results.text import plain
 from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings
@@ -87,6 +87,7 @@ def schema() -> dict[str, Any]:
         Field("digits", digits, "how far the numbers of this file, which are float64 in full, are to be trusted: in "
               "their places and units"),
         *LAST,
+        Field("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
         Field("files", NAMES, "written beside this file"),
     )  # fmt: skip
     return {
