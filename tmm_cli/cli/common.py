@@ -95,7 +95,7 @@ def _refuse_one_name(files: Sequence[str]) -> None:
 
     first: dict[str, str] = {}
     for file in files:
-        other = first.setdefault(folder_name(Path(file).stem), file)
+        other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
         if Path(other).resolve() != Path(file).resolve():
             say(_("error: {first} and {second} have one name, and so one folder").format(first=other, second=file))
             raise typer.Exit(BAD_INPUT)

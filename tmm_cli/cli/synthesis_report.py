@@ -12,7 +12,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.files import Staged, folder_name
+from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
 from tmm_cli.results.terminal import show
 from tmm_cli.results.text import csv_text, json_bytes
@@ -38,7 +38,7 @@ def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
         from tmm_cli.draw.formats import files as drawings
         from tmm_cli.draw.synthesis import sheets
 
-        folder = out / folder_name(name)
+        folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
             for table in tables_of(found, measured, units, 15):
                 staged.write(f"{table.name}.csv", csv_text(table, units))

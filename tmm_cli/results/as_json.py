@@ -111,6 +111,7 @@ def schema() -> dict[str, Any]:
         Field("digits", digits, "how far the numbers of this file, which are float64 in full, are to be trusted: in "
               "their places and units"),
         *LAST,
+        Field("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
         Field("files", NAMES, "written beside this file"),
     )  # fmt: skip
     return {
