@@ -5,10 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Any
+from typing import Any, Self
 
 Path = tuple[str | int, ...]
 """Where a value stands in a file: keys as written (str) and list indices from 0 (int)."""
+
+
+class WrittenNumber(float):
+    """A number of a file, and the decimals that it was written with: a float keeps 16 of them."""
+
+    written: str
+
+    def __new__(cls, written: str) -> Self:
+        number = super().__new__(cls, written)
+        number.written = written
+        return number
+
+    def __repr__(self) -> str:
+        return self.written
 
 
 @dataclass(frozen=True)
