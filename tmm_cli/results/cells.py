@@ -16,13 +16,9 @@ from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
-<<<<<<< HEAD
-COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name != "synthesis")  # a search has its own
-SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
-=======
 APART = ("synthesis", "checks")  # a search has its own digits, and of checks the words count
 COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name not in APART)
->>>>>>> main
+SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]
 
 
