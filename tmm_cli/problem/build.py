@@ -113,9 +113,10 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         if getattr(shape.checks, key) is not None:
             angles[number], said[number] = checks.positive(key, ANGLE), True
     name = tree.name
+    first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
         name, shape.title or name, linkage, build_request(shape, first, values), values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), tree,
+        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed), tree,
     )  # fmt: skip
 
 
