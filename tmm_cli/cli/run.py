@@ -11,7 +11,7 @@ import typer
 from tmm_cli.cli.common import Digits, Files, Json, Position, each, say
 from tmm_cli.errors import _
 
-SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle")
+SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
 
 
 def run(
