@@ -91,7 +91,7 @@ def test_another_word_there_is_refused():
 
 @pytest.mark.parametrize("text, turns", [(KITE, 2), (LEVER, 2), (ISOSCELES, 1)])
 def test_other_linkages_with_change_points_move_without_a_jump(text, turns):
-    """A kite's driven link (Galloway) and a lever whose stone comes over its pivot go half a turn in one of the crank."""
+    """A kite (Galloway) and a lever whose stone comes over its pivot go half a turn in one of the crank."""
     results = solved(text)
     motion = everywhere(results, 1001)
     assert (results.driver_range.turns, results.driver_range.repeats) == (turns, True)

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 import numpy as np
 
 from tmm_cli.groups.branch_trace import BranchTrace
+from tmm_cli.groups.smooth_way import SmoothWay
 from tmm_cli.groups.state import (
     Accel,
     Accels,
@@ -28,7 +29,6 @@ from tmm_cli.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.groups.smooth_way import SmoothWay
 from tmm_cli.groups.unwrapped_angles import Winding
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair

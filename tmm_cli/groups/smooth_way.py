@@ -1,4 +1,4 @@
-"""On which side of its dead positions a group of two assemblies is, where it goes smoothly through exact change points."""
+"""Which sign the determinant of a group of two assemblies has, where it goes smoothly through exact change points."""
 
 from __future__ import annotations
 
