@@ -152,7 +152,7 @@ class Closed(Kernel):
     change points, beyond which it has the other sign.
     """
 
-    sign: int = field(default=1, kw_only=True)
+    sign: Any = field(default=1, kw_only=True)
     winding: Winding | None = field(default=None, kw_only=True)
     way: SmoothWay | None = field(default=None, kw_only=True)
 

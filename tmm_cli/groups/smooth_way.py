@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_cli.double_double import rounded
 from tmm_cli.vectors import Real
 
 
@@ -36,7 +37,7 @@ class SmoothWay:
 
     def _passed(self, q: Real) -> Real:
         """How many there are from the start to places q."""
-        within = np.asarray(q, float)
+        within = rounded(q)
         whole = np.zeros(np.shape(q)) if self.cycle is None else np.floor((within - self.start) / self.cycle)
         inside = within - whole * (self.cycle or 0.0)
         passed: Real = whole * len(self.places) + np.searchsorted(self.places, inside)
