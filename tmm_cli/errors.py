@@ -93,6 +93,17 @@ class MissingStrokesError(LinkageError):
         self.link, self.path = link, path
 
 
+class TableBeyondCycleError(LinkageError):
+    """A row of a load's table, given by its path in the file, that the crank never reaches.
+
+    argument: of the row (rad); cycle: the table may reach from 0 to here (rad).
+    """
+
+    def __init__(self, path: tuple[str | int, ...], argument: float, cycle: float) -> None:
+        super().__init__(".".join(map(str, path)))
+        self.path, self.argument, self.cycle = path, argument, cycle
+
+
 class NotOnFrameError(LinkageError):
     """A link that cannot drive from the frame; allowed: those that can."""
 

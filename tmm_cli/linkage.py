@@ -46,7 +46,8 @@ class Slide:
     """A sliding pair: `point` of the runner moves on a straight guide of the carrier.
 
     The guide passes through `through` in the `direction` (rad), both in the carrier's axes. The runner's axes are
-    turned by `turned` (rad) from the carrier's, always. `at` is the running point in the runner's axes.
+    turned by `turned` (rad) from the carrier's, always. `at` is the running point in the runner's axes. ends: the
+    points of the carrier between which the guide is, the first one where its run is zero; None: it goes on.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Slide:
     at: complex
     turned: float = 0.0
     point: str = ""
+    ends: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:  # what moves the linkage is imported when it is moved
     from tmm_cli.groups.base import Kernel
     from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
     from tmm_cli.kinematics.pressure import Pressure
+    from tmm_cli.kinematics.slots import Excess
     from tmm_cli.kinematics.strokes import Strokes, Travel
     from tmm_cli.vectors import Real
 
@@ -154,6 +155,13 @@ class Mechanism:
         from tmm_cli.kinematics.pressure import find_pressure
 
         return find_pressure(self.linkage, self.kernels, self.driver_range, self.inputs.pressure_limits)
+
+    @cached_property
+    def slots(self) -> tuple[Excess, ...]:
+        """How stones come to the ends of their guides, and beyond."""
+        from tmm_cli.kinematics.slots import find_slots
+
+        return find_slots(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
     def roles(self) -> dict[str, str]:

@@ -15,11 +15,12 @@ import numpy as np
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.errors import MissingStrokesError, UnknownPositionError
+from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
+from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
@@ -32,6 +33,7 @@ if TYPE_CHECKING:  # what only motion or forces need is imported when they are a
     from tmm_cli.groups.base import Kernel
     from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
     from tmm_cli.kinematics.pressure import Pressure
+    from tmm_cli.kinematics.slots import Excess
     from tmm_cli.kinematics.strokes import Strokes, Travel
 
 CYCLE = 720  # places over which losses are summed up
@@ -95,6 +97,10 @@ class Results:
     def travels(self) -> tuple[Travel, ...]:
         return () if self.of else self.mechanism.travels
 
+    @property
+    def slots(self) -> tuple[Excess, ...]:
+        return () if self.of else self.mechanism.slots
+
     @cached_property
     def pressure(self) -> tuple[Pressure, ...]:
         """Pressure angles of the driven links: the largest, and those at the positions."""
@@ -156,6 +162,7 @@ def solve(
         check(inputs.linkage, of)
         kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
     _need_strokes(results)
+    _need_rows(results)
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(results.asked):
@@ -258,3 +265,16 @@ def _need_strokes(results: Results) -> None:
             raise MissingStrokesError(link, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":
             raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))
+
+
+def _need_rows(results: Results) -> None:
+    """Refuse rows of a load's table that the crank never comes to, rather than quietly cut the table."""
+    for load in results.linkage.loads:
+        if load.table is None or load.table.against == "stroke":
+            continue
+        strokes = results.strokes if load.table.against == "crank turn" else None
+        cycle = 2 * np.pi if strokes is None else strokes.cycle
+        for row, argument in enumerate(load.table.arguments):
+            if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
+                key = "force" if load.force else "moment"
+                raise TableBeyondCycleError(("loads", load.name, key, "table", row, 0), float(argument), cycle)

@@ -17,6 +17,7 @@ from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group, Structure
 from tmm_cli.structure.cycle import turns_of_cycle
 
+BLAMED = 0.25  # a sketched point this share of the size from its place, a link half a radian: it was sketched wrong
 FOLLOWED = 720  # places a turn at which angles are followed through
 
 
@@ -35,7 +36,11 @@ def assemble(
     chosen: list[Kernel] = []
     for group in structure.solved if groups is None else groups:
         other = like[len(chosen)] if like else None
-        kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)
+        try:
+            kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)
+        except (AssemblyError, AmbiguousSketchError):
+            check_fit(linkage, poses, BLAMED)  # a group before it, sketched wrong, may be what keeps it from closing
+            raise
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)
     check_fit(linkage, poses)

@@ -75,18 +75,18 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
     return found
 
 
-def check_fit(linkage: Linkage, poses: Mapping[str, Pose]) -> None:
+def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = FITS) -> None:
     """Every sketched point and angle, whether it decided something or not, lies about where it was drawn.
 
     Raises SketchMismatchError.
     """
     for point, off in sketch_deviations(linkage, poses).items():
-        if off > FITS:
+        if off > fits:
             owner = linkage.owner(point)
             found = complex(poses[owner].at(linkage.local(owner, point))[0])
             raise SketchMismatchError(point, linkage.sketch.points[point], found)
     for link, angle in linkage.sketch.angles.items():
         if link in poses:
             turned = float(np.angle(poses[link].z)[0])
-            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * FITS:  # rad
+            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * fits:  # rad
                 raise SketchMismatchError(link, angle, turned)

@@ -7,11 +7,13 @@ import os
 import sys
 from collections.abc import Iterable
 from importlib import import_module
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from tmm_cli import __version__
+from tmm_cli.cli.common import BAD_INPUT, OK, say
+from tmm_cli.errors import _
 
 COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis")
 GROUPS = ("bench",)  # commands that have commands of their own, in `app`
@@ -54,12 +56,39 @@ def main() -> None:
     gc.set_threshold(100_000)  # a short run makes little rubbish, and importing makes much that only looks like it
     # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(encoding="utf-8", errors="replace")
+    _open_streams()
     asked = [name for name in sys.argv[1:2] if name in (*COMMANDS, *GROUPS)]
     try:
         application(asked or (*COMMANDS, *GROUPS))()
-    except BrokenPipeError:  # `tmm ... | head` is not an error
-        sys.stderr.close()
-        sys.exit(0)
+    except SystemExit as ended:
+        left = isinstance(ended.__context__, BrokenPipeError)  # `tmm ... | head` is not an error
+        sys.exit(_flushed(OK if left else ended.code))
+    except OSError as error:
+        say(_told(error))
+        sys.exit(_flushed(BAD_INPUT))
+
+
+def _open_streams() -> None:
+    """A stream that is closed swallows all; one whose encoding lacks a character (cp866) gets a question mark."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(encoding=None if os.environ.get("PYTHONIOENCODING") else "utf-8", errors="replace")
+
+
+def _flushed(code: Any) -> Any:
+    """The exit code when all that was printed has gone out: a full disk is an error, a reader that left is none."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries once more, and complains
+        if not isinstance(error, BrokenPipeError) and code in (OK, None):
+            say(_told(error))
+            return BAD_INPUT
+    return code
+
+
+def _told(error: OSError) -> str:
+    return _("error: {error}").format(error=f"{error.filename or _('output')}: {error.strerror}")

@@ -61,7 +61,7 @@ def each(
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")
         try:
-            with refusing(as_json, file):
+            with refusing(as_json):
                 code = work(file)
         except typer.Exit as refused:
             code = refused.exit_code
@@ -84,8 +84,10 @@ def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
             emit_json({"error": error.to_dict()})
         say(_("error: {error}").format(error=error))
         raise typer.Exit(BAD_INPUT) from None
+    except BrokenPipeError:
+        raise
     except OSError as error:
-        say(_("error: {error}").format(error=f"{error.filename or name}: {error.strerror}"))
+        say(_("error: {error}").format(error=f"{error.filename or name or _('output')}: {error.strerror}"))
         raise typer.Exit(BAD_INPUT) from None
 
 
@@ -95,7 +97,7 @@ def _refuse_one_name(files: Sequence[str]) -> None:
 
     first: dict[str, str] = {}
     for file in files:
-        other = first.setdefault(folder_name(Path(file).stem), file)
+        other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
         if Path(other).resolve() != Path(file).resolve():
             say(_("error: {first} and {second} have one name, and so one folder").format(first=other, second=file))
             raise typer.Exit(BAD_INPUT)

@@ -36,7 +36,7 @@ def compared(file: Path, update: bool) -> Outcome:
     """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     try:
-        found = to_json(computed(str(file), "forces"))
+        found = to_json(computed(str(file), "forces", silent=True))
     except ProblemError as error:
         return Outcome(file.stem, wrong=str(error), code=BAD_INPUT)
     expected = _read(expected_file)
@@ -48,7 +48,11 @@ def compared(file: Path, update: bool) -> Outcome:
                 "tolerance": expected["tolerance"] if known else TOLERANCE,
                 "result": recorded(found),
             }
-            write_whole(expected_file, json_bytes(golden))
+            try:
+                write_whole(expected_file, json_bytes(golden))
+            except OSError as error:
+                wrong = f"{error.filename}: {error.strerror}"
+                return Outcome(file.stem, wrong=wrong, code=BAD_INPUT)
         return Outcome(file.stem)
     if not known:
         return Outcome(file.stem, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
@@ -64,7 +68,7 @@ def _read(file: Path) -> Any:
         content["result"].items()
     except FileNotFoundError:
         return _("there are no expected values; tmm check --update writes them")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         return _("this is not a file of expected values ({error})").format(error=error)
     return content
 

@@ -11,12 +11,13 @@ from tmm_cli import count, problem_of, redrive, solve, structure_of
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
 from tmm_cli.results.as_json import sections
-from tmm_cli.results.files import folder_name, write_whole
-from tmm_cli.results.output import write_results
+from tmm_cli.results.files import Staged, folder_name, listed
+from tmm_cli.results.output import Written, write_results
 from tmm_cli.results.reports import walk
 from tmm_cli.results.table import Table
 from tmm_cli.results.terminal import show as print_table
@@ -29,11 +30,17 @@ if TYPE_CHECKING:
 
 
 def computed(
-    file: str, stage: Stage, positions: Sequence[int] | None = None, driver: str | None = None, *, drafted: bool = False
+    file: str,
+    stage: Stage,
+    positions: Sequence[int] | None = None,
+    driver: str | None = None,
+    *,
+    drafted: bool = False,
+    silent: bool = False,
 ) -> Results | ChainResults:
     """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
 
-    drafted: the structure without the lengths that a task of synthesis finds.
+    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood.
     """
     tree = read_file(file)
     if is_chain(tree):
@@ -42,7 +49,9 @@ def computed(
         return count(build_chain(tree))
     problem = problem_of(tree)
     if driver is not None:
-        return solve(redrive(problem, driver), stage, positions)
+        problem = redrive(problem, driver)
+    if not silent:
+        introduce(problem, drafted=drafted)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
@@ -68,7 +77,7 @@ def report(
     else:
         show(results, names, found)
     if out is not None:
-        say(_("written: {folder}").format(folder=write_results(results, out, digits=found)))
+        say_written(write_results(results, out, digits=found))
     for warning in warnings(results):
         say(_("warning: {warning}").format(warning=warning))
     return checked(results)
@@ -87,14 +96,28 @@ def emit_results(results: Results | ChainResults, digits: AccuracyReport | None 
 
 
 def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:
-    """With the tables into the folder asked for; alone, and beside what a run has written, into the usual one."""
-    folder = Path("outputs") / folder_name(results.problem.name)
+    """With the tables into the folder asked for; alone beside what is in the usual one, but never in place of it."""
     if out is not None:
-        folder = write_results(results, out, pictures.items())
-    for name, content in pictures.items() if out is None else ():
-        write_whole(folder / name, content)
-    if out is not None or pictures:
+        say_written(write_results(results, out, pictures.items()))
+    elif pictures:
+        usual, own = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
+        taken = not listed(usual).isdisjoint(pictures)
+        with Staged(own if taken else usual) as staged:
+            for name, content in pictures.items():
+                staged.write(name, (content,))
+        say_written(Written(own if taken else usual, staged.removed, usual if taken else None))
+
+
+def say_written(written: Written) -> None:
+    """Where the results are, what went of earlier ones, and what stays."""
+    folder, removed, kept = written
+    if kept is None:
         say(_("written: {folder}").format(folder=folder))
+    else:
+        say(_("written: {folder}; {kept} keeps the results of another run").format(folder=folder, kept=kept))
+    if removed:
+        text = _("removed from {folder}, written by an earlier run and not by this one: {files}")
+        say(text.format(folder=folder, files=", ".join(removed)))
 
 
 def show(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:

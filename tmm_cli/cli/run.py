@@ -11,7 +11,7 @@ import typer
 from tmm_cli.cli.common import Digits, Files, Json, Position, each, say
 from tmm_cli.errors import _
 
-SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle")
+SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
 
 
 def run(
@@ -26,25 +26,25 @@ def run(
 
     def work(file: str) -> int:
         from tmm_cli.analysis.spatial_chain import ChainResults
-        from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, show
+        from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
         results = computed(file, "forces", position)
-        pictures: Iterable[tuple[str, bytes]] = ()
+        pictures: Iterable[tuple[str, bytes]] | None = None
         if drawings and not isinstance(results, ChainResults):
             from tmm_cli.draw import files as drawn
 
             pictures = drawn(results)
         found = bounds_of(results, digits)
-        folder = write_results(results, out, pictures, found)
+        written = write_results(results, out, pictures, found)
         if as_json:
             emit_results(results, found)
         elif len(files) == 1:
             show(results, SHOWN, found)
         for warning in warnings(results):
             say(_("warning: {warning}").format(warning=f"{results.problem.name}: {warning}"))
-        say(_("written: {folder}").format(folder=folder))
+        say_written(written)
         return checked(results)
 
     each(files, work, as_json=as_json, out=out, headed=False)

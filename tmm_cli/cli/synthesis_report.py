@@ -7,15 +7,17 @@ from pathlib import Path
 from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.files import Staged, folder_name
+from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
 from tmm_cli.results.terminal import show
 from tmm_cli.results.text import csv_text, json_bytes
+from tmm_cli.results.understood import bare_units
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.synthesis.reading import alone, build
 
@@ -38,7 +40,7 @@ def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
         from tmm_cli.draw.formats import files as drawings
         from tmm_cli.draw.synthesis import sheets
 
-        folder = out / folder_name(name)
+        folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
             for table in tables_of(found, measured, units, 15):
                 staged.write(f"{table.name}.csv", csv_text(table, units))
@@ -58,7 +60,10 @@ def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | Non
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
-        return (*alone(tree), None)
+        found = alone(tree)
+        say(f"{found[0]}: {bare_units(found[3])}")
+        return (*found, None)
     problem = build(tree)
+    introduce(problem)
     assert problem.synthesis is not None
     return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

@@ -10,7 +10,7 @@ from typing import Final
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.scalars import comma_error
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, parse_unit, symbol, unknown_unit
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension
 
 MAX_DEPTH: Final = 30
@@ -22,6 +22,7 @@ _SIGN = re.compile(r"\s*(\*\*|[-+*/^(),])")
 # A unit right after a number: symbols with powers, joined by * · / or a space.
 _FACTOR = r"(?:[^\W\d_]+|°|%)(?:\^\s*-?\d+|[²³]|\d)?"
 _UNIT = re.compile(rf"\s*((?:1\s*/\s*)?{_FACTOR}(?:(?:\s*[*·/]\s*|\s+){_FACTOR})*)")
+_DOTTED = re.compile(r"\s*((?:[^\W\d_]+\s*[./]\s*)*[^\W\d_]+\.(?:\s*/?\s*[^\W\d_]+)*\.?)")  # об.мин, r.p.m.
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
 _JOINT = re.compile(r"\s*[*·/]|\s+")
 
@@ -67,7 +68,10 @@ class Parser:
 
     def whole(self) -> PhysicalValue:
         found = self.sum()
-        if self.text[self.at :].strip():
+        rest = self.text[self.at :].strip()
+        if rest and _UNIT.fullmatch(rest) and all(symbol(one) for one in _SYMBOL.findall(rest)):
+            raise self.fault(_("a unit follows a number only: here write * 1 {unit}").format(unit=rest))
+        if rest:
             raise self.fault(_("this is not arithmetic"))
         return found
 
@@ -97,7 +101,7 @@ class Parser:
         while sign := self.sign("+", "-"):
             right = self.product()
             a, b, dimension = self.alike(left, right)
-            left = PhysicalValue(a + b if sign == "+" else a - b, dimension)
+            left = self.finite(a + b if sign == "+" else a - b, dimension)
         self.depth -= 1
         return left
 
@@ -108,7 +112,7 @@ class Parser:
             if sign == "/" and right.value == 0:
                 raise self.fault(_("division by zero"))
             value = left.value * right.value if sign == "*" else left.value / right.value
-            left = PhysicalValue(value, self.joined(left, right, 1 if sign == "*" else -1))
+            left = self.finite(value, self.joined(left, right, 1 if sign == "*" else -1))
         return left
 
     def signed(self) -> PhysicalValue:
@@ -125,7 +129,7 @@ class Parser:
         self.deeper()
         exponent = self.signed()
         self.depth -= 1
-        if exponent.dimension not in (None, NUMBER) or abs(exponent.value) > 20:
+        if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= 20:
             raise self.fault(_("an exponent is a small bare number"))
         dimension = base.dimension
         if dimension is not None:
@@ -150,6 +154,8 @@ class Parser:
     def with_unit(self, number: float) -> PhysicalValue:
         """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
         found = _UNIT.match(self.text, self.at)
+        if dotted := _DOTTED.match(self.text, self.at):
+            raise dotted_unit(dotted[1])
         if found is None:
             return PhysicalValue(number, None)
         name = _NAME.match(self.text, self.at)
@@ -164,7 +170,7 @@ class Parser:
             if all(symbol(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
                 self.at = found.start(1) + end
                 unit = parse_unit(head)
-                return PhysicalValue(unit.si(number), unit.dimension)
+                return self.finite(unit.si(number), unit.dimension)
         raise unknown_unit(_SYMBOL.findall(text)[0])
 
     def named(self, match: re.Match[str]) -> PhysicalValue:
@@ -173,7 +179,8 @@ class Parser:
         if name in self.parameters:
             return self.parameters[name]
         if name == "pi":
-            return PhysicalValue(self.units.functions["pi"], self.pi)
+            found = self.with_unit(self.units.functions["pi"])
+            return found if found.dimension else PhysicalValue(found.value, self.pi)
         if name in FUNCTIONS:
             return self.call(name)
         if symbol(name):
@@ -223,18 +230,24 @@ class Parser:
         dimension = next((one.dimension for one in given if one.dimension is not None), None)
         values = [self.alike(PhysicalValue(0.0, dimension), one)[1] for one in given]
         value = compute(values) if name in ("min", "max") else compute(*values)
-        return PhysicalValue(value, ANGLE if name == "atan2" else dimension)
+        return self.finite(value, ANGLE if name == "atan2" else dimension)
 
     def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
         """Both values in one dimension, a bare one taken in the file's unit of the other's."""
         a, b = left.dimension, right.dimension
         if a is None and b is not None:
-            return self.units.si(left.value, b), right.value, b
+            return self.finite(self.units.si(left.value, b), b).value, right.value, b
         if b is None and a is not None:
-            return left.value, self.units.si(right.value, a), a
+            return left.value, self.finite(self.units.si(right.value, a), a).value, a
         if a is not None and b is not None and not (a.fits(b) or b.fits(a)):
             raise self.fault(_("{a} and {b} cannot be added or compared").format(a=a, b=b))
         return left.value, right.value, a
+
+    def finite(self, value: float, dimension: Dimension | None) -> PhysicalValue:
+        """What a step of the arithmetic gives, so that the next one never meets what is no number."""
+        if not math.isfinite(value):
+            raise ProblemError(_("this number is too large"), found=quote(self.text))
+        return PhysicalValue(value, dimension)
 
     @staticmethod
     def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from pathlib import PurePath
 from typing import TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
@@ -113,10 +112,11 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     for number, key in enumerate(("pressure_sliding", "pressure_turning")):
         if getattr(shape.checks, key) is not None:
             angles[number], said[number] = checks.positive(key, ANGLE), True
-    name = PurePath(tree.file).stem
+    name = tree.name
+    first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
         name, shape.title or name, linkage, build_request(shape, first, values), values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), tree,
+        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed), tree,
     )  # fmt: skip
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import PurePath
-
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.problem import schema_chain
@@ -30,7 +28,7 @@ def load_chain(path: str) -> ChainProblem:
 def build_chain(tree: Tree) -> ChainProblem:
     """A chain from a file that has been read."""
     shape = validated(schema_chain.SpatialFile, tree)
-    name = PurePath(tree.file).stem
+    name = tree.name
     spatial = shape.structure.spatial
     with placed_in(tree):
         chain = _chain(spatial)

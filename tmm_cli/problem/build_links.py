@@ -10,7 +10,7 @@ from typing import Any
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Hinge, Link, Slide
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
 from tmm_cli.quantities import ANGLE, LENGTH
@@ -64,6 +64,7 @@ class _Reader:
         for name, place in shape.points.items():
             check_name(name, ("points", name), "point")
             frame[name] = values.vector(place, LENGTH, ("points", name))
+        _refuse_twins(shape)
         self.links = {FRAME: Link(FRAME, frame)}
         for name, link in shape.links.items():
             check_name(name, ("links", name), "link")
@@ -139,13 +140,14 @@ class _Reader:
                 near=nearest(given.on, [*guides, *(n for n in self.links if n != runner)]),
             )  # fmt: skip
         self.values.different((runner, carrier), (*part.path, "on"))
-        through, angle = self.guide(line, carrier)
+        through, angle, ends = self.guide(line, carrier)
+        bounded = carrier != FRAME and not (given.unbounded or line.given.unbounded)
         turned = part.number("turned", ANGLE)
         name = name if name not in taken else f"{name}.{runner}"
-        return Slide(name, carrier, runner, through, angle, points[point], turned, point)
+        return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
 
-    def guide(self, part: Part, carrier: str) -> tuple[complex, float]:
-        """A point on a guide and its direction, in the axes of the link that carries it."""
+    def guide(self, part: Part, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
+        """A point on a guide, its direction, in the axes of the link that carries it, and the points it is along."""
         given: schema.Guide | schema.Slide = part.given
         points = self.links[carrier].points
         along, placed = given.along, given.through is not None or given.angle is not None
@@ -153,8 +155,9 @@ class _Reader:
             along = "-".join(points)
         if along is not None and placed:
             raise part.refusal("along", _("along says through and angle already"))
+        ends = None
         if along is not None:
-            first, second = self.values.two_points(along, points, (*part.path, "along"))
+            first, second = ends = self.values.two_points(along, points, (*part.path, "along"))
             through, angle = points[first], phase(points[second] - points[first])
         elif given.through is not None:
             through = part.place("through", points, carrier)
@@ -162,7 +165,25 @@ class _Reader:
         else:
             allowed = _("along: CD, or through: [x, y] and angle")
             raise part.refusal("through", _("where does this guide run?"), allowed=allowed)
-        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle
+        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle, ends
+
+
+def _refuse_twins(shape: schema.File) -> None:
+    """Refuse points whose names look alike and are not: a Cyrillic letter in one of them is never meant."""
+    named: dict[str, Path] = {name: ("points", name) for name in shape.points}
+    for link, given in shape.links.items():
+        path: Path = ("links", link, "points")
+        listed = isinstance(given.points, list)
+        named |= {name: (*path, number if listed else name) for number, name in enumerate(given.points)}
+        named |= {name: ("links", link, "also", name) for name in given.also}
+    alike: dict[str, str] = {}
+    for name in sorted(named, key=str.isascii, reverse=True):  # then the one with Cyrillic letters is at fault
+        other = alike.setdefault(latin(name), name)
+        if other != name:
+            raise ProblemError(
+                _("this name looks like another one, but its letters differ"), path=named[name], found=quote(name),
+                near=other, key=True,
+            )  # fmt: skip
 
 
 def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:

@@ -19,6 +19,7 @@ MAX_NODES: Final = 50_000
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _ITEM_BELOW = re.compile(r"[\r\n] *- ")
+_CALL = re.compile(r"[^\[\]{}\n]*?,[^\[\]{}\n]*?\)(?=\s*[,}\]\n])")  # what may end with its bracket behind a comma
 _COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
 
 
@@ -92,7 +93,10 @@ class Composer:
     def sequence(self, start: Any, path: Path) -> list[Any]:
         found: list[Any] = []
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
-            found.append(self.node(event, (*path, len(found))))
+            its_path = *path, len(found)
+            found.append(self.node(event, its_path))
+            if start.flow_style and isinstance(event, yaml.ScalarEvent) and not event.style:
+                self.cut_by_comma(event, its_path)
         if start.flow_style:
             end: Any = event
             written = self.text[start.start_mark.index : end.end_mark.index]
@@ -143,12 +147,19 @@ class Composer:
         except ProblemError as error:
             raise self.placed(error, event, path) from None
 
+    def cut_by_comma(self, event: Any, path: Path) -> None:
+        """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
+        cut = _CALL.match(self.text, event.start_mark.index)
+        if cut and event.value.count("(") > event.value.count(")"):
+            self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
+
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
         """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`: {"length:5": null}."""
         if ":" in self.text[key.end_mark.index : value.start_mark.index]:
             return
         if before is not None and isinstance(before[1], yaml.ScalarEvent) and not before[1].style:
             its_path, number = before
+            self.cut_by_comma(number, its_path)
             touching = self.text[number.end_mark.index : key.start_mark.index] == ","
             if touching and split_number(number.value, key.value):
                 raise self.placed(comma_error(number.value, key.value), number, its_path)

@@ -162,6 +162,8 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
         return name
     wanted = _folded(name[:60])
     folded = {_folded(other[:60]): other for other in reversed(known)}
+    if wanted in folded:
+        return folded[wanted]
     swapped = [other for other in folded if sorted(other) == sorted(wanted)]
     close = swapped or difflib.get_close_matches(wanted, folded, n=1, cutoff=CLOSE)
     return folded[close[0]] if close else None

@@ -6,7 +6,6 @@ is a bare result where a dimension is wanted.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
@@ -15,7 +14,7 @@ from typing import Final
 from tmm_cli.errors import _
 from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
 from tmm_cli.problem.errors import ProblemError, quote, under
-from tmm_cli.problem.tree import Path
+from tmm_cli.problem.tree import Path, WrittenNumber
 from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem, plain_text
 from tmm_cli.quantities import ANGLE, Dimension
 
@@ -40,7 +39,10 @@ def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dime
     value = taken(found, want, units)
     if value is None:
         given = f"{quote(source)}, {units.show(found)}"
-        raise UnitError(_("{want} is wanted here").format(want=want), found=given, allowed=want.example)
+        allowed = want.example
+        if want == ANGLE and "pi" in str(source):
+            allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
+        raise UnitError(_("{want} is wanted here").format(want=want), found=given, allowed=allowed)
     return value
 
 
@@ -56,16 +58,13 @@ def evaluate_quantity(
     if isinstance(source, int | float):
         if not -1e300 < source < 1e300:
             raise ProblemError(_("not a number from -1e300 to 1e300"), found=quote(source))
-        return PhysicalValue(units.number(source), None)
+        return PhysicalValue(units.number(source.written if isinstance(source, WrittenNumber) else source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError(
             _("this is too long"), found=quote(source),
             allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
         )  # fmt: skip
-    found = Parser(plain_text(source), parameters, units, pi).whole()
-    if not math.isfinite(found.value):
-        raise ProblemError(_("this number is too large"), found=quote(source))
-    return found
+    return Parser(plain_text(source), parameters, units, pi).whole()
 
 
 def check_parameter(name: str, path: Path, *, key: bool = True) -> None:

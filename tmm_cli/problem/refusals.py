@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from tmm_cli.errors import (
@@ -13,6 +14,7 @@ from tmm_cli.errors import (
     MobilityError,
     NotOnFrameError,
     SketchMismatchError,
+    TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
     _,
@@ -104,6 +106,17 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
+        case TableBeyondCycleError(path=path, argument=argument, cycle=cycle):
+            turns, unit = round(cycle / (2 * math.pi)), units.symbol(ANGLE)
+            text = _("this row is never reached: all repeats after {turns} turns of the driver")
+            if turns == 1:
+                text = _("this row is never reached: all repeats after 1 turn of the driver")
+            return ProblemError(
+                text.format(turns=turns), path=path, found=f"{units.from_si(argument, ANGLE):.6g} {unit}",
+                allowed=_(
+                    "0 to {end} {unit}; of a longer cycle of loads each turn is a problem file of its own"
+                ).format(end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit),
+            )  # fmt: skip
     return ProblemError(str(error))
 
 

@@ -8,10 +8,11 @@ from typing import Final
 
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.tree import WrittenNumber
 
 Scalar = str | int | float | bool | None
 
-MAX_DIGITS: Final = 25
+MAX_DIGITS: Final = 40
 
 # Control characters, and invisible ones that reorder or hide text: an editor shows not what is read.
 HIDDEN: Final = re.compile(
@@ -39,7 +40,8 @@ def plain_value(text: str) -> Scalar:
             raise ProblemError(_("the number is too long"), found=quote(text), allowed=allowed)
         return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
     if _FLOAT.fullmatch(text):
-        return finite_float(text)
+        finite_float(text)
+        return WrittenNumber(text)
     if _NOT_FINITE.fullmatch(text):
         raise ProblemError(_("not a finite number"), found=quote(text), allowed=_("a finite number"))
     whole, comma, part = text.partition(",")

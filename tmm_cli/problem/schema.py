@@ -33,6 +33,7 @@ class Guide(Strict):
     angle: Value | None = Field(default=None, description="direction, from the x axis of that link")
     along: Name | None = Field(default=None, description="instead of through and angle: two points, CD")
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
+    unbounded: bool = Field(default=False, description="on a moving link: it goes on beyond the points of `along`")
 
 
 class Slide(Strict):
@@ -45,6 +46,14 @@ class Slide(Strict):
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
     point: Name | None = Field(default=None, description="the point of this link that runs on the guide; its first")
     turned: Value = Field(default=0, description="angle of this link's axes from those of the link it slides on")
+    unbounded: bool = Field(default=False, description="the guide goes on beyond the points of `along`")
+
+
+def _on(found: Any) -> Any:
+    return {"on": found} if isinstance(found, str | int) and not isinstance(found, bool) else found
+
+
+OneSlide = Annotated[Slide, BeforeValidator(_on, json_schema_input_type=Slide | Name)]
 
 
 class Link(Strict):
@@ -54,7 +63,9 @@ class Link(Strict):
     points: list[Name] | dict[Name, Vector] = Field(description="names of its points, or their coordinates in its axes")
     length: Value | None = Field(default=None, description="distance of two points")
     also: dict[Name, Place] = Field(default_factory=dict, description="further points, in its axes")
-    slides: Slide | list[Slide] | None = Field(default=None, description="what it slides on")
+    slides: OneSlide | list[OneSlide] | None = Field(
+        default=None, description="what it slides on: a guide, or {on, along}, or several of them in a list"
+    )
 
     @property
     def sliding(self) -> list[Slide]:
@@ -218,6 +229,10 @@ def _outputs(found: Any) -> list[Output]:
     return [Output.model_validate(one if isinstance(one, dict) else {"link": checked_name(one)}) for one in several]
 
 
+def _listed(found: Any) -> Any:
+    return [found] if isinstance(found, str | int | float) else found
+
+
 class Positions(Strict):
     """Which positions are computed. They are numbered from 0 in the driver's sense."""
 
@@ -225,8 +240,12 @@ class Positions(Strict):
     from_: Value | None = Field(
         default=None, alias="from", description="place of position 0: an angle, or `working stroke`"
     )
-    at: list[Value] | None = Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
-    detail: list[int] = Field(default_factory=list, max_length=24, description="numbers of positions drawn in detail")
+    at: Annotated[list[Value] | None, BeforeValidator(_listed, json_schema_input_type=list[Value] | Value | None)] = (
+        Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
+    )
+    detail: Annotated[list[int], BeforeValidator(_listed, json_schema_input_type=list[int] | int)] = Field(
+        default_factory=list, max_length=24, description="numbers of positions drawn in detail"
+    )
 
 
 class Checks(Strict):
@@ -240,7 +259,7 @@ class Checks(Strict):
 class File(Strict):
     """A problem of planar lever mechanisms."""
 
-    tmm: Literal[1] = Field(description="version of this format")
+    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")

@@ -53,7 +53,7 @@ class SpatialStructure(Strict):
 class SpatialFile(Strict):
     """A chain in space without dimensions: only its structure is counted."""
 
-    tmm: Literal[1] = Field(description="version of this format")
+    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     structure: SpatialStructure

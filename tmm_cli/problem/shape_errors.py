@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 from tmm_cli.errors import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.foreign_keys import FOREIGN
 from tmm_cli.problem.reader import decimal_comma_hint
 from tmm_cli.problem.tree import Path, Tree
 
@@ -106,8 +107,10 @@ def _refusal(
     described = field.description if field else None
     if kind == "extra_forbidden":
         key = str(path[-1])
+        foreign = nearest(key, [word for word, own in FOREIGN.items() if own in known])
+        near = FOREIGN[foreign] if foreign else nearest(key, known)
         return ProblemError(
-            _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=nearest(key, known), key=True
+            _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
         )
     if kind == "missing":
         return ProblemError(_("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=described)

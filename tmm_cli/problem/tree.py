@@ -4,10 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from pathlib import PurePath
+from typing import Any, Self
 
 Path = tuple[str | int, ...]
 """Where a value stands in a file: keys as written (str) and list indices from 0 (int)."""
+
+
+class WrittenNumber(float):
+    """A number of a file, and the decimals that it was written with: a float keeps 16 of them."""
+
+    written: str
+
+    def __new__(cls, written: str) -> Self:
+        number = super().__new__(cls, written)
+        number.written = written
+        return number
+
+    def __repr__(self) -> str:
+        return self.written
 
 
 @dataclass(frozen=True)
@@ -31,6 +46,11 @@ class Tree:
     marks: Mapping[Path, Mark]
     key_marks: Mapping[Path, Mark]
     commas: Mapping[Path, str]
+
+    @property
+    def name(self) -> str:
+        """That of the problem: its file's without the ending; what of it is no text is lost."""
+        return PurePath(self.file).stem.encode(errors="replace").decode()
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:
         """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""

@@ -160,6 +160,21 @@ def unknown_unit(name: str) -> UnitError:
     return UnitError(_("unknown unit"), found=quote(name), allowed=_("e.g. mm, deg, rpm, kg, N, N*m"), near=near)
 
 
+def dotted_unit(text: str) -> UnitError:
+    """The refusal of a unit with dots in it, as in `об.мин`, with the unit that is meant."""
+    bare = text.replace("./", "/").rstrip(".")
+    meant = next((way for way in (bare.replace(".", sign) for sign in ("", "/", "*")) if _of_a_kind(way)), None)
+    return UnitError(_("a unit is written without dots"), found=quote(text), allowed=meant)
+
+
+def _of_a_kind(text: str) -> bool:
+    """Whether this is a unit of something that a file may give."""
+    try:
+        return parse_unit(text).dimension in {kind.dimension for kind in KINDS.values()}
+    except UnitError:
+        return False
+
+
 class UnitSystem:
     """What bare numbers mean in one file, and in which units its tables are printed."""
 

@@ -12,12 +12,14 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
-from tmm_cli.problem.expressions import evaluate
+from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER, Dimension
 
+LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
+SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 AXIS = 2.5e-16  # the cosine of the double next to a right angle is below this
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
@@ -31,9 +33,21 @@ class ValueReader:
         self.units = units
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
-        """A value in SI."""
+        """A value in SI that a mechanism can have."""
         with under(*path):
-            return evaluate(value, self.parameters, self.units, want)
+            number = evaluate(value, self.parameters, self.units, want)
+            if not -LARGEST <= number <= LARGEST:
+                most = f"{self.units.from_si(LARGEST, want):.6g} {self.units.symbol(want)}".rstrip()
+                raise ProblemError(
+                    _("this is too large for a mechanism"),
+                    found=quote(value),
+                    allowed=_("{most} or less").format(most=most),
+                )
+            return number
+
+    def bare(self, value: Any) -> bool:
+        """Whether a value has no unit of its own."""
+        return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
         """A value in SI that must be above zero (or not below)."""
@@ -43,6 +57,12 @@ class ValueReader:
             raise ProblemError(
                 message.format(want=want), path=path, found=quote(value) if isinstance(value, str) else str(value),
                 allowed=_("zero or more") if zero else _("more than zero"),
+            )  # fmt: skip
+        if 0 < number < SMALLEST:
+            least = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
+            raise ProblemError(
+                _("this is too small for a mechanism"), path=path, found=quote(value),
+                allowed=_("{least} or more").format(least=least),
             )  # fmt: skip
         return number
 
@@ -89,15 +109,18 @@ class ValueReader:
         found = [(a, b) for a, b in ways if a in points and b in points and a != b]
         if len(found) == 1 and points[found[0][0]] != points[found[0][1]]:
             return found[0]
+        near = None
         if len(found) > 1:
             message = _("this can be read in several ways: put a dash between the points")
         elif found:
             message = _("these two points lie on one another")
         else:
             message = _("two points of one link are wanted")
+            near = nearest(text, [a + b for a in points for b in points if a != b])
         raise ProblemError(
-            message, path=path, found=quote(text), allowed=_("two of {points}").format(points=", ".join(points))
-        )
+            message, path=path, found=quote(text), allowed=_("two of {points}").format(points=", ".join(points)),
+            near=near,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

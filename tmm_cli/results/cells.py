@@ -16,7 +16,8 @@ from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
-COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name != "synthesis")  # a search has its own
+APART = ("synthesis", "checks")  # a search has its own digits, and of checks the words count
+COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name not in APART)
 Cells = Mapping[Hashable, Real]
 
 

@@ -1,73 +1,191 @@
-"""Files on disk, each written whole or not at all."""
+"""Files on disk: a file or a folder is written whole beside its place and then put there, or not at all."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import re
-import tempfile
-from collections.abc import Iterable
+import shutil
+import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from tmm_cli.errors import _
+
 LISTED = 100_000  # bytes: the list of files at the end of result.json is shorter, and the rest may be very long
+LONGEST = 150  # bytes of a folder's name
+RECORD = "result.json"
+RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # devices of Windows, in every folder
+QUERY = 0x1000  # of OpenProcess: no more is asked than whether a process is there
 
 
 def folder_name(name: str) -> str:
-    """A problem's folder: its name with nothing in it that could lead elsewhere."""
-    return re.sub(r"[^\w.-]+", "_", name).lstrip(".") or "problem"
+    """A problem's folder: its name with nothing in it that could lead elsewhere, and that every system takes."""
+    safe = re.sub(r"[^\w.-]+", "_", name).encode()[:LONGEST].decode(errors="ignore").strip(".") or "problem"
+    return f"_{safe}" if RESERVED.fullmatch(safe) else safe
+
+
+def folder_of(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
+    """The folder in `out` for results, and the one that keeps other results for that.
+
+    A problem has one folder. part: what a run has made that has not made all; it does not take the place of other
+    results than its own, and goes into a folder beside theirs.
+    """
+    usual, own = (out / folder_name(text) for text in (name, f"{name}-{part}"))
+    if not part or held(usual) in (None, part):
+        return usual, None
+    if held(own) not in (None, part):
+        raise FileExistsError(errno.EEXIST, _("other results are there"), str(own))
+    return own, usual
 
 
 def write_whole(path: Path, content: bytes) -> None:
     """Write beside and rename, so that a killed run leaves the old file or the new one."""
-    with Staged(path.parent) as staged:
-        staged.write(path.name, (content,))
+    path = Path(os.path.realpath(path))
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for left in _left(path, "new"):
+        left.unlink(missing_ok=True)
+    new = _beside(path, "new")
+    try:
+        new.write_bytes(content)
+        os.replace(new, path)
+    except BaseException:
+        new.unlink(missing_ok=True)
+        raise
 
 
 class Staged:
-    """Files written beside their places and renamed together when all are there; none of them on an error."""
+    """A folder written whole beside the one of that name, and put in its place at the end; not at all on an error.
+
+    A new result.json takes away the files that the old one lists. All other files of the old folder stay.
+    """
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.waiting: dict[str, str] = {}
+        self.folder = Path(os.path.realpath(folder))
+        self.new, self.old = _beside(self.folder, "new"), _beside(self.folder, "old")
+        self.names: set[str] = set()
+        self.removed: list[str] = []
 
     def __enter__(self) -> Staged:
-        self.made = not self.folder.exists()
-        self.folder.mkdir(parents=True, exist_ok=True)
+        if self.folder.exists() and not self.folder.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(self.folder))
+        self.made = not self.folder.parent.exists()
+        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        for left in _left(self.folder, "old"):
+            _carry_over(left, self.folder)
+        for left in _left(self.folder, "new"):
+            shutil.rmtree(left, ignore_errors=True)
+        self.new.mkdir()
         return self
 
     def write(self, name: str, content: Iterable[str | bytes]) -> None:
         """A file of the folder, from its content piece by piece."""
-        self._forget(name)
-        handle, self.waiting[name] = tempfile.mkstemp(prefix=f".{name}.", dir=self.folder)
-        with os.fdopen(handle, "wb") as stream:
+        self.names.add(name)
+        with (self.new / name).open("wb") as stream:
             for piece in content:
                 stream.write(piece if isinstance(piece, bytes) else piece.encode())
-        os.chmod(self.waiting[name], 0o644)
 
-    def _forget(self, name: str) -> None:
-        if name in self.waiting:
-            Path(self.waiting.pop(name)).unlink(missing_ok=True)
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        try:
+            if kind is None:
+                self._exchange()
+        finally:
+            shutil.rmtree(self.new, ignore_errors=True)
+            if self.made and not self.folder.exists():
+                with contextlib.suppress(OSError):
+                    self.folder.parent.rmdir()
 
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if kind is None:
-            for name, temporary in self.waiting.items():
-                os.replace(temporary, self.folder / name)
+    def _exchange(self) -> None:
+        """Two renames; when the second one cannot be, the first is taken back."""
+        for name in self.names:
+            if (self.folder / name).is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.folder / name))
+        if not self.folder.exists():
+            os.rename(self.new, self.folder)
             return
-        for name in list(self.waiting):
-            self._forget(name)
-        if self.made:
-            with contextlib.suppress(OSError):
-                self.folder.rmdir()
+        if RECORD in self.names:
+            self.removed = sorted(name for name in listed(self.folder) - self.names if (self.folder / name).exists())
+        try:
+            os.rename(self.folder, self.old)
+            os.rename(self.new, self.folder)
+        except BaseException:
+            if not self.folder.exists():
+                os.rename(self.old, self.folder)
+            raise
+        _carry_over(self.old, self.folder)
+
+
+def _carry_over(old: Path, folder: Path) -> None:
+    """Move what stays of an old folder into the new one, and remove the rest; the record last, as it says which.
+
+    Nothing is lost by a run that is killed meanwhile: the next one goes on with that.
+    """
+    if not folder.exists():
+        os.rename(old, folder)
+        return
+    gone = listed(old) | {RECORD} if (folder / RECORD).exists() else set()
+    for entry in sorted(old.iterdir(), key=lambda entry: entry.name == RECORD):
+        if entry.name in gone or (folder / entry.name).exists():
+            entry.unlink()
+        else:
+            os.rename(entry, folder / entry.name)
+    old.rmdir()
+
+
+def _beside(path: Path, kind: str) -> Path:
+    """Where this process keeps a new, or an old, form of a file or folder for a moment."""
+    return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
+
+
+def _left(path: Path, kind: str) -> Iterator[Path]:
+    """The same of processes that are no more."""
+    for other in list(path.parent.iterdir()):
+        found = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
+        if found is not None and not _runs(int(found[1])):
+            yield other
+
+
+def _runs(process: int) -> bool:
+    """Whether another process of this number is running."""
+    if process == os.getpid():
+        return False
+    if sys.platform == "win32":  # where os.kill would end it
+        import ctypes
+
+        return bool(ctypes.windll.kernel32.OpenProcess(QUERY, False, process))
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 def listed(folder: Path) -> set[str]:
     """The files that an earlier run wrote into the folder, as the end of its result.json lists them; never a path."""
     try:
-        with (folder / "result.json").open("rb") as stream:
-            stream.seek(-min(LISTED, stream.seek(0, os.SEEK_END)), os.SEEK_END)
-            end = stream.read().decode(errors="replace")
+        end = _end_of_record(folder)
         names = json.loads(end[end.rindex('"files": [') + len('"files": ') :].rstrip().removesuffix("}"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return set()
     return {n for n in names if isinstance(n, str) and re.fullmatch(r"\w[\w(),-]*\.(csv|png|svg)", n)}
+
+
+def held(folder: Path) -> str | None:
+    """Which part of a run has made the results in the folder; none: there are no results, empty: a whole one."""
+    try:
+        found = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
+    except OSError:
+        return None
+    return found[1] if found else ""
+
+
+def _end_of_record(folder: Path) -> str:
+    with (folder / RECORD).open("rb") as stream:
+        stream.seek(-min(LISTED, stream.seek(0, os.SEEK_END)), os.SEEK_END)
+        return stream.read().decode(errors="replace")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.as_json import sections
-from tmm_cli.results.files import Staged, folder_name, listed
+from tmm_cli.results.files import Staged, folder_of
 from tmm_cli.results.reports import walk
 from tmm_cli.results.text import csv_text, json_text
 
@@ -18,26 +18,51 @@ if TYPE_CHECKING:  # a structure alone has no digits, and does not wait for what
     from tmm_cli.results.digits import AccuracyReport
 
 
-def write_results(
-    results: Results | ChainResults, out: Path, more: Iterable[tuple[str, bytes]] = (),
-    digits: AccuracyReport | None = None,
-) -> Path:  # fmt: skip
-    """Write everything to out/<problem>/ and give that folder; files of an earlier run that are not renewed go.
+NAMED = 6  # positions that stand in the name of a folder; of more of them the first and the last
 
-    Each table is dropped when it is written. Nothing is renamed to its name before all is there: a refusal or an
-    interruption before the end leaves the folder as it was.
+
+def part_of(results: Results | ChainResults, drawn: bool) -> str:
+    """What of a run is there, as its folder is named; nothing where all is."""
+    if isinstance(results, ChainResults):
+        return ""
+    if results.motion is None:
+        return "structure"
+    words: list[str] = []
+    if results.reactions is None:
+        words = ["kinematics" if results.assemblies is None else "assemblies", *results.of]
+    numbers = results.numbers
+    if numbers != tuple(range(len(results.asked))):
+        few = len(numbers) <= NAMED
+        words.append("p" + ("-".join(map(str, numbers)) if few else f"{numbers[0]}-to-{numbers[-1]}"))
+    return "-".join(words if drawn or results.reactions is None else [*words, "no-drawings"])
+
+
+class Written(NamedTuple):
+    """The folder that was written, files of an earlier run that went, and the folder that keeps other results."""
+
+    folder: Path
+    removed: list[str]
+    kept: Path | None
+
+
+def write_results(
+    results: Results | ChainResults, out: Path, drawings: Iterable[tuple[str, bytes]] | None = None,
+    digits: AccuracyReport | None = None,
+) -> Written:  # fmt: skip
+    """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
+
+    Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
+    an interruption before the end leaves the old one as it was.
     """
-    folder = out / folder_name(results.problem.name)
+    part = part_of(results, drawings is not None)
+    folder, kept = folder_of(out, results.problem.name, part)
     shown = walk(results) if digits is None else digits.with_bounds(walk(results))
-    earlier = listed(folder)
     with Staged(folder) as staged:
         for table in shown:
             staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
-        for name, picture in more:
+        for name, picture in drawings or ():
             staged.write(name, (picture,))
-        names = sorted(staged.waiting)
+        names = sorted(staged.names)
         content = sections(results, None if digits is None else digits.json())
-        staged.write("result.json", json_text(chain(content, [("files", names)])))
-    for name in earlier - set(names):
-        (folder / name).unlink(missing_ok=True)
-    return folder
+        staged.write("result.json", json_text(chain(content, [("part", part)] if part else [], [("files", names)])))
+    return Written(folder, staged.removed, kept)

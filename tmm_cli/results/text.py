@@ -15,6 +15,8 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
+SEPARATORS = re.compile(r"([,;|\t\r\n])")  # of cells, somewhere: in most of Europe it is the semicolon
+NO_NUMBERS = {"nan", "inf", "infinity", "null", "none", "na", "n/a"}  # that programs read as a number, or as nothing
 PLAIN = re.compile(r"-?\d+(\.\d*)?(e[+-]?\d+)?")  # a number that stands among words
 ROWS, NUMBERS = 2048, 8192  # of a table, of an array in a chunk: they stay in the cache
 FULL = "%.15g"  # of a number that was not judged
@@ -48,8 +50,17 @@ def _cells(values: Any, figures: Any) -> list[str]:
 
 @lru_cache(maxsize=1024)
 def _cell(text: str) -> str:
-    safe = "'" + text if text.startswith(FORMULA) and not PLAIN.fullmatch(text) else text
-    return '"' + safe.replace('"', '""') + '"' if any(c in safe for c in ',"\r\n') else safe
+    pieces = SEPARATORS.split(text)
+    safe = "".join("'" + piece if _runs(piece) else piece for piece in pieces)
+    safe = "'" + safe if text.startswith(("\t", "\r")) else safe
+    quoted = len(pieces) > 1 or '"' in safe or safe.lower() in NO_NUMBERS
+    return '"' + safe.replace('"', '""') + '"' if quoted else safe
+
+
+def _runs(piece: str) -> bool:
+    """Whether a spreadsheet would run this piece of a cell as a formula."""
+    begun = piece.lstrip(" ")
+    return begun.startswith(FORMULA) and not SEPARATORS.fullmatch(piece) and not PLAIN.fullmatch(begun.rstrip(" "))
 
 
 def json_bytes(content: Any) -> bytes:

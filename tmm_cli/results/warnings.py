@@ -39,6 +39,7 @@ def warnings(results: Results | ChainResults) -> Iterable[str]:
     yield from _passive(results)
     if not results.driver_range.repeats:
         yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
+    yield from _slots(results)
     yield from _pressure(results)
     yield from _locked(results)
     yield from _twisted(results)
@@ -158,6 +159,32 @@ def _passive(results: Results) -> Iterable[str]:
             "exact dimensions only, and the reactions of links {among} are indeterminate (given: the "
             "least ones)"
         ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
+
+
+def _slots(results: Results) -> Iterable[str]:
+    """Stones that leave the segment of their guide."""
+    units, driver_range = results.problem.units, results.driver_range
+    assert driver_range is not None
+    cycle = driver_range.end - driver_range.start
+    for excess in results.slots:
+        slide, ways = excess.slide, []
+        for start, end in excess.ways:
+            first = start % cycle if driver_range.full else start
+            way = _("from {start} to {end}")
+            if end - start >= cycle * (1 - 1e-9):
+                way = _("everywhere")
+            elif start == end:
+                way = _("at {start}")
+            ways.append(way.format(start=_place(results, first), end=_place(results, first + end - start)))
+        if ways:
+            yield _(
+                "link {runner} leaves its slot {slot} of link {carrier}, which is {length} long: it is up to {far} "
+                "beyond {point} (driver {ways}); a longer slot, or slides: {{..., unbounded: true}} where it is meant"
+            ).format(
+                runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier, point=excess.point,
+                length=with_unit(units, excess.length, LENGTH), far=with_unit(units, excess.far, LENGTH),
+                ways=", ".join(ways),
+            )  # fmt: skip
 
 
 def _pressure(results: Results) -> Iterable[str]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from fractions import Fraction
 
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.linkage import FRAME, Linkage, Mesh
 from tmm_cli.tolerances import SAME_RATIO
 
 DENSE = 361  # places of a curve that is drawn, a turn
@@ -45,6 +45,10 @@ def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction |
     while gears:
         known = [m for m in gears if m.carrier in found and (m.i in found or m.j in found)]
         if not known:
+            together = _together(gears, found)
+            if together:
+                found.update(together)
+                continue
             wheels = {m.i for m in gears} | {m.j for m in gears}
             free = [n for m in gears for n in (m.carrier, m.i) if n not in found]
             first = next((n for n in free if n not in wheels), free[0])
@@ -58,6 +62,41 @@ def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction |
                 found[other] = _turned(found[one], carrier, step)
                 break
     return found
+
+
+def _together(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
+    """Turns that follow from several pairs of wheels at once, as those of a carrier between its sun and a fixed ring.
+
+    Every pair says turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
+    """
+    solved: dict[str, dict[str, Fraction]] = {}  # a link's turns by those of others; "" counts what is known
+    for mesh in gears:
+        ratio = _fraction(mesh.ratio)
+        if ratio is None or any(found.get(link, ratio) is None for link in (mesh.i, mesh.j, mesh.carrier)):
+            continue
+        row: dict[str, Fraction] = {}
+        for link, factor in ((mesh.j, Fraction(1)), (mesh.i, -ratio), (mesh.carrier, ratio - 1)):
+            known = found.get(link)
+            _add(row, {link: Fraction(1)} if known is None else {"": known}, factor)
+        for link, by in solved.items():
+            _add(row, by, row.pop(link, Fraction(0)))
+        first = next((link for link in row if link), None)
+        if first is None:
+            continue
+        share = row.pop(first)
+        own = {link: -factor / share for link, factor in row.items()}
+        for by in solved.values():
+            _add(by, own, by.pop(first, Fraction(0)))
+        solved[first] = own
+    return {link: by.get("", Fraction(0)) for link, by in solved.items() if not set(by) - {""}}
+
+
+def _add(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
+    """Adds a multiple of another sum to a sum; what comes to nothing is left out."""
+    for link, share in other.items():
+        row[link] = row.get(link, Fraction(0)) + factor * share
+        if not row[link]:
+            del row[link]
 
 
 def _turned(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:

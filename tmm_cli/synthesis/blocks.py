@@ -63,7 +63,7 @@ class OfTheFile(Exception):  # noqa: N818  it says whose the error is
 class SynthesisFile(Strict):
     """A problem file without a linkage, for `tmm synthesis` alone."""
 
-    tmm: Literal[1] = Field(description="version of this format")
+    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from tmm_cli.linkage import FRAME, Output
 from tmm_cli.synthesis.record import Demand, Outcome
 
 if TYPE_CHECKING:
@@ -42,13 +43,39 @@ def measured_on(results: Results) -> tuple[MeasuredDemand, ...]:
 
 
 def measured(outcome: Outcome, results: Results) -> tuple[MeasuredDemand, ...]:
-    """Every demand on the mechanism."""
-    found = []
+    """Every demand on the mechanism, of the link that the task is about, whatever the file's output is."""
+    results, found = _about(synthesised_link(outcome, results), results), []
     for demand in outcome.demands:
         value = _settled(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
         found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > MET else 0.0))
     return tuple(found)
+
+
+def synthesised_link(outcome: Outcome, results: Results) -> str | None:
+    """The link whose stroke or swing the task found: of those of its kind on the frame the nearest to the driver.
+
+    The file's output if it is one of them, or the task says nothing of a kind.
+    """
+    linkage, output = results.linkage, results.mechanism.output
+    on_frame = {"slide": linkage.slides_on_frame, "swing": linkage.hinged_to_frame}.get(outcome.output)
+    if on_frame is None:
+        return output
+    away = {FRAME: 0} | {driver.link: 0 for driver in linkage.drivers}  # groups from the driver to a link
+    for group in results.structure.groups:
+        away |= dict.fromkeys(group.links, 1 + max(away[link] for link in group.known))
+    links = [link for group in results.structure.groups for link in group.links if on_frame(link)]
+    return min(links, key=lambda link: (away[link], link != output), default=output)
+
+
+def _about(link: str | None, results: Results) -> Results:
+    """The same with another link as the output."""
+    mechanism = results.mechanism
+    if link is None or link == mechanism.output:
+        return results
+    inputs = replace(results.inputs, linkage=replace(results.linkage, output=Output(link), outputs=(Output(link),)))
+    other = replace(mechanism, inputs=inputs).known(kernels=mechanism.kernels, driver_range=mechanism.driver_range)
+    return replace(results, inputs=inputs, mechanism=other)
 
 
 def _settled(demand: Demand, value: float) -> float:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, partial
-from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -46,7 +45,7 @@ def read(tree: Tree) -> TaskProblem:
     with placed_in(tree):
         if not file.searches:
             file.task  # noqa: B018  refuses what is wrong in it
-    shape, name = file.shape, PurePath(tree.file).stem
+    shape, name = file.shape, tree.name
     return TaskProblem(
         name, shape.title or name, file.units, shape.description, partial(_found, file), partial(_draft, file)
     )
@@ -59,7 +58,7 @@ def build(tree: Tree) -> Problem:
 
 def alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
     """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
-    file, name = TaskFile(tree), PurePath(tree.file).stem
+    file, name = TaskFile(tree), tree.name
     with placed_in(tree):
         return name, file.shape.title or name, file.synthesised(), file.units
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
@@ -78,7 +78,8 @@ class Outcome:
 
     asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
     notes: texts below what was found; listings: further tables. sketch: how the mechanism is assembled,
-    where the file's own does not show it.
+    where the file's own does not show it. output: slide or swing, whose link the demands are about where the file's
+    output is another; empty: they look for theirs.
     """
 
     asked: tuple[Value, ...]
@@ -89,6 +90,7 @@ class Outcome:
     notes: tuple[str, ...] = field(default=())
     listings: tuple[Listing, ...] = ()
     sketch: Sketch | None = None
+    output: Literal["slide", "swing", ""] = ""
 
     @property
     def parameters(self) -> dict[str, Value]:

@@ -49,7 +49,7 @@ def tables(results: Results) -> Iterable[Table]:
     for driver in results.linkage.others:
         name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
         columns.append(_place(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
-    for link in results.mechanism.outputs:
+    for link in filter(motion.poses.__contains__, results.mechanism.outputs):  # with --of only some links move
         columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):

@@ -235,5 +235,5 @@ def solve(task: Task) -> Outcome:
         given, lengths + more,
         _("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
           "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
-        tuple(demands), (construction(found),),
+        tuple(demands), (construction(found),), output="slide",
     )  # fmt: skip

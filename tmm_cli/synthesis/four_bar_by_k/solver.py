@@ -25,7 +25,7 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
 )  # fmt: skip
 from tmm_cli.synthesis.four_bar_by_k.drawing import construction, diagrams, listing, side_name
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -137,7 +137,7 @@ def _refuse_numbers(task: Task) -> None:
         raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
     against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
-    if not 0 < task.swing <= np.pi - 2 * ARC:
+    if not SMALLEST <= task.swing <= np.pi - 2 * ARC:
         raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"))
     if theta > np.pi / 2 + half - ARC:  # the largest theta of the arc on D's side
         raise Infeasible("k", _("k is too large for this swing: on the whole circle the rocker would pass its dead "
@@ -170,7 +170,7 @@ def solve(task: Task) -> Outcome:
     notes = () if task.k > 1 else (_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
     return Outcome(
         _given(task), _found(task, f), source, tuple(demands),
-        (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),),
+        (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),), output="swing",
     )  # fmt: skip
 
 

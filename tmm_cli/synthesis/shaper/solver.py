@@ -122,4 +122,4 @@ def solve(task: Task) -> Outcome:
     )
     source = _("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
                "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
-    return Outcome(given, found, source, demands, (construction(f),))
+    return Outcome(given, found, source, demands, (construction(f),), output="slide")

@@ -133,7 +133,7 @@ def solve(task: Task) -> Outcome:
     drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
     source = _("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
                "on the bisector, OA = OC sin(theta/2)")  # fmt: skip
-    return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings)
+    return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
 
 
 def _given(task: Task) -> tuple[Value, ...]:

@@ -1,0 +1,52 @@
+"""A table of a load goes no farther than what it is against: rows beyond the cycle are refused, not cut."""
+
+import pytest
+from test_commands import tmm
+
+CRANK_SLIDER = """tmm: 1
+units: {{length: mm, angle: deg}}
+points: {{O: [0, 0]}}
+guides: {{x: {{through: [0, 0]}}}}
+links:
+  1: {{points: [O, A], length: 50}}
+  2: {{points: [A, B], length: 150}}
+  3: {{points: [B], slides: {{on: x}}}}
+driver: {{link: 1, speed: 60 rpm, turns: cw}}
+sketch: {{at: 90, B: [140, 0]}}
+loads:
+  gas: {{on: 3, force: {{angle: 180, against: {against}, table: {table}}}}}
+output: 3
+"""
+
+
+def forces(tmp_path, **given):
+    (tmp_path / "x.yaml").write_text(CRANK_SLIDER.format(**given))
+    return tmm("forces", "x.yaml", "--json", cwd=tmp_path)
+
+
+def test_rows_of_a_second_turn_are_refused_with_what_to_do(tmp_path):
+    ended = forces(tmp_path, against="crank turn", table="[[0, 0], [180, 5 kN], [540, 2 kN], [720, 0]]")
+    assert ended.returncode == 2
+    assert ended.stderr.endswith(
+        "\nerror: x.yaml:12:87: loads.gas.force.table[2][0]: this row is never reached: all repeats after 1 turn of "
+        "the driver\n"
+        "  found:   540 deg\n"
+        "  allowed: 0 to 360 deg; of a longer cycle of loads each turn is a problem file of its own\n"
+    )
+
+
+@pytest.mark.parametrize("against", ["crank turn", "crank angle"])
+def test_rows_below_zero_are_refused(tmp_path, against):
+    ended = forces(tmp_path, against=against, table="[[-90, 0], [0, 5 kN]]")
+    assert ended.returncode == 2
+    assert "loads.gas.force.table[0][0]: this row is never reached" in ended.stderr
+    assert "found:   -90" in ended.stderr
+
+
+@pytest.mark.parametrize("against", ["crank turn", "crank angle"])
+def test_a_table_up_to_the_end_of_the_cycle_is_taken(tmp_path, against):
+    assert forces(tmp_path, against=against, table="[[0, 0], [90, 5 kN], [360, 0]]").returncode == 0
+
+
+def test_a_table_against_the_stroke_may_reach_beyond_it(tmp_path):
+    assert forces(tmp_path, against="stroke", table="[[0, 0], [500, 5 kN]]").returncode == 0

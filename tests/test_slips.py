@@ -1,0 +1,168 @@
+"""Slips of the pen in a problem file, and the one sentence that says what to write instead; or it is simply taken."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from test_bad_input import changed, refusal
+
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.expressions import evaluate
+from tmm_cli.problem.extended import ExtendedUnits
+from tmm_cli.problem.reader import read_text
+from tmm_cli.quantities import ANGLE
+
+FOUR_BAR = """tmm: 1
+points: {O: [0, 0], D: [300, 0]}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: [A, B], length: 250}
+  3: {points: [B, D], length: 200}
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: 60, B: [250, 190]}
+"""
+TWINS = "this name looks like another one, but its letters differ"
+ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
+TOP = (
+    "tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, racks, cams, "
+    "springs, friction, sketch, masses, loads, gravity, output, positions, checks"
+)
+
+
+def told(old: str, new: str) -> str:
+    assert old in FOUR_BAR
+    return refusal(FOUR_BAR.replace(old, new))
+
+
+def solved(text: str):
+    return solve(build(read_text(text, "x.yaml")))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [  # here А, В, С, Е and О are Cyrillic
+        ("1: {name: crank, points: [O, A]", "1: {name: crank, points: [O, А]",
+         f"x.yaml:20:32: links.1.points[1]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?"),
+        ("points: [A], slides", "points: [А], slides",
+         f"x.yaml:21:29: links.2.points[0]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?"),
+        ("points: [E], slides", "points: [Е], slides",
+         f"x.yaml:24:27: links.5.points[0]: {TWINS}\n  found:   'Е'\n  did you mean 'E' in Latin letters?"),
+        ("along: CD", "along: СD",
+         "x.yaml:21:56: links.2.slides.along: two points of one link are wanted\n  found:   'СD'"
+         "\n  allowed: two of C, D\n  did you mean 'CD' in Latin letters?"),
+    ],
+)  # fmt: skip
+def test_cyrillic_letters_in_the_names_of_points(old: str, new: str, message: str) -> None:
+    assert refusal(changed(old, new)) == message
+
+
+@pytest.mark.parametrize(
+    ("key", "word", "place", "allowed"),
+    [("links", "звенья", "3:1: звенья", TOP), ("links", "članovi", "3:1: članovi", TOP),
+     ("driver", "Привод", "7:1: Привод", TOP),
+     ("length", "длина", "4:23: links.1.длина", "name, points, length, also, slides")],
+)  # fmt: skip
+def test_keys_in_another_language(key: str, word: str, place: str, allowed: str) -> None:
+    message = f"x.yaml:{place}: unknown key\n  found:   '{word}'\n  allowed: {allowed}\n  did you mean '{key}'?"
+    assert told(key, word) == message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("tmm: 1\n", "", "x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of this format; write tmm: 1"),
+        ("1 rad/s", "70 об.мин", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об.мин'"
+         "\n  allowed: об/мин"),
+        ("1 rad/s", "70 об./мин.", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об./мин.'"
+         "\n  allowed: об/мин"),
+        ("1 rad/s", "70 r.p.m.", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'r.p.m.'"
+         "\n  allowed: rpm"),
+        ("at: 60", "at: pi/3 rad", "x.yaml:8:14: sketch.at: an angle is wanted here"
+         "\n  found:   'pi/3 rad', a number (1.0472)"
+         "\n  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is in radians already"),
+        ("length: 100", "length: (40 + 60) mm",
+         "x.yaml:4:31: links.1.length: a unit follows a number only: here write * 1 mm"
+         "\n  found:   '(40 + 60) mm', at 'mm'" + ARITHMETIC),
+        ("at: 60", "at: atan2(1, 2)", "x.yaml:8:14: sketch.at: a comma in brackets needs quotes here"
+         "\n  found:   'atan2(1, 2)'\n  allowed: \"atan2(1, 2)\""),
+        ("[300, 0]", "[hypot(300, 0), 0]", "x.yaml:2:25: points.D[0]: a comma in brackets needs quotes here"
+         "\n  found:   'hypot(300, 0)'\n  allowed: \"hypot(300, 0)\""),
+    ],
+)  # fmt: skip
+def test_what_to_write_instead(old: str, new: str, message: str) -> None:
+    assert told(old, new) == message
+
+
+def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
+    assert read_text("a: [2*cos(30), f(1)]\nb: {c: (1), d: (2)}", "f").data == {
+        "a": ["2*cos(30)", "f(1)"], "b": {"c": "(1)", "d": "(2)"},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "same"),
+    [("at: 60", "at: pi rad", "at: 180"), ("1 rad/s", "2*pi rad/s", "60 rpm")],
+)
+def test_pi_may_have_a_unit(old: str, new: str, same: str) -> None:
+    one, other = (build(read_text(FOUR_BAR.replace(old, text), "x.yaml")).linkage for text in (new, same))
+    assert np.isclose(one.sketch.at, other.sketch.at) and np.isclose(one.driver.rate, other.driver.rate)
+
+
+def test_one_guide_one_position_and_one_place_need_no_list() -> None:
+    short = changed("slides: {on: x}", "slides: x").replace("detail: [3]", "detail: 3")
+    whole, problem = (build(read_text(text, "x.yaml")) for text in (changed("OA: 110", "OA: 110"), short))
+    assert (problem.linkage.slides, problem.request) == (whole.linkage.slides, whole.request)
+    assert build(read_text(FOUR_BAR + "positions: {at: 90}\n", "x.yaml")).request.places == (np.pi / 2,)
+
+
+def test_the_group_that_was_sketched_wrong_is_blamed_and_not_a_later_one() -> None:
+    assert refusal(changed("D: [140, 280]", "D: [140, -680]")) == (
+        "x.yaml:26:25: sketch.D: the sketch fits no assembly\n  found:   [140, -680]\n"
+        "  allowed: about [-148.829, -982.732] with the driver at 30 deg"
+    )
+
+
+@pytest.mark.parametrize("call", [
+    "sin(1e200*1e200)", "cos(1e200*1e200)", "tan(1e200*1e200)", "(1 mm)^(1e200*1e200 - 1e200*1e200)",
+    "min(1, 1e200*1e200)", "1/(1e200*1e200)",
+])  # fmt: skip
+def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
+    message = f"x.yaml:4:31: links.1.length: this number is too large\n  found:   '{call}'"
+    assert told("length: 100", f'length: "{call}"') == message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("length: 100", "length: 1e306 km",
+         "x.yaml:4:31: links.1.length: this number is too large\n  found:   '1e306 km'"),
+        ("length: 100", "length: 1e200", "x.yaml:4:31: links.1.length: this is too large for a mechanism"
+         "\n  found:   1e200\n  allowed: 1e+23 mm or less"),
+        ("length: 100", "length: 1e-200", "x.yaml:4:31: links.1.length: this is too small for a mechanism"
+         "\n  found:   1e-200\n  allowed: 1e-17 mm or more"),
+        ("1 rad/s", "1e160 rpm", "x.yaml:7:26: driver.speed: this is too large for a mechanism"
+         "\n  found:   '1e160 rpm'\n  allowed: 1e+20 rad/s or less"),
+    ],
+)  # fmt: skip
+def test_sizes_that_no_mechanism_has(old: str, new: str, message: str) -> None:
+    assert told(old, new) == message
+
+
+@pytest.mark.parametrize("factor", ["1e15", "1e-15"])
+def test_what_is_accepted_gives_no_warning(factor: str) -> None:
+    text = FOUR_BAR.replace("1 rad/s", f"1 rad/s*{factor}")
+    for number in ("300, 0", "100", "250", "200", "250, 190"):
+        text = text.replace(number, ", ".join(f"{one}*{factor}" for one in number.split(", ")), 1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.isfinite(solved(text).motion.poses["3"].z).all()
+
+
+def test_a_bare_number_and_one_with_a_unit_have_the_same_decimals() -> None:
+    written = "38.925549624985472123456789"
+    bare = read_text(f"a: {written}", "f").data["a"]
+    units = ExtendedUnits()
+    assert evaluate(bare, {}, units, ANGLE) == evaluate(f"{written} deg", {}, units, ANGLE)

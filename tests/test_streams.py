@@ -1,0 +1,143 @@
+"""Streams and files that fail the commands: closed, full, broken off, in another encoding; interruptions."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+from test_commands import ROOT, tmm
+
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import NUMBER
+from tmm_cli.results.table import Column, Table, table_of_words
+from tmm_cli.results.text import csv_text
+
+SINE = ROOT / "problems" / "sine.yaml"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}
+posix = pytest.mark.skipif(os.name == "nt", reason="a shell of POSIX")
+
+
+def shell(line, cwd=ROOT, **environment):
+    """A line of a shell in which `tmm` is the command."""
+    line = line.replace("tmm ", f"{sys.executable} -m tmm_cli ")
+    return subprocess.run(
+        ["/bin/sh", "-c", line], capture_output=True, cwd=cwd, env={**ENVIRONMENT, **environment}, check=False
+    )
+
+
+@posix
+@pytest.mark.parametrize(
+    "command", ["schema", f"explain {SINE}", f"forces {SINE} --json", "--help", "check problems/x"]
+)
+def test_a_reader_that_leaves_is_no_error(command):
+    done = shell(f"(tmm {command}; echo code $? >&2) | true")
+    said = done.stderr.decode()
+    assert "Traceback" not in said and "Broken" not in said
+    assert said.endswith("code 0\n") or command.startswith("check")
+
+
+@posix
+@pytest.mark.parametrize("command", ["schema", f"structure {SINE}", f"forces {SINE} --json"])
+def test_a_full_disk_is_one_error(command):
+    done = shell(f"tmm {command} > /dev/full")
+    assert done.returncode == 2
+    assert done.stderr.decode().splitlines()[-1] == "error: output: No space left on device"
+    assert "Traceback" not in done.stderr.decode()
+
+
+@posix
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-"])
+def test_a_closed_stream_swallows_what_is_printed(closed, tmp_path):
+    done = shell(f"tmm run {SINE} --no-drawings -o {tmp_path} {closed}")
+    assert done.returncode == 0 and b"Traceback" not in done.stderr + done.stdout
+    assert (tmp_path / "sine" / "result.json").exists()
+
+
+@pytest.mark.parametrize("encoding", ["cp1251", "cp866", "ascii", "utf-8"])
+@pytest.mark.parametrize("command", ["explain", "forces"])
+def test_a_console_that_lacks_characters_shows_question_marks(encoding, command, tmp_path):
+    file = tmp_path / "задача.yaml"
+    text = SINE.read_text(encoding="utf-8")
+    file.write_text(text.replace("title: ", "title: ω̇ 摇 Кулиса ", 1), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "tmm_cli", command, str(file)],
+        capture_output=True, env={**ENVIRONMENT, "PYTHONIOENCODING": encoding}, cwd=tmp_path, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0 and b"Traceback" not in done.stderr
+    assert "phi" in done.stdout.decode(encoding) or "crank" in done.stdout.decode(encoding)
+    assert encoding == "ascii" or command == "forces" or "Кулиса" in done.stdout.decode(encoding)
+
+
+@posix
+def test_a_file_whose_name_is_not_utf_8_is_worked_on_like_any(tmp_path):
+    name = os.path.join(os.fsencode(tmp_path), b"\xea\xf3\xeb.yaml")
+    shutil.copy(SINE, name)
+    for command in (["run", "--no-drawings", "-o", str(tmp_path)], ["explain"], ["forces", "--json"], ["check"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "tmm_cli", command[0], name, *command[1:]],
+            capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False,
+        )  # fmt: skip
+        assert b"Traceback" not in done.stderr, done.stderr
+        assert done.returncode == (1 if command == ["check"] else 0)
+
+
+def interrupted(where):
+    """The command, interrupted when it imports this module."""
+    code = (
+        "import sys, runpy\n"
+        "class Interrupt:\n"
+        "    def find_spec(self, name, path, target=None):\n"
+        f"        if name == {where!r}: raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupt())\n"
+        f"sys.argv = ['tmm', 'run', {str(SINE)!r}]\n"
+        "runpy.run_module('tmm_cli', run_name='__main__')\n"
+    )
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False)
+
+
+@pytest.mark.parametrize("where", ["tmm_cli.cli", "typer", "tmm_cli.cli.run", "numpy", "tmm_cli.results.output"])
+def test_ctrl_c_at_any_time_ends_with_130_and_no_word(where):
+    done = interrupted(where)
+    assert (done.returncode, done.stderr) == (130, b"")
+
+
+def test_check_names_what_cannot_be_written(tmp_path):
+    shutil.copy(SINE, tmp_path)
+    (tmp_path / "expected").write_text("a file", encoding="utf-8")
+    done = tmm("check", tmp_path, "--update")
+    assert done.returncode == 2
+    assert done.stderr == f"error: sine: {tmp_path / 'expected'}: File exists\n1 problems, 1 differ\n"
+    done = tmm("check", tmp_path, "--junit", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1] == f"error: {tmp_path}: Is a directory"
+
+
+def test_expected_values_nested_without_end_are_none(tmp_path):
+    shutil.copy(SINE, tmp_path)
+    (tmp_path / "expected").mkdir()
+    (tmp_path / "expected" / "sine.json").write_text("[" * 100_000, encoding="utf-8")
+    done = tmm("check", tmp_path)
+    assert done.returncode == 1
+    assert "this is not a file of expected values" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("word", "cell"),
+    [
+        ("a;b", '"a;b"'), ("a;=cmd()", "\"a;'=cmd()\""), ("a\t@sum", "\"a\t'@sum\""), ("a, +b", "\"a,' +b\""),
+        ("x|-y()", "\"x|'-y()\""), ("=1", "'=1"), (" =1", "' =1"), ("1; -2,5", '"1; -2,5"'), ("-1.5e-3", "-1.5e-3"),
+        ("nan", '"nan"'), ("Inf", '"Inf"'), ("link 2", "link 2"), ('a"b', '"a""b"'), ("\tx", "\"'\tx\""),
+    ],
+)  # fmt: skip
+def test_no_cell_breaks_or_runs_in_any_locale(word, cell):
+    table = table_of_words("t", "", ("header",), [(word,)])
+    assert "".join(csv_text(table, UnitSystem())) == f"header\n{cell}\n"
+
+
+def test_what_is_no_number_has_an_empty_cell():
+    values = [1.0, float("nan"), float("inf"), None]
+    for bound in (None, [1e-9] * 4, [float("nan")] * 4):
+        table = Table("t", "", (Column("header", values, NUMBER, bound=bound),))
+        lines = "".join(csv_text(table, UnitSystem())).splitlines()
+        assert lines[2:] == ["", "", ""]
