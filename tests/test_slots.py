@@ -63,6 +63,7 @@ def test_a_slot_that_goes_on_is_not_warned_of(tmp_path, guide):
 
 def test_a_slot_that_reaches_is_not_warned_of(tmp_path):
     assert "slot" not in tmm("kinematics", file(tmp_path, cd=500)).stderr
+    assert solve(load(str(tmp_path / "x.yaml"))).slots[1].far == 0
     assert "slot" not in tmm("kinematics", file(tmp_path, cd=501)).stderr
 
 
