@@ -12,9 +12,10 @@ def forces(
     names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
-        from tmm_cli import load, solve
+        from tmm_cli import solve
+        from tmm_cli.cli.opening import opened
         from tmm_cli.cli.reporting import report
 
-        return report(solve(load(file), "forces", position), names, as_json, out, digits)
+        return report(solve(opened(file), "forces", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

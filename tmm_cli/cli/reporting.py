@@ -11,6 +11,7 @@ from tmm_cli import count, problem_of, redrive, solve, structure_of
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
@@ -29,11 +30,17 @@ if TYPE_CHECKING:
 
 
 def computed(
-    file: str, stage: Stage, positions: Sequence[int] | None = None, driver: str | None = None, *, drafted: bool = False
+    file: str,
+    stage: Stage,
+    positions: Sequence[int] | None = None,
+    driver: str | None = None,
+    *,
+    drafted: bool = False,
+    silent: bool = False,
 ) -> Results | ChainResults:
     """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
 
-    drafted: the structure without the lengths that a task of synthesis finds.
+    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood.
     """
     tree = read_file(file)
     if is_chain(tree):
@@ -42,7 +49,9 @@ def computed(
         return count(build_chain(tree))
     problem = problem_of(tree)
     if driver is not None:
-        return solve(redrive(problem, driver), stage, positions)
+        problem = redrive(problem, driver)
+    if not silent:
+        introduce(problem, drafted=drafted)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
@@ -16,6 +17,7 @@ from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
 from tmm_cli.results.terminal import show
 from tmm_cli.results.text import csv_text, json_bytes
+from tmm_cli.results.understood import bare_units
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.synthesis.reading import alone, build
 
@@ -58,7 +60,10 @@ def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | Non
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
-        return (*alone(tree), None)
+        found = alone(tree)
+        say(f"{found[0]}: {bare_units(found[3])}")
+        return (*found, None)
     problem = build(tree)
+    introduce(problem)
     assert problem.synthesis is not None
     return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

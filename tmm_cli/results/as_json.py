@@ -29,6 +29,7 @@ from tmm_cli.results.shapes import (
     record,
 )
 from tmm_cli.results.text import plain
+from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.redundancy import space
 from tmm_cli.synthesis.check import measured_on
@@ -62,7 +63,7 @@ LAST = (
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
-    Field("warnings", NAMES, "sentences", warnings),
+    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
 LARGE = ("kinematics", "forces")
 
