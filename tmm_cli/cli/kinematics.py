@@ -62,5 +62,5 @@ def _list_assemblies(file: str, as_json: bool, out: Path | None, positions: Sequ
                 say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
         for group in here.lost:
             say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
-    write_pictures(results, out, dict(files(sheets(results))))
+    write_pictures(results, out, dict(files(sheets(results), say)))
     return code

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
@@ -32,6 +32,6 @@ def sheets(results: Results) -> Drawn:
             yield from sheets_of(here)
 
 
-def files(results: Results) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format."""
-    return every_format(sheets(results))
+def files(results: Results, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
+    """Every sheet in every format; say: where a note on them goes."""
+    return every_format(sheets(results), say)
