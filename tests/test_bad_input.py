@@ -203,7 +203,7 @@ def test_nothing_is_written_and_there_is_no_traceback(tmp_path):
     file.write_text(text, encoding="utf-8")
     done = process("run", file, "-o", tmp_path / "out")
     assert done.returncode == 2
-    assert done.stderr.startswith(f"error: {file}:{place(text, '30 deg')}: sketch.at: ")
+    assert f"\nerror: {file}:{place(text, '30 deg')}: sketch.at: " in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
     told = tmm("forces", file, "--json")

@@ -96,6 +96,12 @@ def test_what_to_write_instead(old: str, new: str, message: str) -> None:
     assert told(old, new) == message
 
 
+def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
+    assert read_text("a: [2*cos(30), f(1)]\nb: {c: (1), d: (2)}", "f").data == {
+        "a": ["2*cos(30)", "f(1)"], "b": {"c": "(1)", "d": "(2)"},
+    }  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("old", "new", "same"),
     [("at: 60", "at: pi rad", "at: 180"), ("1 rad/s", "2*pi rad/s", "60 rpm")],

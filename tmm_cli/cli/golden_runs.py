@@ -36,7 +36,7 @@ def compared(file: Path, update: bool) -> Outcome:
     """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     try:
-        found = to_json(computed(str(file), "forces"))
+        found = to_json(computed(str(file), "forces", silent=True))
     except ProblemError as error:
         return Outcome(file.stem, wrong=str(error), code=BAD_INPUT)
     expected = _read(expected_file)

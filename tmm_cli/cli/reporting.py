@@ -11,10 +11,12 @@ from tmm_cli import count, problem_of, redrive, solve, structure_of
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.budget import refuse_digits
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.output import Written, write_results
@@ -30,20 +32,30 @@ if TYPE_CHECKING:
 
 
 def computed(
-    file: str, stage: Stage, positions: Sequence[int] | None = None, driver: str | None = None, *, drafted: bool = False
+    file: str,
+    stage: Stage,
+    positions: Sequence[int] | None = None,
+    driver: str | None = None,
+    *,
+    drafted: bool = False,
+    silent: bool = False,
+    settings: Sequence[str] | None = None,
 ) -> Results | ChainResults:
     """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
 
-    drafted: the structure without the lengths that a task of synthesis finds.
+    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
+    settings: other values of parameters.
     """
-    tree = read_file(file)
+    tree = with_settings(read_file(file), settings or ())
     if is_chain(tree):
         from tmm_cli.problem.build_chain import build_chain  # few files give a chain
 
         return count(build_chain(tree))
     problem = problem_of(tree)
     if driver is not None:
-        return solve(redrive(problem, driver), stage, positions)
+        problem = redrive(problem, driver)
+    if not silent:
+        introduce(problem, drafted=drafted)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
 from tmm_cli.results.terminal import show
 from tmm_cli.results.text import csv_text, json_bytes
+from tmm_cli.results.understood import bare_units
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.synthesis.reading import alone, build
 
 
-def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
+def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
-    name, title, found, units, results = _solved(file)
+    name, title, found, units, results = _solved(file, settings)
     measured = None if results is None else measured_on(results)
     whole = {"problem": name, **to_json(found, measured)}
     if as_json:
@@ -51,14 +55,17 @@ def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
 
-def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    tree = read_file(file)
+    tree = with_settings(read_file(file), settings or ())
     if "synthesis" not in tree.data:
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
-        return (*alone(tree), None)
+        found = alone(tree)
+        say(f"{found[0]}: {bare_units(found[3])}")
+        return (*found, None)
     problem = build(tree)
+    introduce(problem)
     assert problem.synthesis is not None
     return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

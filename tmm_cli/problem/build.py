@@ -37,7 +37,7 @@ def is_chain(tree: Tree) -> bool:
 def build(tree: Tree, *, extended: bool = False) -> Problem:
     """A problem from a file that has been read and has no task of synthesis (see synthesis.reading).
 
-    extended: with its numbers in longdouble. Raises ProblemError.
+    extended: with its numbers as double-doubles. Raises ProblemError.
     """
     shape = checked_shape(tree)
     with placed_in(tree):
@@ -67,7 +67,7 @@ def validated(model: type[Model], tree: Tree) -> Model:
 
 
 def unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
-    """What bare numbers of a file mean; extended: with numbers in longdouble. Raises ProblemError."""
+    """What bare numbers of a file mean; extended: with numbers as double-doubles. Raises ProblemError."""
     with under("units"):
         if not extended:
             return UnitSystem(names)
@@ -116,9 +116,10 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     name = tree.name
     request = build_request(shape, first, values)
     refuse_work(linkage, request)
+    first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), tree,
+        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed), tree,
     )  # fmt: skip
 
 

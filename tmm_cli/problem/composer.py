@@ -19,7 +19,7 @@ MAX_NODES: Final = 50_000
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _ITEM_BELOW = re.compile(r"[\r\n] *- ")
-_CUT = re.compile(r"[^\[\]{}\"',\n]*\([^\[\]{}\n]*,[^\[\]{}\n]*?\)(?=\s*[,}\]\n])")  # atan2(y, x)
+_CALL = re.compile(r"[^\[\]{}\n]*?,[^\[\]{}\n]*?\)(?=\s*[,}\]\n])")  # what may end with its bracket behind a comma
 _COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
 
 
@@ -149,8 +149,8 @@ class Composer:
 
     def cut_by_comma(self, event: Any, path: Path) -> None:
         """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
-        cut = _CUT.match(self.text, event.start_mark.index)
-        if cut and cut.end() > event.end_mark.index:
+        cut = _CALL.match(self.text, event.start_mark.index)
+        if cut and event.value.count("(") > event.value.count(")"):
             self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:

@@ -31,9 +31,9 @@ class Problem:
     """A problem file that has been read.
 
     name: of the file, without its ending; lever_limit: allowed difference of the lever, a share of one; source: what
-    errors found later are located with; extended: makes the same in longdouble from the decimals of the file.
+    errors found later are located with; extended: makes the same as double-doubles from the decimals of the file.
     pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
-    them (then to exceed them is a failed check).
+    them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
     """
 
     name: str
@@ -46,6 +46,7 @@ class Problem:
     file: str = ""
     pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
     limits_set: tuple[bool, bool] = (False, False)
+    bare_speed: bool = False
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

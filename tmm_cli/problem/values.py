@@ -12,7 +12,7 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
-from tmm_cli.problem.expressions import evaluate
+from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
@@ -44,6 +44,10 @@ class ValueReader:
                     allowed=_("{most} or less").format(most=most),
                 )
             return number
+
+    def bare(self, value: Any) -> bool:
+        """Whether a value has no unit of its own."""
+        return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
         """A value in SI that must be above zero (or not below)."""
@@ -176,7 +180,7 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
 
 
 def planar(x: float, y: float) -> complex:
-    """x + iy in the precision of its parts (a longdouble is no float)."""
+    """x + iy in the precision of its parts (a double-double is no float)."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 

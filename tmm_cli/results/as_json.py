@@ -9,13 +9,27 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Any
 
+from tmm_cli.analysis.checks import checks
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
-from tmm_cli.results.shapes import INTEGER, NAMES, NUMBER, TEXT, Field, Shape, contents, list_of, properties, record
+from tmm_cli.results.shapes import (
+    FLAG,
+    INTEGER,
+    NAMES,
+    NUMBER,
+    TEXT,
+    Field,
+    Shape,
+    contents,
+    list_of,
+    properties,
+    record,
+)
 from tmm_cli.results.text import plain
+from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.redundancy import space
 from tmm_cli.synthesis.check import measured_on
@@ -34,10 +48,22 @@ FIRST = (
     Field("synthesis", Shape({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
           lambda r: r.problem.synthesis is not None and r.motion is not None),
 )  # fmt: skip
+CHECK = record(
+    "a number against its limit",
+    Field("check", TEXT, "slot, pressure, load, near dead, detail, lever", "kind"),
+    Field("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
+    Field("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
+    Field("at", NUMBER, "place of the driver, rad or m; null where there is none"),
+    Field("value", NUMBER, "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
+          "of the group, positions in detail, difference of the lever"),
+    Field("limit", NUMBER, "the most, of margins and positions in detail the least"),
+    Field("holds", FLAG, "within its limit"),
+)  # fmt: skip
 LAST = (
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
-    Field("warnings", NAMES, "sentences", warnings),
+    Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
+    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
 LARGE = ("kinematics", "forces")
 

@@ -13,7 +13,7 @@ from tmm_cli.results.table import Table, table_of_words
 
 Path = tuple[str, ...]
 
-IGNORED = {"files", "part", "tmm", "problem", "warnings", "digits"}
+IGNORED = {"files", "part", "tmm", "problem", "warnings", "checks", "digits"}  # checks and warnings rest on the others
 DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 FLOOR = 1e-6  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-15 of it passes

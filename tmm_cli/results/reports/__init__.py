@@ -27,6 +27,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("lever", "lever", ("lever",)),
     ("energy", "energy", ("energy", "friction")),
     ("assemblies", "assemblies", ()),
+    ("checks", "lever", ("checks",)),
 )
 
 

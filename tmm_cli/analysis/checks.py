@@ -1,0 +1,134 @@
+"""What of a mechanism is worth a second look: each check with its number, the limit and where it is nearest to it.
+
+What the positions alone would not show is looked for over the whole of what is asked: a cycle, or first to last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.forces.loads import given_loads
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.kinematics.driver_range import SCAN
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.roots import least
+from tmm_cli.tolerances import NO_PRESSURE
+from tmm_cli.vectors import Real, dot
+
+NO_WORK = 1e-6  # of all the work that a load does and takes: less in a stroke is none
+NO_DIFFERENCE = 1e-9  # of the largest: below, lever and force plan differ by rounding
+
+Kind = Literal["slot", "pressure", "load", "detail", "near dead", "lever"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A number against its limit. of: the thing, by its name in the file; at: the driver's place (rad or m), if any.
+
+    slot: how far beyond the point `detail` of its slot a link is (m; negative: what is left), at most 0. pressure: the
+    largest pressure angle on a link (rad), at most the limit. load: the work (J) with which a load that acts always
+    drives in one stroke (`detail`: working or idle) while it resists in the other, at most 0. detail: positions drawn
+    in detail, at least 1. near dead: least margin of a group, at least the limit. lever: its largest difference from
+    the force plan, at most the limit.
+    """
+
+    kind: Kind
+    of: str
+    at: float | None
+    value: float
+    limit: float
+    holds: bool
+    detail: str = ""
+
+
+@lru_cache(maxsize=1)
+def checks(results: Results) -> tuple[Check, ...]:
+    """All checks of results with forces, which have a motion and are whole."""
+    if results.lever is None or results.of or results.driver_range is None:
+        return ()
+    closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
+    return (
+        *_slots(results), *_pressure(results), *_loads(results, closely), *_near_dead(results, closely),
+        *_detail(results), *_lever(results),
+    )  # fmt: skip
+
+
+def _slots(results: Results) -> Iterable[Check]:
+    """The end of each slot to which its link comes nearest, or beyond which it goes farthest."""
+    for name in dict.fromkeys(excess.slide.name for excess in results.slots):
+        worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
+        yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
+
+
+def _pressure(results: Results) -> Iterable[Check]:
+    for found in results.pressure:
+        place = found.place if found.largest > NO_PRESSURE else None
+        yield Check("pressure", found.link, place, found.largest, found.allowed, found.holds, found.group)
+
+
+def _loads(results: Results, motion: Motion) -> Iterable[Check]:
+    """Loads that act always, and are constant or tabulated against the stroke, which comes and goes."""
+    strokes, loads = results.strokes, results.linkage.loads
+    if strokes is None or not strokes.strokes:
+        return
+    always = [x.name for x in loads if not x.working_stroke_only and (x.table is None or x.table.against == "stroke")]
+    between = (motion.q[1:] + motion.q[:-1]) / 2
+    works = strokes.share(between, motion.linkage.driver.sense)
+    for load in given_loads(motion, strokes):
+        if load.name not in always:
+            continue
+        rate, arm = motion.first[load.link], load.at * motion.poses[load.link].z
+        slope: Real = dot(load.force, rate.at(arm)) + load.moment * rate.w
+        work = (slope[1:] + slope[:-1]) / 2 * np.diff(motion.q)
+        work = np.where(np.isfinite(work), work, 0.0)
+        done = {"working": float(np.sum(work[works])), "idle": float(np.sum(work[~works]))}
+        drives = max(done, key=lambda stroke: done[stroke])
+        resists = -min(done.values()) > NO_WORK * float(np.sum(np.abs(work)))
+        both = resists and done[drives] > NO_WORK * float(np.sum(np.abs(work)))
+        yield Check("load", load.name, None, done[drives] if both else 0.0, 0.0, not both, drives if both else "")
+
+
+def _near_dead(results: Results, motion: LinkStates) -> Iterable[Check]:
+    """The least margin of each group: in its dead or change positions, or where it comes nearest to one."""
+    step = abs(float(motion.q[1] - motion.q[0]))
+    for kernel, placement in zip(motion.kernels, motion.placements, strict=True):
+        title = kernel.group.title
+        margin = np.where(motion.placed, placement.margin, np.inf)
+        if not bool(np.any(np.isfinite(margin))):
+            continue
+        k = int(np.argmin(margin))
+        upto = towards(motion.kernels, kernel.group.links)
+        found = [least(partial(_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)]
+        found += [(float(motion.q[k]), float(margin[k]))]
+        found += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
+        place, value = min(found, key=lambda pair: pair[1])
+        yield Check("near dead", title, place, value, kernel.near, value >= kernel.near)
+
+
+def _margin(results: Results, upto: tuple[Kernel, ...], q: Real) -> Real:
+    """Of the last group."""
+    there = link_states(results.linkage, upto, q, 0)
+    return np.where(there.placed, there.placements[-1].margin, np.inf)
+
+
+def _detail(results: Results) -> Iterable[Check]:
+    count = len(results.inputs.request.detail)
+    yield Check("detail", "", None, float(count), 1.0, count > 0)
+
+
+def _lever(results: Results) -> Iterable[Check]:
+    """The position where the lever differs most from the force plan."""
+    assert results.lever is not None and results.motion is not None
+    counted = results.motion.moving & ~results.locked
+    if bool(np.any(counted)):
+        k = int(np.argmax(np.where(counted, results.lever.difference, -1.0)))
+        value, limit = float(results.lever.difference[k]), results.inputs.lever_limit
+        place = float(results.motion.q[k]) if value > NO_DIFFERENCE else None
+        yield Check("lever", "", place, value, limit, results.lever_holds)

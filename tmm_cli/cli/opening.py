@@ -1,0 +1,32 @@
+"""A file is read, and what was understood is said, before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tmm_cli import problem_of
+from tmm_cli.cli.common import say
+from tmm_cli.errors import _
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.settings import with_settings
+from tmm_cli.results.understood import bare_units, doubts, understood
+
+
+def opened(file: str, settings: Sequence[str] | None = None) -> Problem | TaskProblem:
+    """The problem of a file with other parameters; says what was understood. Raises ProblemError."""
+    problem = problem_of(with_settings(read_file(file), settings or ()))
+    introduce(problem)
+    return problem
+
+
+def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
+    """Say what was understood, and what is probably a slip; drafted: without what a task would find."""
+    if drafted and isinstance(problem, TaskProblem):
+        say(f"{problem.name}: {bare_units(problem.units)}")
+        return
+    problem = problem.whole
+    for sentence in understood(problem):
+        say(f"{problem.name}: {sentence}")
+    for doubt in doubts(problem):
+        say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))

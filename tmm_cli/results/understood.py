@@ -1,0 +1,137 @@
+"""What was understood of a problem before anything is computed, and what in it is probably a slip."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from itertools import combinations
+from typing import Any
+
+from tmm_cli.errors import _
+from tmm_cli.linkage import FRAME, Driver
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
+from tmm_cli.results.table import with_unit
+
+SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
+BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
+
+
+def understood(problem: Problem) -> Iterable[str]:
+    """Units, driver, gravity, sizes: a sentence each."""
+    yield bare_units(problem.units)
+    if problem.source is not None and problem.source.given:
+        yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
+    linkage = problem.linkage
+    for driver in linkage.drivers:
+        yield _("driver: link {link}, {motion}").format(link=driver.link, motion=motion(driver))
+    spans = _spans(problem)
+    if spans:
+        (small, short), (large, long) = min(spans.values()), max(spans.values())
+        yield _("sizes: from {small} ({short}) to {large} ({long}); {gravity}").format(
+            small=with_unit(problem.units, small, LENGTH), short=short,
+            large=with_unit(problem.units, large, LENGTH), long=long, gravity=gravity(linkage.gravity),
+        )  # fmt: skip
+    else:
+        yield gravity(linkage.gravity)
+
+
+def bare_units(units: UnitSystem) -> str:
+    """What numbers without a unit mean."""
+    names = [units.symbol(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
+    return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
+        units=", ".join(names), angular=units.symbol(ANGULAR_SPEED), linear=units.symbol(SPEED)
+    )
+
+
+def motion(driver: Driver) -> str:
+    """`70 rad/s = 668 rpm, counterclockwise`."""
+    if driver.kind == "slide":
+        text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
+        return text.format(speed=_short(driver.rate))
+    text = _("{speed} rad/s = {turns} rpm, counterclockwise")
+    if driver.sense < 0:
+        text = _("{speed} rad/s = {turns} rpm, clockwise")
+    return text.format(speed=_short(driver.rate), turns=_short(driver.rate * 30 / math.pi))
+
+
+def gravity(pull: complex) -> str:
+    """Its size and direction."""
+    if not pull:
+        return _("no gravity")
+    if pull.real == 0 > pull.imag:
+        return _("gravity {size} m/s2 downwards").format(size=f"{-pull.imag:.6g}")
+    return _("gravity [{x}, {y}] m/s2").format(x=f"{pull.real:.6g}", y=f"{pull.imag:.6g}")
+
+
+def doubts(problem: Problem) -> Iterable[str]:
+    """What is allowed and computed, and yet is probably not what was meant."""
+    data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
+    yield from _bare_speed(problem, data)
+    yield from _sizes(problem)
+    yield from _masses(problem, data)
+    positions = data.get("positions", {})
+    if "at" in positions and "count" in positions:
+        yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
+
+
+def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+    """A speed without a unit means radians where every other angle of the file is in degrees."""
+    driver, named = problem.linkage.driver, {key.replace("_", " ") for key in data.get("units", {})}
+    degrees = problem.units.factor(ANGLE) != 1 and "angular speed" not in named
+    if problem.bare_speed and driver.kind == "turn" and driver.rate and degrees:
+        yield _(
+            "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
+            "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
+        ).format(motion=motion(driver), angle=problem.units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+
+
+def _sizes(problem: Problem) -> Iterable[str]:
+    for link, (span, points) in _spans(problem).items():
+        size = with_unit(problem.units, span, LENGTH)
+        if span > LARGE:
+            yield _("{points} is {size}, more than 50 m: is the unit right?").format(points=points, size=size)
+        elif span < SMALL and link != FRAME:
+            yield _("{points} is {size}, less than 5 mm: is the unit right?").format(points=points, size=size)
+
+
+def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+    """Inertias that do not fit their links, and bodies that are put in one point."""
+    linkage, spans = problem.linkage, _spans(problem)
+    largest = max((span for span, points in spans.values()), default=math.inf)
+    wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
+    runners = {slide.runner for slide in linkage.slides}
+    for name, given in data.get("masses", {}).items():
+        link = linkage.links[name]
+        if not link.mass or not link.inertia:
+            continue
+        radius = math.sqrt(link.inertia / link.mass)
+        told = with_unit(problem.units, radius, LENGTH)
+        if name in spans and name not in wheels and radius > spans[name][0]:
+            yield _(
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, more than the link itself "
+                "({points}, {size}): are the units of inertia right?"
+            ).format(
+                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH)
+            )
+        elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
+            yield _(
+                "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
+                "sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is meant"
+            ).format(link=name, point=next(iter(link.points)), radius=told)
+
+
+def _spans(problem: Problem) -> dict[str, tuple[float, str]]:
+    """Of each link with several places the largest distance of two points, and which two."""
+    found = {}
+    for name, link in problem.linkage.links.items():
+        pairs = [(float(abs(link.points[a] - link.points[b])), a + b) for a, b in combinations(link.points, 2)]
+        if pairs and max(pairs)[0] > 0:
+            found[name] = max(pairs)
+    return found
+
+
+def _short(number: float) -> str:
+    """Three figures, and all those before the point."""
+    return f"{number:.3g}" if number < 1000 else f"{number:.0f}"
