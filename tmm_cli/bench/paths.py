@@ -90,7 +90,7 @@ PROBLEMS: Final = (
     ),
     PathProblem(
         "leaf of 18 points, timed", KUNJUR, LEAF, (0.05, 50), (-50, 50), (-50, 50), tilted=True,
-        at=tuple(range(0, 360, 20)), phase=True, least=0.02335171,
+        at=tuple(range(0, 360, 20)), phase=True, least=0.0223965335,
     ),
     PathProblem(
         "ellipse of 10 points", ACHARYYA, ELLIPSE, (5, 80), (-80, 80), (-80, 80), tilted=True, least=6.386013110e-3
