@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from test_commands import process, tmm
 
+from tmm_cli import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.understood import doubts, understood
@@ -101,3 +102,44 @@ def test_a_count_beside_places_is_warned_of_and_stands_in_the_results(tmp_path):
     done = tmm("kinematics", file, "--json")
     assert f"warning: twice: {warning}\n" in done.stderr
     assert json.loads(done.stdout)["warnings"][0] == warning
+
+
+def test_a_parameter_may_be_set_beside_the_file():
+    done = tmm("kinematics", SHAPER, "--set", "OA=120", "--set", "n1 = 2 * 30 rpm", "-p", "0", "--json")
+    assert "shaper: in place of the file's: --set OA=120, --set n1 = 2 * 30 rpm\n" in done.stderr
+    assert "shaper: driver: link 1, 6.28 rad/s = 60 rpm, counterclockwise\n" in done.stderr
+    assert "sizes: from 120 mm (OA)" in done.stderr
+    twin = build(read_text(TEXT.replace("OA: 110", "OA: 120").replace("82 rpm", "60 rpm"), "shaper.yaml"))
+    (x,) = solve(twin, "kinematics", [0]).motion.named("E").x.real
+    assert json.loads(done.stdout)["kinematics"]["points"]["E"]["x"]["x"] == pytest.approx([x], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("CB=1", "parameters.CB: there is no parameter of that name\n  found:   'CB'\n  allowed: OA, OC, CD, DE, n1"),
+        ("oa=1", "parameters.oa: there is no parameter of that name\n  found:   'oa'\n  allowed: OA, OC, CD, DE, n1\n"
+         "  did you mean 'OA'?"),
+        ("OA=12 mmm", "parameters.OA: unknown unit\n  found:   'mmm'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n"
+         "  did you mean 'mm'?"),
+        ("OA=1,5", "parameters.OA: decimal comma: write 1.5\n  found:   '1,5'\n"
+         "  allowed: a decimal point; a list is written [1, 5]"),
+        ("OA", "a name and a value are wanted\n  allowed: --set OA=120"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("command", ["run", "structure", "kinematics", "forces", "explain", "synthesis"])
+def test_a_setting_is_refused_as_in_the_file(command, setting, message):
+    done = tmm(command, SHAPER, "--set", setting)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"error: --set {setting}: {message}\n"
+
+
+def test_a_parameter_is_set_once():
+    done = tmm("structure", SHAPER, "--set", "OA=1", "--set", "OA=2")
+    assert done.stderr.startswith("error: --set OA=2: parameters.OA: this is set twice\n")
+
+
+@pytest.mark.parametrize("command", [(), ("run",), ("explain",), ("bench",), ("bench", "speed"), ("schema",)])
+def test_a_short_h_asks_for_help(command):
+    done = tmm(*command, "-h")
+    assert (done.returncode, done.stdout) == (0, tmm(*command, "--help").stdout)

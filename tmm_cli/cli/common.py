@@ -28,6 +28,12 @@ Digits = Annotated[
     bool,
     typer.Option("--digits", help="Show beside each value its bound by rounding and its sensitivity to the data."),
 ]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="NAME=VALUE", help="Another value of a parameter (may be repeated).", show_default=False
+    ),
+]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
 ]

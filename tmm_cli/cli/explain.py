@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import OK, Files, console, each
+from tmm_cli.cli.common import OK, Files, Settings, console, each
 
 
-def explain(files: Files) -> None:
+def explain(files: Files, settings: Settings = None) -> None:
     """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why."""
 
     def work(file: str) -> int:
@@ -14,7 +14,7 @@ def explain(files: Files) -> None:
         from tmm_cli.results.explain import explain as tables
         from tmm_cli.results.terminal import show
 
-        results = solve(opened(file), "structure")
+        results = solve(opened(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
         for table in tables(results):

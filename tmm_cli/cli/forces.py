@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, Settings, each
 
 
 def forces(
-    files: Files, as_json: Json = False, out: Out = None, position: Position = None, digits: Digits = False
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    position: Position = None,
+    digits: Digits = False,
+    settings: Settings = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
     names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
@@ -16,6 +21,6 @@ def forces(
         from tmm_cli.cli.opening import opened
         from tmm_cli.cli.reporting import report
 
-        return report(solve(opened(file), "forces", position), names, as_json, out, digits)
+        return report(solve(opened(file, settings), "forces", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, each, say
+from tmm_cli.cli.common import Digits, Files, Json, Out, Position, Settings, each, say
 from tmm_cli.errors import _
 
 Assemblies = Annotated[
@@ -28,6 +28,7 @@ def kinematics(
     assemblies: Assemblies = False,
     of: Of = "",
     digits: Digits = False,
+    settings: Settings = None,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
@@ -39,13 +40,15 @@ def kinematics(
         from tmm_cli.cli.reporting import report
 
         if assemblies:
-            return _list_assemblies(file, as_json, out, position)
-        return report(solve(opened(file), "kinematics", position, asked), names, as_json, out, digits)
+            return _list_assemblies(file, as_json, out, position, settings)
+        return report(solve(opened(file, settings), "kinematics", position, asked), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)
 
 
-def _list_assemblies(file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None) -> int:
+def _list_assemblies(
+    file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
+) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
     from tmm_cli import assemblies
     from tmm_cli.assembly.enumerate import listed
@@ -54,7 +57,7 @@ def _list_assemblies(file: str, as_json: bool, out: Path | None, positions: Sequ
     from tmm_cli.draw.assemblies import sheets
     from tmm_cli.draw.formats import files
 
-    results = assemblies(opened(file), positions)
+    results = assemblies(opened(file, settings), positions)
     code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
         if here.undecided is not None:

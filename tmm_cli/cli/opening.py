@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tmm_cli import problem_of
 from tmm_cli.cli.common import say
 from tmm_cli.errors import _
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.understood import bare_units, doubts, understood
 
 
-def opened(file: str) -> Problem | TaskProblem:
-    """The problem of a file; what was understood is on standard error. Raises ProblemError."""
-    problem = problem_of(read_file(file))
+def opened(file: str, settings: Sequence[str] | None = None) -> Problem | TaskProblem:
+    """The problem of a file with other parameters; says what was understood. Raises ProblemError."""
+    problem = problem_of(with_settings(read_file(file), settings or ()))
     introduce(problem)
     return problem
 

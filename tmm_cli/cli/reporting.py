@@ -15,6 +15,7 @@ from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.output import Written, write_results
@@ -37,12 +38,14 @@ def computed(
     *,
     drafted: bool = False,
     silent: bool = False,
+    settings: Sequence[str] | None = None,
 ) -> Results | ChainResults:
     """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
 
-    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood.
+    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
+    settings: other values of parameters.
     """
-    tree = read_file(file)
+    tree = with_settings(read_file(file), settings or ())
     if is_chain(tree):
         from tmm_cli.problem.build_chain import build_chain  # few files give a chain
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Digits, Files, Json, Position, each, say
+from tmm_cli.cli.common import Digits, Files, Json, Position, Settings, each, say
 from tmm_cli.errors import _
 
 SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
@@ -20,6 +20,7 @@ def run(
     as_json: Json = False,
     position: Position = None,
     digits: Digits = False,
+    settings: Settings = None,
     drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
 ) -> None:
     """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
@@ -30,7 +31,7 @@ def run(
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
-        results = computed(file, "forces", position)
+        results = computed(file, "forces", position, settings=settings)
         pictures: Iterable[tuple[str, bytes]] | None = None
         if drawings and not isinstance(results, ChainResults):
             from tmm_cli.draw import files as drawn

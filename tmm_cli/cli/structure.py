@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, each, say
+from tmm_cli.cli.common import Files, Json, Out, Settings, each, say
 from tmm_cli.errors import _
 
 Drawings = Annotated[
@@ -19,7 +19,12 @@ Driver = Annotated[
 
 
 def structure(
-    files: Files, as_json: Json = False, out: Out = None, drawings: Drawings = False, driver: Driver = None
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    drawings: Drawings = False,
+    driver: Driver = None,
+    settings: Settings = None,
 ) -> None:
     """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
     names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
@@ -28,7 +33,7 @@ def structure(
         from tmm_cli.analysis.spatial_chain import ChainResults
         from tmm_cli.cli.reporting import computed, report, write_pictures
 
-        results = computed(file, "structure", driver=driver, drafted=not drawings)
+        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=settings)
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out)
         from tmm_cli.draw import files as drawn

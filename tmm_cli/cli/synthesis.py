@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Files, Json, Out, each
+from tmm_cli.cli.common import Files, Json, Out, Settings, each
 
 
-def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
+def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
     """Find lengths from what a mechanism must do, analyse it, and measure on it what was asked.
 
     The file has a block `synthesis`; what it finds becomes parameters of its linkage. Exit code 1 when the mechanism
@@ -15,6 +15,6 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None) -> None:
     def work(file: str) -> int:
         from tmm_cli.cli.synthesis_report import report_synthesis
 
-        return report_synthesis(file, as_json, out)
+        return report_synthesis(file, as_json, out, settings)
 
     each(files, work, as_json=as_json, out=out)

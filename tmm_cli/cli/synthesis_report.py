@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from tmm_cli import solve
@@ -12,6 +13,7 @@ from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
@@ -22,9 +24,9 @@ from tmm_cli.synthesis.check import measured_on
 from tmm_cli.synthesis.reading import alone, build
 
 
-def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
+def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
-    name, title, found, units, results = _solved(file)
+    name, title, found, units, results = _solved(file, settings)
     measured = None if results is None else measured_on(results)
     whole = {"problem": name, **to_json(found, measured)}
     if as_json:
@@ -53,9 +55,9 @@ def report_synthesis(file: str, as_json: bool, out: Path | None) -> int:
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
 
-def _solved(file: str) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    tree = read_file(file)
+    tree = with_settings(read_file(file), settings or ())
     if "synthesis" not in tree.data:
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)

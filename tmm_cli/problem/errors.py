@@ -57,10 +57,14 @@ class ProblemError(Exception):
         """A copy that names the file and, from the tree, the line and column of the path.
 
         A mark already set is kept. When the path is not in the file (a missing key), the key of its nearest
-        ancestor is marked.
+        ancestor is marked. What is given on the command line is named instead.
         """
         new = copy.copy(self)
         new.file = file
+        for path, words in () if tree is None else tree.given.items():
+            if new.path[: len(path)] == path:
+                new.file = words
+                return new
         if new.mark is None and tree is not None:
             new.mark = tree.mark(self.path, key=self.key)
         return new

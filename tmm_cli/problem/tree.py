@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Any, Self
 
@@ -39,6 +39,7 @@ class Tree:
 
     marks: start of every value, () being the top. key_marks: start of every key, by the path of its value.
     commas: flow lists that may be numbers with a decimal comma, by path, with what they would then read.
+    given: what stands on the command line in place of the file's, by path, as it is written there.
     """
 
     file: str
@@ -46,6 +47,7 @@ class Tree:
     marks: Mapping[Path, Mark]
     key_marks: Mapping[Path, Mark]
     commas: Mapping[Path, str]
+    given: Mapping[Path, str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:

@@ -21,6 +21,8 @@ BULKY = 0.2  # of the largest link: a body of this radius of gyration is no poin
 def understood(problem: Problem) -> Iterable[str]:
     """Units, driver, gravity, sizes: a sentence each."""
     yield bare_units(problem.units)
+    if problem.source is not None and problem.source.given:
+        yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
     linkage = problem.linkage
     for driver in linkage.drivers:
         yield _("driver: link {link}, {motion}").format(link=driver.link, motion=motion(driver))

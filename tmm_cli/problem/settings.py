@@ -1,0 +1,37 @@
+"""Parameters that are given beside the file: `--set OA=120`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.scalars import plain_value
+from tmm_cli.problem.tree import Path, Tree
+
+
+def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
+    """The file with other values of parameters that it has, each read as if it stood there. Raises ProblemError."""
+    own = tree.data.get("parameters")
+    parameters = dict(own) if isinstance(own, dict) else {}
+    given: dict[Path, str] = {}
+    for setting in settings:
+        words = f"--set {setting}"
+        name, sign, text = (part.strip() for part in setting.partition("="))
+        path = ("parameters", name)
+        if not sign or not name:
+            raise ProblemError(_("a name and a value are wanted"), allowed="--set OA=120", file=words)
+        if name not in parameters:
+            raise ProblemError(
+                _("there is no parameter of that name"), path=path, found=quote(name), file=words,
+                allowed=", ".join(parameters) or _("none: the file has no parameters"), near=nearest(name, parameters),
+            )  # fmt: skip
+        if path in given:
+            raise ProblemError(_("this is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
+        given[path] = words
+        try:
+            parameters[name] = plain_value(text)
+        except ProblemError as error:
+            raise error.at(*path).located(words) from None
+    return replace(tree, data={**tree.data, "parameters": parameters}, given=given) if given else tree
