@@ -95,7 +95,7 @@ class Grammar:
     def number(self) -> Any:
         written = self.random.choice(NUMBERS)
         size = self.random.choice([1, 10, 100, 1e3]) * self.random.uniform(-1, 3)
-        return self.random.choice([written, round(size, 3), size, int(size)])
+        return self.random.choice([written, written, round(size, 3), size, int(size)])
 
     def expression(self, depth: int = 0) -> Any:
         pick = self.random.random()
