@@ -173,7 +173,7 @@ class TaskFile:
         except OfTheFile as error:
             raise error.error from None
         except UnknownParameterError as error:
-            if error.found not in map(quote, self.names.values()):
+            if error.found not in [quote(name) for name in self.names.values()]:
                 raise
             raise ProblemError(
                 _("this rests on what the synthesis finds"), path=error.path, found=error.found,
