@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 
 import numpy as np
@@ -102,6 +103,13 @@ def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
     assert read_text("a: [2*cos(30), f(1)]\nb: {c: (1), d: (2)}", "f").data == {
         "a": ["2*cos(30)", "f(1)"], "b": {"c": "(1)", "d": "(2)"},
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("item", ["1", "(1"])
+def test_long_lists_in_one_line_are_read_at_once(item: str) -> None:
+    start = time.process_time()
+    read_text(f"a: [{', '.join([item] * 20_000)}]", "f")
+    assert time.process_time() - start < 5
 
 
 @pytest.mark.parametrize(
