@@ -143,3 +143,23 @@ def test_a_parameter_is_set_once():
 def test_a_short_h_asks_for_help(command):
     done = tmm(*command, "-h")
     assert (done.returncode, done.stdout) == (0, tmm(*command, "--help").stdout)
+
+
+def test_explain_says_the_structure_in_sentences_for_a_note():
+    told = tmm("explain", SHAPER).stdout
+    assert told.splitlines()[1:7] == [
+        "The mechanism has n = 5 moving links and p1 = 7 lower pairs (turning: 5, sliding: 2); by Chebyshev's formula "
+        "its mobility is W = 3n - 2 p1 = 3*5 - 2*7 = 1.",
+        "Link 1 (crank) is a driving link: 8.59 rad/s = 82 rpm, counterclockwise.",
+        "The formula of structure is I(0,1) -> II(2,3) -> II(4,5); the mechanism is of class II.",
+        "The group II(2,3) is of class II, order 2, type RPR; its outer pairs are A (link 1), C (frame).",
+        "The group II(4,5) is of class II, order 2, type RRP; its outer pairs are D (link 3), x (frame).",
+        "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "
+        "one; the balancing moment acts on link 1, and Zhukovsky's lever checks it.",
+    ]
+
+
+def test_explain_keeps_the_table_of_places_for_those_who_ask():
+    table = "What each stage computes, when it is asked for"
+    assert table not in tmm("explain", SHAPER).stdout
+    assert table in tmm("explain", SHAPER, "--verbose").stdout
