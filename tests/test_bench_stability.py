@@ -14,7 +14,6 @@ import pytest
 from test_commands import tmm
 from write_stability_references import Closely, circles, closed, starts, written
 
-from tmm_cli.accuracy import digits
 from tmm_cli.bench import stability
 from tmm_cli.bench.chart_stability import charts
 from tmm_cli.bench.families import BY_NAME, FAMILIES
@@ -214,16 +213,6 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
     found = measure(["size"], methods=(), reduced=True)
     assert found.lies("size", OURS) is None
     assert len(found.failures) == 1 and "of the bounds are within 100 times the true error" in found.failures[0]
-
-
-@pytest.mark.parametrize("family, distance", [("change-point", "1e-7"), ("two-assemblies-lost", "1e-15")])
-def test_bounds_hold_where_longdouble_is_no_wider_than_double_or_no_value_is_told(family, distance, monkeypatch):
-    honest = stability.bounds
-    monkeypatch.setattr(digits, "WIDER", False)
-    monkeypatch.setattr(stability, "bounds", lambda results: honest(results, wider=False))
-    for at in known(family, 1 if family == "two-assemblies-lost" else None):
-        if at.distance == Decimal(distance):
-            assert ours(Case.of(at.scene.linkage), at).verdict == "said"
 
 
 # what is thought of an answer

@@ -14,6 +14,7 @@ from test_bad_linkages import changed
 from test_commands import tmm
 
 from tmm_cli import solve
+from tmm_cli.double_double import exactly
 from tmm_cli.groups.linear import solve as solve_linear
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 from tmm_cli.problem.build import build
@@ -121,12 +122,11 @@ def test_a_train_comes_back_when_its_last_wheel_does(number, teeth, turns):
     )
 
 
-def test_a_system_with_only_one_side_in_longdouble_is_solved_in_longdouble():
+def test_a_system_with_only_one_side_in_double_doubles_is_solved_in_double_doubles():
     """Rows of wheels alone are ratios: they stay float64 where the angles next to a dead position are longer."""
-    right = np.array([[1, 2]], dtype=np.longdouble) / 3
+    right = exactly(np.array([[1.0, 2.0]])) / 3
     found = solve_linear(np.array([[[2.0, 0.0], [0.0, 4.0]]]), right)
-    assert found.dtype == np.longdouble
-    assert np.all(found * np.array([2, 4]) == right)
+    assert np.all(found * np.array([2.0, 4.0]) == right)
 
 
 def test_wheels_next_to_a_dead_position_are_solved():

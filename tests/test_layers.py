@@ -21,6 +21,7 @@ TOP = {
     "linkage",
     "vectors",
     "roots",
+    "double_double",
     "errors",
     "tolerances",
     "quantities",

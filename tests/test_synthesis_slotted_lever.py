@@ -211,14 +211,6 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
         assert m.difference <= MET, m
 
 
-def test_extended_precision_solves_the_task_in_extended_precision():
-    exact = shaping("stroke: 400, k: 1.5, OC: 350, DE: 200").extended().linkage
-    if np.finfo(np.longdouble).eps > 1e-18:
-        return
-    length = np.longdouble("0.2") * 2 / (np.sqrt(np.longdouble(5)) - 1) * 2  # sin(18 deg) = (sqrt 5 - 1)/4
-    assert abs(abs(exact.links["3"].points["D"]) / length - 1) < 1e-18
-
-
 def test_a_stone_that_passes_the_end_is_told():
     outcome = lever("CB: 300, k: 1.5, OC: 280").synthesis.outcome
     assert outcome.notes == ("the stone passes B: the slot goes on beyond it",)

@@ -16,6 +16,7 @@ from tmm_cli.accuracy.data import widened
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.enumerate import find_assemblies
 from tmm_cli.assembly.solvable import mobile
+from tmm_cli.double_double import EPS, exactly
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 from tmm_cli.groups.branch_trace import State
@@ -119,18 +120,16 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_in_extended_precision_it_has_all_of_its_digits(chain):
+def test_in_double_doubles_it_has_all_of_its_digits(chain):
     linkage = swinging(2, chain)
     wide = widened(linkage)
     _, closed, iterated = both(linkage)
-    rounding = np.finfo(np.longdouble).eps
-    q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5).astype(np.longdouble)
+    q = exactly(linkage.sketch.at + np.linspace(-0.01, 0.01, 5))
     one, other = (move(wide, [kernel.rebind(wide)], q, LAW) for kernel in (closed, iterated))
     for link in linkage.moving:
-        assert one.second[link].a.dtype == np.clongdouble
-        assert np.max(np.abs(one.poses[link].x - other.poses[link].x)) < 200 * rounding
+        assert np.max(np.abs(one.poses[link].x - other.poses[link].x)) < 200 * EPS
         size = np.max(np.abs(other.second[link].a))
-        assert np.max(np.abs(one.second[link].a - other.second[link].a)) < 1e4 * rounding * max(1.0, size)
+        assert np.max(np.abs(one.second[link].a - other.second[link].a)) < 1e4 * EPS * max(1.0, size)
 
 
 @pytest.mark.parametrize("chain", CHAINS)

@@ -146,20 +146,7 @@ class LoadTable:
     values: tuple[float, ...]
 
     def __call__(self, argument: Real) -> Real:
-        found: Real = (
-            np.interp(argument, self.arguments, self.values) if argument.dtype == float else self._wide(argument)
-        )
-        return found
-
-    def _wide(self, argument: Real) -> Real:
-        """The same in the precision of the argument, which np.interp does not know."""
-        at, size = (np.array(numbers, dtype=argument.dtype) for numbers in (self.arguments, self.values))
-        if len(at) < 2:
-            return np.full(np.shape(argument), size[0])
-        low = np.clip(np.searchsorted(at, argument, side="right") - 1, 0, len(at) - 2)
-        with np.errstate(invalid="ignore", divide="ignore"):  # where two arguments are equal the size jumps
-            share = np.clip((argument - at[low]) / (at[low + 1] - at[low]), 0, 1)
-        found: Real = np.where(np.isnan(share), size[low + 1], size[low] + share * (size[low + 1] - size[low]))
+        found: Real = np.interp(argument, self.arguments, self.values)
         return found
 
 

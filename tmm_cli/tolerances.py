@@ -23,7 +23,7 @@ DEAD_COSINE_DOUBLE = 4e-15  # of the same terms in float64
 
 # Newton's method, without dimension: sizes of the group, rad
 LAST_STEP = 1e-9  # a step below this squares to less than rounding: it was the last
-LAST_STEP_EXTENDED = 1e-11  # likewise in longdouble
+LAST_STEP_EXTENDED = 1e-20  # of double-doubles, whose steps are found in float64: the next is 1e-16 of this
 LAST_STEP_AFAR = 1e-12  # the last of damped steps from anywhere: the next one is all rounding
 CONVERGED = 1e-6  # a last step, or a residual, above this has not converged
 CLOSED = 1e-9  # residual of a group that is closed, and is not so to half the digits only

@@ -9,18 +9,24 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_cli.double_double import EPS, PI, DoubleDouble
 from tmm_cli.tolerances import CONSTRUCTION_ROUNDINGS
 
 Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
 Vector = NDArray[Any]  # complex arrays, likewise
 Record = TypeVar("Record")
 
-PI = "3.14159265358979323846264338327950288"
-
 
 def pi(values: Any) -> Any:
     """Pi in the precision of an array."""
+    if isinstance(values, DoubleDouble):
+        return DoubleDouble.decimal(PI)
     return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
+
+
+def roundoff(values: Any) -> float:
+    """Unit roundoff of an array's own precision."""
+    return EPS if isinstance(values, DoubleDouble) else float(np.finfo(values.real.dtype).eps) / 2
 
 
 def dot(a: Any, b: Any) -> Any:
@@ -50,11 +56,10 @@ def unit(angle: Any) -> Any:
 
 def settled(values: Any, size: Any) -> Any:
     """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
-    values = np.asarray(values)
-    least = CONSTRUCTION_ROUNDINGS * np.finfo(values.dtype).eps * size
-    if not np.iscomplexobj(values):
-        return np.where(np.abs(values) > least, values, values.dtype.type(0))[()]
-    return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
+    values = values if isinstance(values, DoubleDouble) else np.asarray(values)
+    if np.iscomplexobj(values):
+        return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
+    return np.where(np.abs(values) > 2 * CONSTRUCTION_ROUNDINGS * roundoff(values) * size, values, 0.0)[()]
 
 
 def left(a: Any) -> Any:

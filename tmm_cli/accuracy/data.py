@@ -1,4 +1,4 @@
-"""The lengths that a linkage is given by, each of them changed alone; and a linkage with its numbers in longdouble."""
+"""The lengths that a linkage is given by, each of them changed alone; and a linkage of double-doubles."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.double_double import exactly
 from tmm_cli.linkage import Linkage
 from tmm_cli.tolerances import NO_COORDINATE
-from tmm_cli.vectors import Real, Record, mapped
+from tmm_cli.vectors import Record, mapped
 
 
 @dataclass(frozen=True)
@@ -39,14 +40,6 @@ def lengths(linkage: Linkage) -> tuple[Length, ...]:
     return tuple(Length(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items())
 
 
-def angles(linkage: Linkage) -> tuple[Length, ...]:
-    """The angles of guides and between links that slide on each other, as lengths are given."""
-    return tuple(
-        Length(slide.carrier, 1.0, float(getattr(slide, part)), frozenset((f"slides[{k}].{part}",)))
-        for k, slide in enumerate(linkage.slides) for part in ("direction", "turned")
-    )  # fmt: skip
-
-
 def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
     """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
     more = length.along * by
@@ -72,20 +65,10 @@ def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
             yield spring.j, f"springs[{k}].at_j", spring.at_j
 
 
-def shaken(linkage: Linkage, q: Real, trial: int) -> tuple[Linkage, Real]:
-    """The linkage and places of its driver with every number up or down by a unit of its last place, at random."""
-    random = np.random.default_rng(trial)
-    for length in (*lengths(linkage), *angles(linkage)):
-        linkage = changed(linkage, length, float(random.choice((-1, 1)) * np.spacing(abs(length.value))))
-    return linkage, q + random.choice((-1, 1), np.shape(q)) * np.spacing(np.abs(q))
-
-
 def widened(record: Record) -> Record:
-    """The same record with every float and complex number in longdouble, as exactly as it stands."""
+    """The same record with every float and complex number as a double-double, as it stands."""
 
     def wide(path: str, value: Any) -> Any:
-        if isinstance(value, float):
-            return np.longdouble(value)
-        return np.clongdouble(value) if isinstance(value, complex) else value
+        return exactly(value) if isinstance(value, float | complex) else value
 
     return mapped(wide, record)

@@ -1,36 +1,31 @@
 """How far each value may be from the truth by rounding, and how far the data carry it.
 
-Every value is computed once more by the same stages in longdouble, from the decimals of the file. Against 60 digits the
-difference between float64 and longdouble is the true error to about 1 %. What it leaves out is the error of the
-longdouble value, which is a few units of its last place of all that the value responds to:
+Every value is computed once more by the same stages in double-doubles, from the decimals of the file. The difference is
+the error of float64 itself; values near dead positions were taken from double-doubles already, and are off by their
+last rounding alone:
 
-    bound = 2 |y - y_wide| + u |y| + 2 u_wide kappa,    u = 2^-53
-
-with kappa, the response of y per unit relative change of the data, from changing every length alone. Values near dead
-positions that were taken from longdouble already have the last two terms only, which is their true error again. Where
-longdouble is no wider than double the data are shaken by a unit of their last place, all at once and at random, which
-makes most roundings fall out anew; the bound is then 3 times the largest change of y in some such trials, + 4 u of the
-largest value of its kind at the position (after J. Vignes, A stochastic arithmetic for reliable scientific computation,
-Math. Comput. Simul. 35 (1993)). It holds as the other does, and is wider.
+    bound = |y - y_exact| + u |y|,    u = 2^-53
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.data import angles, changed, lengths, shaken, widened
-from tmm_cli.analysis.extended import WIDER, near_dead, refined
+from tmm_cli.accuracy.data import changed, lengths, widened
+from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
 from tmm_cli.analysis.selection import values as leading_values
+from tmm_cli.double_double import exactly, rounded
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.kinematics.motion import move
-from tmm_cli.kinematics.strokes import Strokes, output_run
+from tmm_cli.kinematics.strokes import Strokes, output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.tolerances import ROUNDOFF
@@ -38,12 +33,9 @@ from tmm_cli.vectors import Real
 
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
-ROUNDINGS = 2  # of longdouble, in units of u_wide kappa
-TRIALS, SPREAD = 5, 3  # with shaken data; a bound in units of the largest change that they make
-LOST = 0.1  # of the largest value of its kind: where a unit of the last place makes so much, trials tell no bound
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
 CLOSE = 2.0**-7  # of the square of the margin, where it is near one
-LEAST = 2.0**-56  # of a length: steps below that are rounding in longdouble too
+LEAST = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
 CHUNK = 1500  # positions at once
 
 Cells = Mapping[Hashable, Real]  # one value a position
@@ -69,25 +61,23 @@ def judged(
     *,
     mu: float = float("nan"),
     blur: Real | float = 0.0,
-    kind: Callable[[Hashable], Hashable] = lambda key: key,
-    wider: bool = WIDER,
 ) -> Digits:
     """Digits of what `of` reads out of results with a motion, at all their positions.
 
     mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m). kind: values of a kind are sums of parts of one size. wider: False is for machines whose longdouble is
-    a double.
+    (rad or m).
     """
     motion = results.motion
     assert motion is not None
     values = of(results)
-    judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)), kind, wider)
+    judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
     found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
+    chunk = max(CHUNK // (1 + len(lengths(results.linkage))), 1)
     near = near_dead(motion) if motion.where is None else motion.where
     for these, close in ((~near & motion.placed, False), (near, True)):
         places = np.flatnonzero(these)
-        for start in range(0, len(places), CHUNK):
-            chosen = places[start : start + CHUNK]
+        for start in range(0, len(places), chunk):
+            chosen = places[start : start + chunk]
             found[:, :, chosen] = judge.at(chosen, close, mu)
     bound, share, paper = (dict(zip(values, part, strict=True)) for part in found)
     return Digits(bound, share, paper, mu)
@@ -103,8 +93,8 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel,
     law = driver_motion(linkage, float(q[0]))
     motion = move(linkage, kernels, q, law)
     where = near_dead(motion)
-    if WIDER and bool(np.any(where)):
-        motion = refined(motion, widened(linkage), q[where].astype(np.longdouble), law, where)
+    if bool(np.any(where)):
+        motion = refined(motion, widened(linkage), exactly(q[where]), law, where)
     inputs = Inputs(linkage)
     mechanism = Mechanism(inputs, structure).known(
         kernels=kernels, driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False), asked=q, dead=(),
@@ -113,14 +103,13 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel,
     return with_forces(Results(inputs, structure, mechanism, tuple(range(len(q))), motion), cycle=False)
 
 
-def bounds(results: Results, *, wider: bool = WIDER) -> tuple[Cells, Digits]:
+def bounds(results: Results) -> tuple[Cells, Digits]:
     """Values and their digits, of a linkage whose numbers are exact as they stand when it has no file (see `bare`).
 
     Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
     links, force and couple of pairs, balancing of drivers.
     """
-    found = judged(results, quantities, kind=lambda key: key[0] if isinstance(key, tuple) else key, wider=wider)
-    return quantities(results), found
+    return quantities(results), judged(results, quantities)
 
 
 def quantities(results: Results) -> Cells:
@@ -141,69 +130,45 @@ class _Judge:
     of: Callable[[Results], Cells]
     values: Cells
     blur: Real
-    kind: Callable[[Hashable], Hashable]
-    wider: bool
 
     def at(self, chosen: Real, near: bool, mu: float) -> Real:
         """Bounds and both sensitivities at the chosen positions, all of which are near a dead one or none is."""
         results, motion = self.results, self.results.motion
         assert motion is not None
-        first, blur, q = results.start, self.blur[chosen], motion.q[chosen]
-        exactly = base = None
-        if self.wider:
-            wide = motion.q.astype(np.longdouble)
-            if results.inputs.extended is not None and results.inputs.request.places:
-                wide = np.array(results.inputs.extended().request.places)
-                first, wide, blur = wide[0], wide[list(results.numbers)], np.zeros(len(chosen))
-            exactly = base = at(results, exact(results), wide[chosen], first, chosen)
-        if base is None or not near:
-            base = at(results, results.linkage, q, results.start, chosen)
+        q, first, blur = exactly(motion.q[chosen]), results.start, self.blur[chosen]
+        if results.inputs.extended is not None and results.inputs.request.places:
+            places = np.stack(results.inputs.extended().request.places)
+            first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
+        wide = at(results, exact(results), q, first, chosen)
+        base = wide if near else at(results, results.linkage, motion.q[chosen], results.start, chosen)
         rows = self.rows(self.of(base))
-
-        def gap(other: Results) -> Real:
-            return self.gap(self.rows(self.of(other)), rows)
-
         values = np.stack([value[..., chosen] for value in self.values.values()])
-        kappa, share, paper, by_q = self.responses(base, first, near, gap)
-        kappa = kappa + by_q * np.abs(q.astype(float))
-        if exactly is not None:
-            fine = float(np.finfo(np.longdouble).eps) / 2
-            away = self.gap(values, rows if exactly is base else self.rows(self.of(exactly))).astype(float)
-            bound = 2 * away + ROUNDOFF * np.abs(values.astype(float)) + ROUNDINGS * fine * kappa
-        else:
-            bound = self.by_trials(rows, [gap(at(base, *shaken(base.linkage, q, k), first)) for k in range(TRIALS)])
+        share, paper, by_q = self.responses(base, rows, first, near)
+        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
         bound = bound + np.where(blur > 0, by_q * blur, 0.0)
-        return np.stack([np.where(np.isfinite(values.astype(float)), bound, np.nan), share, paper * mu])
+        return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
-    def responses(self, base: Results, first: float, near: bool, gap: Callable[[Results], Real]) -> tuple[Real, ...]:
-        """How much values change per unit relative change of all data, by 0.1 % of lengths, by 0.5 m, and by place."""
+    def responses(self, base: Results, rows: Real, first: float, near: bool) -> tuple[Real, ...]:
+        """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place.
+
+        All in one run: its positions are those of base once for each number that is changed there, the place first.
+        """
         assert base.motion is not None
-        number, step = base.motion.q.dtype.type, _step(base, near)
-        data = lengths(self.results.linkage)
+        step, count, data = _step(base, near), len(base.motion.q), lengths(self.results.linkage)
         sizes: dict[str, float] = {}
         for length in data:
             sizes[length.link] = max(sizes.get(length.link, 0.0), abs(length.value))
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
-        q = base.motion.q + number(step * reach)
-        by_q = (gap(at(base, base.linkage, q, first)) / (step * reach)).astype(float)
-        kappa, share, paper = by_q * reach * near, np.zeros(np.shape(by_q)), np.zeros(np.shape(by_q))
-        for length in (*data, *(angles(self.results.linkage) if near else ())):
-            turns = not isinstance(length.along, complex)
-            by = number(step * (1.0 if turns else sizes[length.link]))
-            slopes = (gap(at(base, changed(base.linkage, length, by), base.motion.q, first)) / by).astype(float)
-            kappa = kappa + slopes * abs(length.value)
-            if not turns:
-                share, paper = share + slopes * (SHARE * abs(length.value)), paper + slopes * PAPER
-        return kappa, share, paper, by_q
-
-    def by_trials(self, rows: Real, gaps: Sequence[Real]) -> Real:
-        """Bounds from what shaken data change."""
-        largest: dict[Hashable, Real] = {}
-        kinds = [self.kind(key) for key in self.values]
-        for kind, row in zip(kinds, np.abs(rows).astype(float), strict=True):
-            largest[kind] = np.fmax(largest.get(kind, 0.0), row)
-        size, spread = np.stack([largest[kind] for kind in kinds]), np.max(gaps, axis=0)
-        return np.where(spread > LOST * size, np.nan, SPREAD * spread + 4 * ROUNDOFF * size)
+        by = step * np.array([reach, *(sizes[length.link] for length in data)])
+        there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
+        linkage = base.linkage
+        for k, length in enumerate(data, 1):
+            linkage = changed(linkage, length, np.where(number == k, by[k], 0.0))
+        other = at(base, linkage, base.motion.q[there] + np.where(number == 0, by[0], 0.0), first, there)
+        gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
+        slopes = gaps / by[:, None]
+        values = np.array([abs(length.value) for length in data])
+        return SHARE * np.tensordot(slopes[:, 1:], values, (1, 0)), PAPER * slopes[:, 1:].sum(1), slopes[:, 0]
 
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""
@@ -228,7 +193,7 @@ def _step(results: Results, near: bool) -> float:
 
 
 def exact(results: Results) -> Linkage:
-    """The linkage with the decimals of its file in longdouble; without a file, with its numbers as they stand."""
+    """The linkage with the decimals of its file; without a file, with its numbers as they stand."""
     extended = results.inputs.extended
     return widened(results.linkage) if extended is None else extended().linkage
 
@@ -255,6 +220,8 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
 
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
     """Strokes whose output begins where it really is there, which loads tabulated against it are counted from."""
-    places = np.array([s.start for s in strokes.strokes], dtype=q.dtype)
-    lows = output_run(move(linkage, kernels, places, DriverMotion(0.0, 1.0, 0.0, 1)), strokes.link)[0]
+    still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
+    lows: list[Any] = [
+        output_place(move(linkage, kernels, still + s.start, law, 0), strokes.link) for s in strokes.strokes
+    ]
     return replace(strokes, strokes=tuple(replace(s, low=x) for s, x in zip(strokes.strokes, lows, strict=True)))

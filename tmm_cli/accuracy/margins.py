@@ -16,8 +16,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tmm_cli.analysis.extended import WIDER
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.double_double import EPS
 from tmm_cli.groups.base import spread
 from tmm_cli.quantities import (
     ACCELERATION,
@@ -48,8 +48,8 @@ def relative(results: Results, blur: float = 0.0) -> Real:
     motion = results.motion
     assert motion is not None
     unit = np.full(np.shape(motion.q), ROUNDOFF)
-    if motion.where is not None and WIDER:  # computed in extended precision, and rounded
-        unit[motion.where] = float(np.finfo(np.longdouble).eps) / 2
+    if motion.where is not None:  # computed in extended precision, and rounded
+        unit[motion.where] = EPS
     away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
     lost = growth(results)
     found: Real = LOSS * (ROUNDOFF + unit * (1 + np.abs(motion.q)) * slenderness(results) * lost) + AWAY * away * lost

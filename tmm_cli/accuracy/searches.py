@@ -1,6 +1,6 @@
 """Bounds of what is searched for: ends of strokes, limits, dead positions, largest pressure angles.
 
-A root is known as well as its function's sign: in longdouble the nearest places on both sides of it where the sign is
+A root is known as well as its function's sign: in double-doubles the nearest places beside it where the sign is
 sure. What follows from several such numbers is shifted by the bound of each of them, one after the other.
 """
 

@@ -1,6 +1,6 @@
 """Roots and extremes: how far from where they were found the signs of their functions are sure.
 
-In longdouble where the machine has it, or coarsely in float64.
+In double-doubles, or coarsely in float64.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 
 from tmm_cli.accuracy.digits import exact
 from tmm_cli.accuracy.margins import growth, slenderness
-from tmm_cli.analysis.extended import WIDER
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.double_double import EPS, DoubleDouble, rounded
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import pressure_at
@@ -36,22 +36,21 @@ class Wide:
     """
 
     def __init__(self, results: Results, growth: float | None = None) -> None:
-        wider = WIDER and growth is None
         self.results = results
-        self.linkage = exact(results) if wider else results.linkage
+        self.linkage = exact(results) if growth is None else results.linkage
         self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
-        self.kind: Any = np.longdouble if wider else np.float64
-        self.noise = NOISE * float(np.finfo(self.kind).eps) / 2 * (growth or 1.0)
+        self.kind: Any = DoubleDouble if growth is None else np.asarray
+        self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
 
     def at(self, q: Real, order: int = 0) -> LinkStates:
         """The links there."""
-        return link_states(self.linkage, self.kernels, np.asarray(q, self.kind), order)
+        return link_states(self.linkage, self.kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, places: Real) -> tuple[Real, Real]:
         """Growing distances from each place, the last bit first, and the places on both sides at them."""
         steps = 2.0 ** np.arange(FARTHEST) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
-        there = np.asarray(places, self.kind)[:, None]
-        return steps, np.stack([there - steps.astype(self.kind), there + steps.astype(self.kind)])
+        there = self.kind(places)[:, None]
+        return steps, np.stack([there - steps, there + steps])
 
     def brackets(self, places: Real, of: Callable[[LinkStates], Real], size: float | None = None) -> Real:
         """The least distance from each place at which a function has different signs on both sides for sure, or inf.
@@ -62,7 +61,7 @@ class Wide:
         driver_range = self.results.mechanism.driver_range
         way = np.linspace(driver_range.start, driver_range.end, AROUND)
         with np.errstate(all="ignore"):
-            values = of(self.at(np.append(both.ravel(), way), 1))
+            values = rounded(of(self.at(np.concatenate([both.ravel(), way]), 1)))
         size = float(np.nanmax(np.abs(values[both.size :]))) if size is None else size
         values = values[: both.size].reshape(both.shape)
         below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0)
@@ -76,7 +75,7 @@ class Wide:
         """Of where an output is told to be at places of the driver that are known to these bounds."""
         near = np.stack([places, places - bounds, places + bounds])
         with np.errstate(all="ignore"):
-            off = np.abs(np.asarray(output_place(self.at(near.ravel()), link).reshape(near.shape) - told, float))
+            off = np.abs(rounded(output_place(self.at(near.ravel()), link).reshape(near.shape) - told))
         if swings:
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
         found: Real = 2 * np.max(off, axis=0, where=np.isfinite(off), initial=0.0) + 4 * (
@@ -125,7 +124,7 @@ class Wide:
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, span
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
-        states = self.at(self.kind(place) + step * np.arange(-2, 3).astype(self.kind))
+        states = self.at(self.kind(place) + step * np.arange(-2, 3))
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
         bend = float(2 * here - b1 - a1) / step**2

@@ -1,8 +1,8 @@
-"""Positions near a dead one are computed once more in extended precision, with the data as they are written.
+"""Positions near a dead one are computed once more in double-doubles, with the data as they are written.
 
 At a distance eps (rad) from a dead position the nearest double to a length of the file already changes velocities by
-1e-16/eps of themselves, whatever the method. With 64 bits of mantissa where the machine has them (x86) that is 2000
-times less. The results are rounded to float64 again; a position is treated so or not by itself alone.
+1e-16/eps of themselves, whatever the method; with 31 digits that is nothing. The results are rounded to float64 again;
+a position is treated so or not by itself alone.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from tmm_cli.kinematics.motion import Motion, move, spliced
 from tmm_cli.linkage import Linkage
 from tmm_cli.vectors import Real
 
-WIDER = bool(np.finfo(np.longdouble).eps < 1e-18)
-
 
 def near_dead(motion: Motion) -> Real:
     """Positions where a group is near a dead position, but not in it."""
@@ -28,9 +26,9 @@ def near_dead(motion: Motion) -> Real:
 
 
 def refined(motion: Motion, linkage: Linkage, q: Real, law: DriverMotion, where: Real) -> Motion:
-    """A motion with some of its positions taken from that of the same linkage with numbers in longdouble.
+    """A motion with some of its positions taken from that of the same linkage with numbers in double-doubles.
 
-    q: the driver's places there, in longdouble. The assemblies are those of the motion's own groups.
+    q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.
     """
     closer = move(linkage, tuple(kernel.rebind(linkage) for kernel in motion.kernels), q, law)
     if not bool(np.all(closer.moving)):

@@ -33,8 +33,8 @@ class Inputs:
     """A linkage, the positions asked for, and what is allowed.
 
     pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
-    the lever, a share of one. extended: makes the same in longdouble from the decimals that the numbers were written
-    with; None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
+    the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
+    None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
     as the structure alone does not need them.
     """
 

@@ -15,6 +15,7 @@ import numpy as np
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
+from tmm_cli.double_double import exactly
 from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.motion import Motion, move
@@ -173,15 +174,16 @@ def solve(
 
 def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
     """The motion, its positions near dead ones in extended precision where the machine has it."""
-    from tmm_cli.analysis.extended import WIDER, near_dead, refined
+    from tmm_cli.analysis.extended import near_dead, refined
 
     law = driver_motion(results.linkage, results.start)
     motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
     where = near_dead(motion)
-    if not WIDER or results.inputs.extended is None or not np.any(where):
+    if results.inputs.extended is None or not np.any(where):
         return motion
     exact = results.inputs.extended()
-    asked = np.array(exact.request.places) if exact.request.places else results.asked.astype(np.longdouble)
+    asked: Any = exact.request.places
+    asked = np.stack(asked) if asked else exactly(results.asked)
     return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
 
 

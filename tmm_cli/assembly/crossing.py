@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from tmm_cli.double_double import exactly, rounded
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import State
@@ -118,17 +119,17 @@ class Crossings:
         return found
 
     def _finest(self, node: Node) -> Node:
-        """The same node found in extended precision, where the machine has it, and rounded."""
+        """The same node found in double-doubles, and rounded."""
         kernel = self.kernel
-        before = self.source(np.array([node.q], np.longdouble), 0)
-        start = State(node.state.x.astype(np.clongdouble), node.state.unwrapped.astype(np.longdouble))
+        before = self.source(exactly([node.q]), 0)
+        start = State(exactly(node.state.x), exactly(node.state.unwrapped))
         with np.errstate(all="ignore"):
             state, size = kernel.close(start, before.poses, before.drives)
             matrix = kernel.matrix({**before.poses, **kernel.poses_of(state)})
         if not size[0] < LAST_STEP:
             return node
-        state = State(state.x.astype(complex), state.unwrapped.astype(float))
-        return replace(node, state=state, det=float(np.linalg.det(matrix.astype(float))[0]))
+        state = State(rounded(state.x), rounded(state.unwrapped))
+        return replace(node, state=state, det=float(np.linalg.det(rounded(matrix))[0]))
 
     def _touches(self, here: Node, beyond: Node, largest: float) -> bool:
         """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.

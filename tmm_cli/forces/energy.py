@@ -59,7 +59,7 @@ def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
     change = (inertia * motion.acceleration + slope * rate**2 / 2) * rate
     parts = [drivers * rate, *(work * rate for work in powers.values())]
     with np.errstate(invalid="ignore", divide="ignore"):
-        size = np.nanmax(np.abs([*parts, change]), initial=0.0)
+        size = max(np.nanmax(np.abs(part), initial=0.0) for part in (*parts, change))
         balance = (sum(parts) - change) / size if size > 0 else still
     return Energy(
         inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance

@@ -63,7 +63,11 @@ def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
         total = total + item.moment
     balancing = -total
     # where nothing has an arm (both ends of a stroke) there is only rounding to compare: not against itself
-    reach = max((d.size for d in motion.kernels), default=1.0) if motion.linkage.driver.kind == "turn" else 1.0
+    reach = (
+        max((float(np.max(d.size)) for d in motion.kernels), default=1.0)
+        if motion.linkage.driver.kind == "turn"
+        else 1.0
+    )
     acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
     known = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
     plan_size = np.where(known, np.abs(plan), 0.0)

@@ -10,7 +10,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Spring
-from tmm_cli.vectors import Real, dot
+from tmm_cli.vectors import Real, dot, unit
 
 
 def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
@@ -37,7 +37,7 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
 
 def twisted(spring: Spring, motion: Motion) -> Real:
     """Angle by which a torsion spring is turned from its free angle, within half a turn (rad)."""
-    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.exp(-1j * spring.free)
+    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
     found: Real = np.angle(turned)
     return found
 

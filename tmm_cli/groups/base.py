@@ -237,11 +237,6 @@ def reach(linkage: Linkage) -> float:
     return 4 * (max(spread(linkage, link) for link in linkage.links) or 1.0)
 
 
-def epsilon(values: Any) -> float:
-    """Unit roundoff of an array's own precision."""
-    return float(np.finfo(values.real.dtype).eps) / 2
-
-
 def line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
     """A point of the guide and its direction, in the drawing's axes."""
     pose = poses[run.known]

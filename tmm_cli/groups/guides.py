@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.groups.base import epsilon
 from tmm_cli.groups.state import Accel, Rate
 from tmm_cli.tolerances import ROUNDINGS
-from tmm_cli.vectors import Real, Vector, cross, dot
+from tmm_cli.vectors import Real, Vector, cross, dot, roundoff
 
 
 def meet(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
@@ -19,7 +18,7 @@ def meet(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
 
 def parallel(det: Real) -> tuple[Real, Real]:
     """Residual and slack of two guides: they are parallel within rounding, or not."""
-    return -np.abs(det), np.full(np.shape(det), ROUNDINGS * epsilon(det))
+    return -np.abs(det), np.full(np.shape(det), ROUNDINGS * roundoff(det))
 
 
 def turned_apart(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:

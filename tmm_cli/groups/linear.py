@@ -1,11 +1,14 @@
-"""Small systems of linear equations, one a position: solved all at once, in any precision, never an exception."""
+"""Small systems of linear equations, one a position: solved all at once, of double-doubles too, never an exception."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from tmm_cli.double_double import exactly, rounded
 from tmm_cli.tolerances import TRUNCATED
 from tmm_cli.vectors import Real
+
+ROUNDS = 5  # each gives as many digits more as float64 has beyond those that the matrix loses
 
 
 def solve(matrix: Real, right: Real) -> Real:
@@ -13,12 +16,11 @@ def solve(matrix: Real, right: Real) -> Real:
 
     With more equations than unknowns, or fewer, the least squares solution of least size.
     """
+    if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
+        return _refined(matrix, right)
     rows, columns = matrix.shape[-2:]
     if rows != columns:
         return _least_squares(matrix, right)
-    kind = np.result_type(matrix, right)
-    if kind != np.float64:
-        return _eliminate(matrix.astype(kind), right)
     try:
         found: Real = np.linalg.solve(matrix, right[..., None])[..., 0]
         return found
@@ -28,43 +30,30 @@ def solve(matrix: Real, right: Real) -> Real:
         return np.where(singular[..., None], np.nan, np.linalg.solve(sound, right[..., None])[..., 0])
 
 
+def _refined(matrix: Real, right: Real) -> Real:
+    """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
+    near = rounded(matrix)
+    found: Real = exactly(solve(near, rounded(right)))
+    for _ in range(ROUNDS):
+        rest = right - np.sum(matrix * found[..., None, :], axis=-1)
+        found = found + solve(near, rounded(rest))
+    return found
+
+
 def _least_squares(matrix: Real, right: Real) -> Real:
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
     clean = np.where(sound[..., None, None], matrix, 0.0)
-    inverse = np.linalg.pinv(clean.astype(np.float64), rcond=TRUNCATED)
+    inverse = np.linalg.pinv(clean, rcond=TRUNCATED)
     found = np.einsum("...ij,...j->...i", inverse, right)
     rest = right - np.einsum("...ij,...j->...i", clean, found)
     found = found + np.einsum("...ij,...j->...i", inverse, rest)  # an inverse rounds more than a solution does
     return np.where(sound[..., None], found, np.nan)
 
 
-def _eliminate(matrix: Real, right: Real) -> Real:
-    """Gauss with row pivots, over all positions at once: for precisions that LAPACK does not know."""
-    n = matrix.shape[-1]
-    work = np.concatenate([matrix, right[..., None]], axis=-1)
-    flat = work.reshape(-1, n, n + 1)
-    each = np.arange(len(flat))
-    for k in range(n):
-        pivot = k + np.argmax(np.abs(flat[:, k:, k]), axis=1)
-        rows = flat[each, pivot].copy()
-        flat[each, pivot] = flat[:, k]
-        flat[:, k] = rows
-        with np.errstate(divide="ignore", invalid="ignore"):
-            factor = flat[:, k + 1 :, k] / flat[:, k, k][:, None]
-            flat[:, k + 1 :] -= factor[:, :, None] * flat[:, None, k]
-    found = np.zeros((len(flat), n), dtype=matrix.dtype)
-    for k in range(n - 1, -1, -1):
-        rest = flat[:, k, n] - np.sum(flat[:, k, k + 1 : n] * found[:, k + 1 :], axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found[:, k] = rest / flat[:, k, k]
-    found = np.where(np.isfinite(found), found, np.nan)
-    return found.reshape(matrix.shape[:-1])
-
-
 def least_over_largest(matrix: Real) -> Real:
     """Least singular value over the largest, nan where the matrix is not finite."""
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
-    clean = np.where(sound[..., None, None], matrix, 0.0).astype(np.float64)
+    clean = np.where(sound[..., None, None], rounded(matrix), 0.0)
     values = np.linalg.svd(clean, compute_uv=False)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(sound, values[..., -1] / values[..., 0], np.nan)
@@ -74,5 +63,5 @@ def signed_determinant(matrix: Real) -> Real:
     """Sign of the determinant; 1 where there are more equations than unknowns."""
     if matrix.shape[-1] != matrix.shape[-2]:
         return np.ones(matrix.shape[:-2])
-    sign: Real = np.linalg.slogdet(matrix.astype(np.float64))[0]
+    sign: Real = np.linalg.slogdet(rounded(matrix))[0]
     return sign

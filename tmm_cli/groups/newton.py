@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.groups.base import Accels, Kernel, Poses, Rates, epsilon, reach, spread
+from tmm_cli.double_double import DoubleDouble, exactly, rounded
+from tmm_cli.groups.base import Accels, Kernel, Poses, Rates, reach, spread
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
 from tmm_cli.groups.state import (
@@ -34,7 +35,7 @@ from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
 from tmm_cli.tolerances import CONVERGED, LAST_STEP, LAST_STEP_EXTENDED, NEAR_SINGULAR, ROUNDINGS, SINGULAR, TRUNCATED
-from tmm_cli.vectors import Real, Vector, cross, unit
+from tmm_cli.vectors import Real, Vector, cross, roundoff, unit
 
 ROUNDS = 12  # of Newton's method at most
 
@@ -98,11 +99,11 @@ class Newton(Kernel):
     @property
     def unit(self) -> Real:
         """The size on an axis of its own."""
-        return np.asarray(self.size)[..., None]
+        return _stacked([self.size])
 
-    def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], shape: tuple[int, ...], kind: type) -> Real:
+    def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
         """Rows of all pairs as a matrix (..., rows, unknowns), without dimension."""
-        matrix: Real = np.zeros((*shape, self._scale.shape[-1], 3 * len(self.group.links)), dtype=kind)
+        matrix: Real = np.zeros_like(like, shape=(*np.shape(like), self._scale.shape[-1], 3 * len(self.group.links)))
         row = 0
         for constraint, of_links in zip(self.constraints, parts, strict=True):
             for link, lines in of_links.items():
@@ -116,13 +117,13 @@ class Newton(Kernel):
                             matrix[..., row + k, at + 1] = c.imag
                         matrix[..., row + k, at + 2] = m
             row += len(constraint.lengths)
-        matrix *= self._scale.astype(kind)[..., :, None] * self._columns[..., None, :]  # rounded as the matrix is
-        return matrix
+        matrix = matrix * (self._scale[..., :, None] * self._columns[..., None, :])
+        return matrix  # noqa: RET504  typed
 
     def matrix(self, poses: Poses) -> Real:
         """The Jacobian without dimension, (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
-        return self._fill(self._rows(poses), np.shape(x), x.real.dtype.type)
+        return self._fill(self._rows(poses), x.real + 0 * self.size)
 
     def _rows(self, poses: Poses) -> list[Mapping[str, Sequence[JacobianRow]]]:
         return [c.jacobian_rows(poses) for c in self.constraints]
@@ -161,11 +162,13 @@ class Newton(Kernel):
     def close(self, start: State, poses: Poses, drives: Drives, rounds: int = ROUNDS) -> tuple[State, Real]:
         """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
         state = start
+        if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
+            state = State(exactly(start.x), exactly(start.unwrapped))
         size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
-            near = size < (LAST_STEP if state.unwrapped.dtype == np.float64 else LAST_STEP_EXTENDED)
+            near = size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)
             everything = {**poses, **self.poses_of(state)}
-            step = solve(self.matrix(everything), -self.residuals(everything, drives))
+            step = solve(rounded(self.matrix(everything)), -rounded(self.residuals(everything, drives)))
             size = np.max(np.abs(step), axis=-1)
             state = state.moved(step, self.unit)
             if bool(np.all(near | ~np.isfinite(size))):
@@ -173,7 +176,6 @@ class Newton(Kernel):
         return state, size
 
     def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
-        q = np.asarray(q)
         if self.trace is not None:
             start, residual = self.trace.start(q)
             start = State(
@@ -188,7 +190,7 @@ class Newton(Kernel):
             state, step = self.close(start, poses, drives)
         dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))
         if self.trace is not None:  # in a dead position that it passes the group is where its way leads through
-            dead, side = self.trace.in_dead(q, ROUNDINGS**2 * epsilon(start.unwrapped)), self.trace.side(q)
+            dead, side = self.trace.in_dead(q, ROUNDINGS**2 * roundoff(start.unwrapped)), self.trace.side(q)
             through = dead[..., None]
             state = State(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
         own = self.poses_of(state)
@@ -197,7 +199,7 @@ class Newton(Kernel):
         margin = least_over_largest(matrix)
         missed = np.max(np.abs(self.residuals(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
-        slack = np.full(np.shape(q), ROUNDINGS * epsilon(state.unwrapped))
+        slack = np.full(np.shape(q), ROUNDINGS * roundoff(state.unwrapped))
         residual = np.where(
             lost & (residual < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), residual
         )
@@ -270,9 +272,7 @@ class Newton(Kernel):
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
-        pushes = self._fill(
-            [c.pushes(everything) for c in self.constraints], np.shape(at.det), at.poses[0].x.real.dtype.type
-        )
+        pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
         turned = np.swapaxes(pushes, -1, -2)
 
         def under(wrenches: Sequence[Wrench]) -> Real:
@@ -296,13 +296,7 @@ class Newton(Kernel):
 
 def _stacked(values: Sequence[Any]) -> Real:
     """Numbers, or arrays of them, on a last axis."""
-    values = [np.asarray(value) for value in values]
-    shapes = {value.shape for value in values}
-    shape = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
-    found = np.empty((*shape, len(values)), dtype=np.result_type(*values))
-    for k, value in enumerate(values):
-        found[..., k] = value
-    return found
+    return np.stack(np.broadcast_arrays(*values), axis=-1)
 
 
 def _nothing(shape: tuple[int, ...]) -> Wrench:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, epsilon
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd
 from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.tolerances import ROUNDINGS
-from tmm_cli.vectors import Real, Vector, cross, dot, unit
+from tmm_cli.vectors import Real, Vector, cross, dot, roundoff, unit
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
             u = base * np.conj(full) / (d * d)
         za = u * np.conj(unit(run.direction))
         zb = za * unit(run.turned)
-        slack = epsilon(d) * (ROUNDINGS * np.maximum(d, np.abs(h)) + 2 * (np.abs(A) + np.abs(B)))
+        slack = roundoff(d) * (ROUNDINGS * np.maximum(d, np.abs(h)) + 2 * (np.abs(A) + np.abs(B)))
         size = np.maximum(d, self.size)
         with np.errstate(divide="ignore", invalid="ignore"):
             margin = np.abs(x) / size

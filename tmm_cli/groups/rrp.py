@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, epsilon, line
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, SliderEnd, line
 from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.tolerances import ROUNDINGS
-from tmm_cli.vectors import Real, Vector, cross, dot, square, unit
+from tmm_cli.vectors import Real, Vector, cross, dot, roundoff, square, unit
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         za = ra * (np.conj(arm) / (la * la))
         C = start + u * (run + half)
         residual = np.abs(y) - la
-        slack = epsilon(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
+        slack = roundoff(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
         return Placement(
             (Pose(A - a.here * za, za), Pose(C - c.here * zb, zb)), half, np.abs(half) / la, residual, slack
         )

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates, epsilon
+from tmm_cli.groups.base import Accels, Dyad, HingeEnd, Poses, Rates
 from tmm_cli.groups.state import Accel, Drives, GroupReactions, PairReaction, Placement, Pose, Rate, Wrench
 from tmm_cli.tolerances import ROUNDINGS
-from tmm_cli.vectors import Real, Vector, dot, square
+from tmm_cli.vectors import Real, Vector, dot, roundoff, square
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         rb = np.where(flip, small, small - base)
         za, zb = ra * (np.conj(arm_a) / (la * la)), rb * (np.conj(arm_b) / (lb * lb))
         residual = -np.minimum(reach, spare)
-        slack = epsilon(d) * (ROUNDINGS * (la + lb) + 2 * (np.abs(A) + np.abs(B)))
+        slack = roundoff(d) * (ROUNDINGS * (la + lb) + 2 * (np.abs(A) + np.abs(B)))
         return Placement(
             (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), residual, slack
         )

@@ -140,11 +140,11 @@ def driven_state(linkage: Linkage, driver: Driver, drive: Drive) -> tuple[Pose, 
     else:
         slide = linkage.slide(driver.joint)
         if slide.runner == driver.link:
-            z = unit(np.full(np.shape(q), slide.turned))
+            z = unit(zero + slide.turned)
             u = unit(slide.direction)
             origin = slide.through + q * u - slide.at * z
         else:
-            z = unit(np.full(np.shape(q), -slide.turned))
+            z = unit(zero - slide.turned)
             u = -unit(slide.direction) * z
             origin = slide.at + q * u - slide.through * z
         pose, v, bend, w = Pose(origin, z), zero + u, zero + 0j, zero

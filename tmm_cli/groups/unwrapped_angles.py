@@ -36,7 +36,7 @@ class Winding:
                 found.append(pose)
                 continue
             table = self.angles[link]
-            about = np.interp(np.asarray(within, float), self.q, table) + whole * (table[-1] - table[0])
+            about = np.interp(within.astype(float), self.q, table) + whole * (table[-1] - table[0])
             angle = np.arctan2(pose.z.imag, pose.z.real)
             found.append(replace(pose, unwrapped=angle + 2 * pi(angle) * np.round((about - angle) / TAU)))
         return tuple(found)

@@ -144,7 +144,7 @@ def move(
     states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
     rate = law.speed(states.q)
     whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
-    acceleration = np.full(np.shape(states.q), float(law.sense * law.acceleration))
+    acceleration = np.zeros(np.shape(states.q)) + law.sense * law.acceleration
     return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=acceleration)
 
 
@@ -152,7 +152,7 @@ def spliced(full: Record, part: Record, where: Real) -> Record:
     """A record of arrays over positions with those of `where` taken from another one, rounded to its own precision."""
 
     def joined(path: str, leaf: Any, finer: Any) -> Any:
-        if not (isinstance(leaf, np.ndarray) and isinstance(finer, np.ndarray)) or leaf.shape[-1:] != where.shape:
+        if not isinstance(leaf, np.ndarray) or not hasattr(finer, "astype") or leaf.shape[-1:] != where.shape:
             return leaf
         found = leaf.copy()
         found[..., where] = finer.astype(leaf.dtype)

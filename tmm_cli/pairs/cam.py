@@ -12,7 +12,7 @@ from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
 from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
 from tmm_cli.pairs.sliding import Guided
 from tmm_cli.structure.assur import Pair
-from tmm_cli.vectors import Real, Vector, dot
+from tmm_cli.vectors import Real, Vector, dot, unit
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Cam(Constraint):
     def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
         want = self._law(poses)[0] + self.mesh.offset
         if self.slide is None:
-            residual = poses[self.mesh.j].z * np.exp(-1j * want)
+            residual = poses[self.mesh.j].z * np.conj(unit(want))
             return (np.arctan2(residual.imag, residual.real),)
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)

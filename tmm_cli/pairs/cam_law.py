@@ -91,7 +91,7 @@ class CamLaw:
         They are (pieces,), or (pieces, variants) where they vary.
         """
         both = np.broadcast_arrays(*(p.over for p in self.pieces), *(p.rise for p in self.pieces))
-        over, rise = np.array(both[: len(self.pieces)]), np.array(both[len(self.pieces) :])
+        over, rise = np.stack(both[: len(self.pieces)]), np.stack(both[len(self.pieces) :])
         return np.cumsum(over, axis=0) - over, over, np.cumsum(rise, axis=0) - rise, rise
 
     def jumps(self) -> tuple[float, ...]:
@@ -108,7 +108,7 @@ class CamLaw:
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
-        turned = np.mod(np.asarray(angle) - self.start, 2 * pi(angle))
+        turned = np.mod(angle - self.start, 2 * pi(angle))
         starts, overs, lows, rises = self._table
         passed = np.searchsorted(starts, turned, side="right") if starts.ndim == 1 else np.sum(starts <= turned, axis=0)
         number = np.clip(passed - 1, 0, len(self.pieces) - 1)

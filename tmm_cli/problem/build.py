@@ -36,7 +36,7 @@ def is_chain(tree: Tree) -> bool:
 def build(tree: Tree, *, extended: bool = False) -> Problem:
     """A problem from a file that has been read and has no task of synthesis (see synthesis.reading).
 
-    extended: with its numbers in longdouble. Raises ProblemError.
+    extended: with its numbers as double-doubles. Raises ProblemError.
     """
     shape = checked_shape(tree)
     with placed_in(tree):
@@ -66,7 +66,7 @@ def validated(model: type[Model], tree: Tree) -> Model:
 
 
 def unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
-    """What bare numbers of a file mean; extended: with numbers in longdouble. Raises ProblemError."""
+    """What bare numbers of a file mean; extended: with numbers as double-doubles. Raises ProblemError."""
     with under("units"):
         if not extended:
             return UnitSystem(names)

@@ -1,13 +1,14 @@
-"""Units of a file whose numbers are no plain floats: longdoubles, or numbers that vary from linkage to linkage."""
+"""Units of a file whose numbers are no plain floats: of 31 digits, or numbers that vary from linkage to linkage."""
 
 from __future__ import annotations
 
 from functools import partial, reduce
+from typing import Any
 
 import numpy as np
 
+from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.vectors import PI
 
 FUNCTIONS = {
     "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
@@ -17,14 +18,14 @@ FUNCTIONS = {
 
 
 class ExtendedUnits(UnitSystem):
-    """Units whose numbers are longdoubles, from the decimals as they are written."""
+    """Units whose numbers have 31 digits, from the decimals as they are written."""
 
-    functions = {**FUNCTIONS, "pi": np.longdouble(PI)}  # noqa: RUF012  a table
+    functions = {**FUNCTIONS, "pi": DoubleDouble.decimal(PI)}  # noqa: RUF012  a table
 
     def number(self, written: str | int | float) -> float:
         super().number(written)  # refuses what float64 has no place for
-        value: float = np.longdouble(written if isinstance(written, str) else repr(written))  # type: ignore[assignment]
-        return value
+        found: Any = DoubleDouble.decimal(written if isinstance(written, str) else repr(written))
+        return found  # type: ignore[no-any-return]
 
 
 class VariedUnits(UnitSystem):

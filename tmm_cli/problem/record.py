@@ -31,7 +31,7 @@ class Problem:
     """A problem file that has been read.
 
     name: of the file, without its ending; lever_limit: allowed difference of the lever, a share of one; source: what
-    errors found later are located with; extended: makes the same in longdouble from the decimals of the file.
+    errors found later are located with; extended: makes the same as double-doubles from the decimals of the file.
     pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
     them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
     """

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
 
+from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
@@ -59,10 +60,9 @@ class Unit:
 
 
 def _pi(number: float) -> float:
-    """Pi as exactly as the number: a longdouble is no float, and brings arithmetic of its own."""
-    if isinstance(number, int | float) or hasattr(number, "stand"):
-        return math.pi
-    return type(number)("3.14159265358979323846264338327950288")
+    """Pi as exactly as the number."""
+    found: float = DoubleDouble.decimal(PI) if isinstance(number, DoubleDouble) else math.pi
+    return found
 
 
 @dataclass(frozen=True)

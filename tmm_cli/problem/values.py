@@ -180,7 +180,7 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
 
 
 def planar(x: float, y: float) -> complex:
-    """x + iy in the precision of its parts (a longdouble is no float)."""
+    """x + iy in the precision of its parts (a double-double is no float)."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 

@@ -18,6 +18,7 @@ from tmm_cli.vectors import Real
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
 APART = ("synthesis", "checks")  # a search has its own digits, and of checks the words count
 COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name not in APART)
+SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]
 
 
@@ -41,7 +42,7 @@ def all_numbers(
     for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
         if isinstance(value, float):
             searched[(False, *path)] = np.array([value])
-        elif isinstance(value, np.ndarray) and value.shape == (count,) and value.dtype.kind == "f":
+        elif getattr(value, "shape", None) == (count,) and value.dtype.kind == "f":
             angle = path[-1] in ("angle", "angles") or (turns and path == ("positions", "driver"))
             at_positions[(angle, *path)] = value
     return at_positions, searched
@@ -49,7 +50,7 @@ def all_numbers(
 
 def cells(results: Results) -> Cells:
     """The numbers at positions."""
-    return all_numbers(results)[0]
+    return all_numbers(results, set(COMPUTED) - SEARCHED)[0]
 
 
 def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:

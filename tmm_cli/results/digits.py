@@ -2,7 +2,7 @@
 
 Ordinarily the margins of the groups say how many digits are true (accuracy.margins), and only positions where that is
 less than a table prints are judged. When digits are asked for all are: tables and result.json are made by their own
-functions from the results in longdouble and from those with changed lengths too, and compared number by number; so no
+functions from the results in double-doubles and from those with changed lengths too, and compared one by one; so no
 quantity can be forgotten, and none needs a formula of its own.
 """
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import add
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links, moving_centres, moving_points
@@ -153,7 +153,7 @@ def _pins(results: Results) -> dict[str, dict[str, Vector]]:
         pairs = [r for r in results.reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
         if len(hinge.links) > 2:
             found[hinge.point] = {
-                link: np.sum([r.onto(link) for r in pairs if link in (r.on, r.by)], axis=0) for link in hinge.links
+                link: reduce(add, [r.onto(link) for r in pairs if link in (r.on, r.by)]) for link in hinge.links
             }
     return found
 

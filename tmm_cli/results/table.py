@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.double_double import array
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import NUMBER, Dimension
 
@@ -38,7 +39,7 @@ class Column:
     def array(self) -> Any:
         """Its values, nan where there is none."""
         listed = isinstance(self.values, list)
-        return np.asarray([np.nan if v is None else v for v in self.values] if listed else self.values)
+        return array([np.nan if v is None else v for v in self.values] if listed else self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
         """Its values in the units of the file, nan where there is none."""

@@ -240,10 +240,10 @@ def _whole(file: TaskFile, synthesised: Synthesised) -> Problem:
 
 
 def _extended(tree: Tree, synthesised: Synthesised) -> Problem:
-    """The same with numbers in longdouble; what a search found stays as it is."""
+    """The same with the decimals of the file as double-doubles; what the task found stays as it is."""
     file = TaskFile(tree, extended=True)
     with placed_in(tree):
-        return _whole(file, synthesised if file.searches else file.synthesised())
+        return _whole(file, synthesised)
 
 
 def _draft(file: TaskFile) -> Problem | None:

@@ -1,6 +1,6 @@
 """The product's own way, closed-form groups with forces walked backward through them: in float64, and other numbers.
 
-The others are float32, and longdouble (64 bits of mantissa on x86).
+The others are float32, and double-doubles.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.accuracy.data import widened
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.double_double import DoubleDouble, exactly
 from tmm_cli.forces.plan import react
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.newton import Newton
@@ -19,7 +21,7 @@ from tmm_cli.groups.state import Accel, GroupReactions, Placement, Rate
 from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, mapped
 
 
 def recast(value: Any, real: type) -> Any:
@@ -107,15 +109,21 @@ def _started(kernel: Kernel) -> Kernel:
 
 
 def extended(case: Case) -> Callable[[Real], Answers]:
-    """Everything in longdouble, from the same numbers."""
-    linkage = recast(case.linkage, np.longdouble)
-    return _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), np.longdouble)
+    """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
+    linkage = widened(case.linkage)
+    wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), exactly)
+    return lambda q: mapped(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
 
 
-def _at(case: Case, real: type) -> Callable[[Real], Answers]:
+def _longdouble(value: DoubleDouble) -> Any:
+    kind = np.clongdouble if value.dtype.kind == "c" else np.longdouble
+    return value.hi.astype(kind) + value.lo
+
+
+def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
     def at(q: Real) -> Answers:
-        motion = move(case.linkage, case.kernels, q.astype(real), case.law)
-        motion = replace(motion, rate=motion.rate.astype(real))  # else its square is rounded to float64
+        motion = move(case.linkage, case.kernels, real(q), case.law)
+        motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
         return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
 
     return at

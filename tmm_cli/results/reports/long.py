@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +22,7 @@ def long_table(
     things: their columns (quantities.columns), which have the same headers.
     """
     count, number = len(results.numbers), len(things)
-    head = [
-        Column(c.header, np.repeat(np.asarray(c.values), number).tolist(), c.dimension) for c in driver_columns(results)
-    ]
+    head = [Column(c.header, _repeated(c.values, number), c.dimension) for c in driver_columns(results)]
     columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
     for same in zip(*things, strict=True):
         parts = [np.nan if values is None else values for __, values, __ in same]
@@ -31,3 +30,8 @@ def long_table(
         header, __, dimension = same[0]
         columns.append(Column(header, stacked.ravel(), dimension))
     return Table(name, title, tuple(columns), long=True, notes=(note,) if note else ())
+
+
+def _repeated(values: Any, number: int) -> Any:
+    """Each value so often in a row; words and whole numbers stay such."""
+    return [v for v in values for _ in range(number)] if isinstance(values, list) else np.repeat(values, number)

@@ -14,8 +14,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from tmm_cli.double_double import PI
 from tmm_cli.roots import bisect
-from tmm_cli.vectors import PI
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.vectors import PI
+from tmm_cli.double_double import PI
 
 FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "log10(x)": np.log10, "ln(x)": np.log, "exp(x)": np.exp, "sqrt(x)": np.sqrt, "1/x": np.reciprocal,

@@ -23,13 +23,17 @@ SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less 
 
 @dataclass(frozen=True)
 class Best:
-    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints."""
+    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
+
+    agree: whether several independent starts led to it, where there were such.
+    """
 
     x: Real
     numbers: Real
     values: list[float]
     missed: float
     evolved: Evolved
+    agree: bool = True
 
 
 def exactly(candidates: Candidates, x: Real) -> list[float]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.drawings import history, reached
 from tmm_cli.synthesis.optimal.exact import Best
@@ -50,6 +51,9 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     notes = []
     if evolved.stopped:
         notes.append(_("stopped by hand: the best candidate so far, polished"))
+    elif not found.agree:
+        notes.append(_("not sure to be the least: independent starts of the search ended at different linkages; try "
+                       "another seed, for example seed: {seed}").format(seed=task.seed + 1))  # fmt: skip
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
         notes.append(_("the objective is the same for all candidates: what was found only keeps the constraints"))
@@ -57,8 +61,8 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
         notes.append(_("the file's sketch does not show the mechanism that was found: it is assembled as linkages near "
                        "it are that the sketch does show"))  # fmt: skip
     return Outcome(
-        _given(candidates, ends), _found(candidates, found), _source(found), tuple(demands), tuple(drawings),
-        tuple(notes), tuple(listings), sketch,
+        _given(candidates, ends), _found(candidates, found), _source(candidates, found), tuple(demands),
+        tuple(drawings), tuple(notes), tuple(listings), sketch,
     )  # fmt: skip
 
 
@@ -93,7 +97,10 @@ def _found(candidates: Candidates, found: Best) -> tuple[Value, ...]:
     return tuple(numbers)
 
 
-def _source(found: Best) -> str:
+def _source(candidates: Candidates, found: Best) -> str:
+    if many_starts.fits(candidates):
+        return _("differential evolution (R. Storn, K. Price 1997) and random starts, then least squares (K. Levenberg "
+                 "1944, D. Marquardt 1963)")  # fmt: skip
     if not found.evolved.every:
         return _("differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
                  "quadratic programming on the exact peaks")  # fmt: skip

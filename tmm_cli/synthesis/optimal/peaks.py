@@ -15,7 +15,7 @@ from tmm_cli.vectors import Real
 
 WINDOW = 33  # places about a peak
 SIDE = 3  # neighbours on either side
-_FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ _FIT: coefficients
+FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ FIT: coefficients
 NEWTON = 6
 RIVALS = 8  # highest places of what may jump
 RIVAL = 0.3  # of its range: a lower peak so far below the highest one is no rival
@@ -26,13 +26,14 @@ FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for orde
 def _near(y: Real, k: Real) -> tuple[Real, Real]:
     middle = np.clip(k, SIDE, y.shape[1] - SIDE - 1)
     near = np.take_along_axis(y, middle[:, None] + np.arange(-SIDE, SIDE + 1), axis=1)
-    return near @ _FIT, middle
+    return near @ FIT, middle
 
 
-def _value(c: Real, u: Real, order: int = 0) -> Real:
-    found = FACTORS[order][-1] * c[:, -1]
+def value(c: Real, u: Real, order: int = 0) -> Real:
+    """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
+    found: Real = FACTORS[order][-1] * c[..., -1]
     for power in range(2 * SIDE - 1, order - 1, -1):
-        found = found * u + FACTORS[order][power] * c[:, power]
+        found = found * u + FACTORS[order][power] * c[..., power]
     return found
 
 
@@ -42,9 +43,9 @@ def peak(y: Real) -> Real:
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
         for _ in range(NEWTON):
-            bend = _value(c, u, 2)
-            u = np.clip(u - np.where(bend < 0, _value(c, u, 1) / bend, 0.0), -SIDE, SIDE)
-    found: Real = np.maximum(_value(c, u), np.max(y, axis=1))
+            bend = value(c, u, 2)
+            u = np.clip(u - np.where(bend < 0, value(c, u, 1) / bend, 0.0), -SIDE, SIDE)
+    found: Real = np.maximum(value(c, u), np.max(y, axis=1))
     return np.where((middle == np.argmax(y, axis=1)) & (np.abs(u) < SIDE), found, np.max(y, axis=1))
 
 
@@ -54,7 +55,7 @@ def zero(y: Real) -> Real:
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
         for _ in range(NEWTON):
-            step = _value(c, u) / _value(c, u, 1)
+            step = value(c, u) / value(c, u, 1)
             u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
     found: Real = middle + u
     return found

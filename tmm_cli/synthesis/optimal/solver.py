@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.errors import _
+from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.choices import Choices
 from tmm_cli.synthesis.optimal.evolution import Evolved, evolve
@@ -20,6 +21,7 @@ from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
 
 PARAMETERS: Final[dict[str, str]] = {}
+SHORTER = 5  # times, where starts beside it lead farther
 STARTS = 3  # of the polish: the best that differ; one where candidates are moved one by one
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
@@ -44,10 +46,16 @@ def best(candidates: Candidates) -> Best:
         return _best_of(candidates, choices.starts(), evolved)
     evolved = evolve(
         choices or candidates.evaluate, len(task.parameters), population=candidates.population,
-        generations=candidates.generations, seed=task.seed,
+        generations=candidates.generations // (SHORTER if many_starts.fits(candidates) else 1), seed=task.seed,
         equalities=any(constraint.equal for constraint in candidates.constraints), progress=task.progress,
     )  # fmt: skip
     starts = _apart(candidates, evolved)
+    if many_starts.fits(candidates):
+        found = many_starts.from_many(candidates, starts)
+        led = _best_of(
+            candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=evolved.stopped or found.stopped)
+        )
+        return replace(led, agree=found.agree)
     return _best_of(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
 
 

@@ -15,9 +15,11 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import peak
+from tmm_cli.synthesis.optimal.peaks import FIT, NEWTON, SIDE, peak, value
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
 from tmm_cli.vectors import Real
+
+FOOT = 1e-3  # sine against the normal, above which the nearest place of a path is an end or a corner of it
 
 
 class Deviation(Goal):
@@ -35,6 +37,16 @@ class Deviation(Goal):
     @abstractmethod
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         """The same of an analysed mechanism."""
+
+    @abstractmethod
+    def residuals(self, read: Read, over: Over, each: int) -> Real:
+        """What is least in squares, (variants, residuals); of sets of so many variants the first one leads."""
+
+    @property
+    def spread(self) -> float:
+        """What residuals are measured against."""
+        wanted = np.array(self.wanted)
+        return float(np.sqrt(np.mean(np.abs(wanted - np.mean(wanted)) ** 2))) or 1.0
 
     def counted(self, off: Real) -> Real:
         """Root mean square, or the largest, (variants,)."""
@@ -79,6 +91,9 @@ class Law(Deviation):
         turned: Real = np.angle(np.exp(1j * off)) if over.swings else off
         return turned
 
+    def residuals(self, read: Read, over: Over, each: int) -> Real:
+        return self.deviations(read, over)
+
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         run = output_place(motion_at(results, np.array(self.places)), self.name)
         over = Over(results.linkage, not results.linkage.slides_on_frame(self.name))
@@ -104,6 +119,13 @@ class Path(Deviation):
             return apart
         return nearest(x, y, np.array(self.wanted), closed=over.closed)
 
+    def residuals(self, read: Read, over: Over, each: int) -> Real:
+        x, y = read("px"), read("py")
+        if self.places:
+            return np.hstack([x - np.real(self.wanted), y - np.imag(self.wanted)])
+        place = (x + 1j * y).reshape(len(x) // each, each, -1)
+        return _across(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
+
     def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
         place = read("px")[0] + 1j * read("py")[0]
         return [] if self.places else [(w, int(np.argmin(np.abs(place - w)))) for w in self.wanted]
@@ -124,6 +146,34 @@ class Path(Deviation):
             return highest_on(lambda q: -(np.abs(motion_at(results, q).spot(self.name) - wanted) ** 2), results, ends)
 
         return np.sqrt(np.maximum([-near(wanted) for wanted in self.wanted], 0.0))
+
+
+def _across(place: Any, wanted: Real, closed: bool) -> Real:
+    """Distances across the path (sets, variants, corners) where its first variant is nearest to points; (..., points).
+
+    They change their sign where the path goes through a point, so that they are smooth there.
+    """
+    sets, __, count = place.shape
+    apart = np.abs(place[:, 0, :, None] - wanted)
+    near = np.argmin(np.where(np.isnan(apart), np.inf, apart), axis=1)
+    middle = near if closed else np.clip(near, SIDE, count - 1 - SIDE)
+    corners = (middle[..., None] + np.arange(-SIDE, SIDE + 1)) % count
+    off = place[np.arange(sets)[:, None, None], :, corners] - wanted[:, None, None]  # (sets, points, corners, variants)
+    fit = off[..., 0] @ FIT
+    u = (near - middle).astype(float)
+    low, high = u - 1, u + 1
+    if not closed:
+        low, high = np.maximum(low, -middle), np.minimum(high, count - 1 - middle)
+    for __ in range(NEWTON):
+        at, along, bend = (value(fit, u, order) for order in range(3))
+        slope, curve = np.real(np.conj(at) * along), np.abs(along) ** 2 + np.real(np.conj(at) * bend)
+        u = np.clip(u - np.where(curve > 0, slope / curve, 0.0), low, high)
+    at, along = value(fit, u), value(fit, u, 1)
+    end = np.abs(np.real(np.conj(at) * along)) > FOOT * np.abs(at) * np.abs(along)
+    normal = np.where(end, at / np.abs(at), 1j * along / np.abs(along))
+    share = u[..., None] ** np.arange(2 * SIDE + 1) @ FIT.T  # of each corner
+    found: Real = np.real(np.conj(normal)[..., None] * np.einsum("spkv,spk->spv", off, share))
+    return found.transpose(0, 2, 1)
 
 
 def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:

@@ -1,0 +1,455 @@
+"""Numbers of some 31 digits, the sum of two doubles, as arrays that NumPy's functions take.
+
+The ordinary code of the stages runs on them as it stands, alike on every machine; the difference to float64 is the
+rounding error itself. A complex number is a sum of two complex ones: real and imaginary parts are sums of their own.
+Exact sums: D. E. Knuth, The Art of Computer Programming 2, 4.2.2; exact products: T. J. Dekker, A floating-point
+technique for extending the available precision, Numer. Math. 18 (1971).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from decimal import Context, Decimal, localcontext
+from functools import cache, reduce
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+EPS = 2.0**-103  # a sum, product, quotient or root is off by less, in units of itself
+SPLIT = 2.0**27 + 1  # tears a double into two halves of 26 bits
+EXACT = Context(prec=60)
+PI = "3.14159265358979323846264338327950288419716939937510582097494"
+PARTS = 64  # of a turn: directions that sines and cosines start from
+LARGEST_POWER = 8  # that is multiplied out
+POWERS, PRECISE = 9, 5  # of the square in the series from there on; those from PRECISE on are small enough for doubles
+
+Pair = tuple[Any, Any]
+
+
+class DoubleDouble(NDArrayOperatorsMixin):
+    """hi + lo, arrays of one shape, real or complex; lo is at most half a unit of the last place of hi."""
+
+    __slots__ = ("hi", "lo", "turn")
+
+    def __init__(self, hi: Any, lo: Any = None) -> None:
+        self.hi = np.asarray(hi)
+        self.lo = np.zeros_like(self.hi) if lo is None else np.asarray(lo)
+        self.turn: DoubleDouble | None = None  # e^(i x), once it was asked for
+
+    @classmethod
+    def decimal(cls, written: str) -> DoubleDouble:
+        """The number that decimals write. Raises decimal.InvalidOperation where they write none."""
+        return _rounded([EXACT.create_decimal(written)])[0]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.hi.shape
+
+    @property
+    def ndim(self) -> int:
+        return self.hi.ndim
+
+    @property
+    def size(self) -> int:
+        return self.hi.size
+
+    @property
+    def dtype(self) -> Any:
+        return self.hi.dtype
+
+    @property
+    def real(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.real, self.lo.real)
+
+    @property
+    def imag(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.imag, self.lo.imag)
+
+    @property
+    def T(self) -> DoubleDouble:  # noqa: N802  as of an array
+        return DoubleDouble(self.hi.T, self.lo.T)
+
+    def conjugate(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.conjugate(), self.lo.conjugate())
+
+    def reshape(self, *shape: Any) -> DoubleDouble:
+        return DoubleDouble(self.hi.reshape(*shape), self.lo.reshape(*shape))
+
+    def ravel(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.ravel(), self.lo.ravel())
+
+    def copy(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.copy(), self.lo.copy())
+
+    def astype(self, kind: Any) -> Any:
+        """Rounded to an array of plain numbers."""
+        return self.hi.astype(kind)
+
+    def __getitem__(self, key: Any) -> DoubleDouble:
+        return DoubleDouble(self.hi[key], self.lo[key])
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self.hi[key], self.lo[key] = _parts(value)
+
+    def __len__(self) -> int:
+        return len(self.hi)
+
+    def __iter__(self) -> Iterator[DoubleDouble]:
+        return (self[k] for k in range(len(self)))
+
+    def __float__(self) -> float:
+        return float(self.hi)
+
+    def __int__(self) -> int:
+        return int(self.hi)
+
+    def __complex__(self) -> complex:
+        return complex(self.hi)
+
+    def __bool__(self) -> bool:
+        return bool(self.hi)
+
+    def __hash__(self) -> int:
+        return hash(self.hi[()])
+
+    def __format__(self, how: str) -> str:
+        return format(self.hi[()], how)
+
+    def __repr__(self) -> str:
+        return f"DoubleDouble({self.hi!r}, {self.lo!r})"
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("as a plain array it would lose half of its digits; astype(float) rounds")
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        known = UFUNCS.get(ufunc.__name__)
+        if known is None or method != "__call__" or any(value is not None for value in more.values()):
+            return NotImplemented
+        return known(*inputs)
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if function in FUNCTIONS:
+            return FUNCTIONS[function](*args, **kwargs)
+        if function in ROUNDED:
+            return function(args[0].hi, *args[1:], **kwargs)
+        if function not in ARRANGING:
+            return NotImplemented
+        hi, lo = (function(*_each(args, part), **kwargs) for part in (0, 1))
+        if isinstance(hi, list | tuple):
+            return type(hi)(DoubleDouble(*both) for both in zip(hi, lo, strict=True))
+        return DoubleDouble(hi, lo)
+
+
+def _parts(value: Any) -> Pair:
+    if isinstance(value, DoubleDouble):
+        return value.hi, value.lo
+    array = np.asarray(value)
+    return array, np.zeros_like(array)
+
+
+def _each(args: Any, part: int) -> Any:
+    """Arguments of a function that arranges numbers, with the higher (0) or the lower parts (1) of these."""
+    found = []
+    mixed = any(isinstance(arg, DoubleDouble) for arg in args)
+    for arg in args:
+        if isinstance(arg, tuple | list):
+            found.append(_each(arg, part))
+        elif isinstance(arg, DoubleDouble):
+            found.append((arg.hi, arg.lo)[part])
+        else:  # integers and truths say where, other plain numbers have no lower part
+            number = mixed and part and np.asarray(arg).dtype.kind in "fc"
+            found.append(np.zeros_like(arg) if number else arg)
+    return type(args)(found)
+
+
+def exactly(values: Any) -> Any:
+    """Plain numbers as double-doubles, in the place of an array."""
+    return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
+
+
+def array(values: Any) -> Any:
+    """An array of numbers, of double-doubles where one of them is such."""
+    if isinstance(values, DoubleDouble):
+        return values
+    if isinstance(values, list | tuple) and any(isinstance(value, DoubleDouble | list | tuple) for value in values):
+        return np.stack([array(value) for value in values])
+    return np.asarray(values)
+
+
+def rounded(values: Any) -> Any:
+    """Plain numbers of an array of either kind."""
+    return values.hi if isinstance(values, DoubleDouble) else values
+
+
+def two_sum(a: Any, b: Any) -> Pair:
+    """a + b, and exactly what rounding took from it."""
+    total = a + b
+    other = total - a
+    return total, (a - (total - other)) + (b - other)
+
+
+def fast_two_sum(a: Any, b: Any) -> Pair:
+    """The same where |a| is not less than |b|."""
+    total = a + b
+    return total, b - (total - a)
+
+
+def two_product(a: Any, b: Any) -> Pair:
+    """a b of real numbers, and exactly what rounding took from it."""
+    product = a * b
+    torn = SPLIT * a
+    a1 = torn - (torn - a)
+    torn = SPLIT * b
+    b1 = torn - (torn - b)
+    a2, b2 = a - a1, b - b1
+    return product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2
+
+
+def _add(x: Any, y: Any) -> DoubleDouble:
+    (a, b), (c, d) = _parts(x), _parts(y)
+    total, error = two_sum(a, c)
+    lower, rest = two_sum(b, d)
+    total, error = fast_two_sum(total, error + lower)
+    return DoubleDouble(*fast_two_sum(total, error + rest))
+
+
+def _negative(x: DoubleDouble) -> DoubleDouble:
+    return DoubleDouble(-x.hi, -x.lo)
+
+
+def _subtract(x: Any, y: Any) -> DoubleDouble:
+    c, d = _parts(y)
+    return _add(x, DoubleDouble(-c, -d))
+
+
+def _real_product(x: Pair, y: Pair) -> Pair:
+    product, error = two_product(x[0], y[0])
+    return fast_two_sum(product, error + (x[0] * y[1] + x[1] * y[0]))
+
+
+def _multiply(x: Any, y: Any) -> DoubleDouble:
+    for one, other in ((x, y), (y, x)):
+        if isinstance(one, int | float | complex) and one in (1, -1, 1j, -1j):
+            return DoubleDouble(one * other.hi, one * other.lo)
+    x, y = _parts(x), _parts(y)
+    kinds = x[0].dtype.kind == "c", y[0].dtype.kind == "c"
+    if not any(kinds):
+        return DoubleDouble(*_real_product(x, y))
+    shape = np.broadcast_shapes(x[0].shape, y[0].shape)
+    if not all(kinds):
+        real, other = (y, x) if kinds[0] else (x, y)
+        hi, lo = _real_product(real, (_planes(shape, other[0]), _planes(shape, other[1])))
+        return DoubleDouble(_joined(hi), _joined(lo))
+    left = [_planes(shape, part.real, part.imag, part.real, part.imag) for part in x]
+    right = [_planes(shape, part.real, -part.imag, part.imag, part.real) for part in y]
+    hi, lo = _real_product((left[0], left[1]), (right[0], right[1]))
+    both = _add(DoubleDouble(hi[::2], lo[::2]), DoubleDouble(hi[1::2], lo[1::2]))
+    return DoubleDouble(_joined(both.hi), _joined(both.lo))
+
+
+def _planes(shape: tuple[int, ...], *parts: Any) -> Any:
+    """Real numbers on a first axis; real and imaginary part of one complex array."""
+    parts = parts if len(parts) > 1 else (parts[0].real, parts[0].imag)
+    planes = np.empty((len(parts), *shape))
+    for k, part in enumerate(parts):
+        planes[k] = part
+    return planes
+
+
+def _joined(planes: Any) -> Any:
+    found = np.empty(planes.shape[1:], complex)
+    found.real, found.imag = planes
+    return found
+
+
+def _divide(x: Any, y: Any) -> DoubleDouble:
+    x, y = DoubleDouble(*_parts(x)), DoubleDouble(*_parts(y))
+    if y.dtype.kind == "c":
+        return _divide(_multiply(x, y.conjugate()), _square(y))
+    first = x.hi / y.hi
+    rest = _subtract(x, _multiply(y, first))
+    second = rest.hi / y.hi
+    rest = _subtract(rest, _multiply(y, second))
+    found = _add(DoubleDouble(*fast_two_sum(first, second)), rest.hi / y.hi)
+    return _finite(found, first)
+
+
+def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
+    """What was found, or the plain number where that is infinite or none."""
+    sound = np.isfinite(plain)
+    if sound.all():
+        return found
+    return DoubleDouble(np.where(sound, found.hi, plain), np.where(sound, found.lo, 0.0))
+
+
+def _square(z: DoubleDouble) -> DoubleDouble:
+    return _add(_multiply(z.real, z.real), _multiply(z.imag, z.imag))
+
+
+def _sqrt(x: DoubleDouble) -> DoubleDouble:
+    root = np.sqrt(x.hi)
+    rest = _subtract(x, DoubleDouble(*two_product(root, root)))
+    found = DoubleDouble(*fast_two_sum(root, rest.hi / np.where(root == 0, 1.0, 2 * root)))
+    return _finite(found, root)
+
+
+def _absolute(x: DoubleDouble) -> DoubleDouble:
+    return _sqrt(_square(x)) if x.dtype.kind == "c" else _where(x.hi < 0, _negative(x), x)
+
+
+def _power(x: Any, n: Any) -> DoubleDouble:
+    """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
+    number = float(n)
+    if number == 0.5:
+        return _sqrt(x)
+    if not number.is_integer() or abs(number) > LARGEST_POWER:
+        return DoubleDouble(np.power(x.hi, number))
+    found = reduce(_multiply, [x] * int(abs(number)), DoubleDouble(np.ones(np.shape(x))))
+    return found if number >= 0 else _divide(1.0, found)
+
+
+def _floor(x: DoubleDouble) -> DoubleDouble:
+    whole = np.floor(x.hi)
+    return DoubleDouble(*fast_two_sum(whole, np.where(whole == x.hi, np.floor(x.lo), 0.0)))
+
+
+def _remainder(x: Any, y: Any) -> DoubleDouble:
+    return _subtract(x, _multiply(_floor(_divide(x, y)), y))
+
+
+def _turn(x: DoubleDouble) -> DoubleDouble:
+    """e^(i x): the nearest of some directions, and the power series from there."""
+    if x.turn is None:
+        steps, directions, series = _tables()
+        number = np.round(x.hi * (PARTS / (2 * np.pi)))
+        rest = x
+        for part in steps:
+            rest = _subtract(rest, DoubleDouble(*two_product(number, part)))
+        square = _multiply(rest, rest)
+        column = (slice(None), *(None,) * x.ndim)
+        small: Any = 0.0
+        for k in range(POWERS - 1, PRECISE - 1, -1):
+            small = series[k].hi[column] + square.hi * small
+        found = DoubleDouble(small)
+        for k in range(PRECISE - 1, -1, -1):
+            found = _add(_multiply(square, found), series[k][column])
+        sine = _multiply(found[1], rest)
+        near = DoubleDouble(_joined(np.stack((found.hi[0], sine.hi))), _joined(np.stack((found.lo[0], sine.lo))))
+        x.turn = _multiply(directions[np.nan_to_num(number).astype(int) % PARTS], near)
+    return x.turn
+
+
+def _arctan2(y: Any, x: Any) -> DoubleDouble:
+    """One step from the double's: the sine of the angle that is left is that angle."""
+    y, x = DoubleDouble(*_parts(y)), DoubleDouble(*_parts(x))
+    near = DoubleDouble(np.arctan2(y.hi, x.hi))
+    turn, size = _turn(near), np.hypot(y.hi, x.hi)
+    left = _subtract(_multiply(y, turn.real), _multiply(x, turn.imag)).hi
+    return _add(near, left / np.where(size == 0, 1.0, size))
+
+
+def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
+    (a, b), (c, d) = _parts(one), _parts(other)
+    return DoubleDouble(np.where(truth, a, c), np.where(truth, b, d))
+
+
+def _compared(ufunc: Any) -> Callable[[Any, Any], Any]:
+    """By the higher parts, and by the lower ones where these are equal."""
+
+    def compare(x: Any, y: Any) -> Any:
+        (a, b), (c, d) = _parts(x), _parts(y)
+        return np.where(a == c, ufunc(b, d), ufunc(a, c))
+
+    return compare
+
+
+def _of_higher(ufunc: Any) -> Callable[[DoubleDouble], Any]:
+    return lambda x: ufunc(x.hi)
+
+
+def _sum(x: DoubleDouble, axis: int | None = None) -> DoubleDouble:
+    x = array(x)
+    return reduce(_add, x.ravel() if axis is None else np.moveaxis(x, axis, 0))  # type: ignore[type-var]
+
+
+def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
+    found: Any = np.stack(list(accumulate(np.moveaxis(x, axis, 0), _add)))  # type: ignore[type-var]
+    return np.moveaxis(found, 0, axis)  # type: ignore[no-any-return]
+
+
+def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
+    """A piecewise linear table (np.interp), which jumps where two arguments are equal."""
+    at, values = (DoubleDouble(*_parts(array(column))) for column in (at, values))
+    left = np.clip(np.searchsorted(at.hi, _parts(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
+    right = np.minimum(left + 1, len(at) - 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.clip(_divide(_subtract(x, at[left]), at[right] - at[left]), 0.0, 1.0)
+        between = values[left] + share * (values[right] - values[left])
+    return _where(np.isnan(between), values[right], between)
+
+
+def _rounded(numbers: Sequence[Decimal]) -> DoubleDouble:
+    hi = [float(number) for number in numbers]
+    lo = [EXACT.subtract(number, Decimal(h)) for number, h in zip(numbers, hi, strict=True)]
+    return DoubleDouble(np.array(hi), np.array(lo, float))
+
+
+@cache
+def _tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
+    """A part of a turn in three doubles; the directions it leads to; coefficients of cosine and sine by powers."""
+    with localcontext(EXACT):
+        step = 2 * Decimal(PI) / PARTS
+        steps, rest = [], step
+        for _ in range(3):
+            steps.append(float(rest))
+            rest -= Decimal(steps[-1])
+        cosine, sine, term = Decimal(0), Decimal(0), Decimal(1)
+        for k in range(0, 40, 2):
+            cosine, term = cosine + term, term * step / (k + 1)
+            sine, term = sine + term, -term * step / (k + 2)
+        directions = [(Decimal(1), Decimal(0))]
+        for _ in range(PARTS - 1):
+            c, s = directions[-1]
+            directions.append((c * cosine - s * sine, c * sine + s * cosine))
+        series, even = [], Decimal(1)
+        for k in range(POWERS):
+            odd = even / (2 * k + 1)
+            series.append(_rounded((even, odd)))
+            even = -odd / (2 * k + 2)
+    re, im = (_rounded(column) for column in zip(*directions, strict=True))
+    coefficients: Any = np.stack(series)
+    return steps, DoubleDouble(re.hi + 1j * im.hi, re.lo + 1j * im.lo), coefficients
+
+
+UFUNCS: dict[str, Callable[..., Any]] = {
+    "add": _add, "subtract": _subtract, "multiply": _multiply, "divide": _divide, "negative": _negative,
+    "positive": lambda x: x, "absolute": _absolute, "sqrt": _sqrt, "power": _power,
+    "floor": _floor, "ceil": lambda x: _negative(_floor(_negative(x))), "remainder": _remainder,
+    "conjugate": DoubleDouble.conjugate,
+    "cos": lambda x: _turn(x).real, "sin": lambda x: _turn(x).imag, "arctan2": _arctan2,
+    "tan": lambda x: _divide(_turn(x).imag, _turn(x).real), "arctan": lambda x: _arctan2(x, 1.0),
+    "arcsin": lambda x: _arctan2(x, _sqrt(_multiply(_subtract(1.0, x), _add(1.0, x)))),
+    "arccos": lambda x: _arctan2(_sqrt(_multiply(_subtract(1.0, x), _add(1.0, x))), x),
+    "hypot": lambda x, y: _sqrt(_add(_multiply(x, x), _multiply(y, y))),
+    "maximum": lambda x, y: _where(np.greater_equal(x, y) | np.isnan(x), x, y),
+    "minimum": lambda x, y: _where(np.less_equal(x, y) | np.isnan(x), x, y),
+}  # fmt: skip
+COMPARING: tuple[Any, ...] = (np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal)
+TELLING: tuple[Any, ...] = (np.sign, np.isfinite, np.isnan)
+UFUNCS |= {ufunc.__name__: _compared(ufunc) for ufunc in COMPARING}
+UFUNCS |= {ufunc.__name__: _of_higher(ufunc) for ufunc in TELLING}
+
+FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    np.where: _where, np.sum: _sum, np.cumsum: _cumsum, np.interp: _interp,
+    np.real: lambda x: x.real, np.imag: lambda x: x.imag,
+    np.angle: lambda z: _arctan2(z.imag, z.real), np.iscomplexobj: lambda x: x.dtype.kind == "c",
+    np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
+    np.searchsorted: lambda a, v, **how: np.searchsorted(_parts(a)[0], _parts(v)[0], **how),
+}  # fmt: skip
+ROUNDED = {np.shape, np.max, np.min, np.nanmax, np.nanmin, np.any, np.all, np.round, np.argmax}  # by the higher part
+ARRANGING = {
+    np.stack, np.concatenate, np.broadcast_to, np.broadcast_arrays, np.reshape, np.ravel, np.moveaxis, np.swapaxes,
+    np.take_along_axis, np.atleast_1d, np.zeros_like, np.copy, np.nan_to_num, np.repeat,
+}  # fmt: skip

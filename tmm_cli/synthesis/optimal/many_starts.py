@@ -1,0 +1,127 @@
+"""Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
+
+Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts make few
+steps, those with the least squares go on. The search ends where several rounds ended at the same least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_cli.synthesis.optimal.candidates import Candidates, reader
+from tmm_cli.synthesis.optimal.least_squares import WEIGHT, Evaluate, Rows, descend
+from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
+from tmm_cli.vectors import Real
+
+SAMPLES = 4000  # of a round, of which the best and those that evolved start
+TOURNAMENT = ((32, 8), (12, 20), (5, 60), (2, 150))  # so many of them, and their steps
+ROUNDS, AGREED = 8, 3  # at most; rounds that end at the same least
+SAME = 1e-3  # of an objective: the same least
+ZERO = 1e-7  # of the size of what is wanted: it is met
+CLOSER, LAST = 360, 200  # places and steps of the winners
+WINNERS = 4
+BLOCK = 400  # variants at once
+
+
+@dataclass(frozen=True)
+class Found:
+    """starts: best first; rounds: how many there were, and how many of them ended at the least; stopped: by hand."""
+
+    starts: list[Real]
+    rounds: int
+    reached: int
+    stopped: bool
+
+    @property
+    def agree(self) -> bool:
+        """Whether another seed is likely to lead to the same."""
+        return self.reached >= AGREED and not self.stopped
+
+
+def fits(candidates: Candidates) -> bool:
+    """Whether the objective is a sum of squares, and all numbers may have all values."""
+    task = candidates.task
+    squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
+    return squares and task.target is None and candidates.taped and len(task.free) == len(task.parameters)
+
+
+def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
+    """Where the search from many starts ends; evolved: starts of the first round beside the random ones."""
+    chance = np.random.default_rng(candidates.task.seed)
+    evaluate = residuals(candidates)
+    won: list[tuple[float, Real]] = []
+    stopped, progress = False, candidates.task.progress
+    try:
+        for k in range(ROUNDS):
+            progress(k, ROUNDS)
+            x = np.vstack([*(evolved if k == 0 else ()), chance.random((SAMPLES, len(candidates.low)))])
+            won.append(_round(candidates, evaluate, x))
+            if _reached(won) >= AGREED:
+                break
+    except KeyboardInterrupt:
+        stopped = True
+    finally:
+        progress(ROUNDS, ROUNDS)
+    if not won:
+        return Found([], 0, 0, stopped)
+    won.sort(key=lambda one: one[0])
+    closer = residuals(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
+    last = _sorted(*descend(closer, np.array([x for __, x in won[:WINNERS]]), LAST))
+    return Found([x for __, x in last], len(won), _reached([*last, *won[WINNERS:]]), stopped)
+
+
+def _round(candidates: Candidates, evaluate: Evaluate, x: Real) -> tuple[float, Real]:
+    """The sum of squares to which a tournament leads, and where."""
+    f, violation = candidates.evaluate(x)
+    x = x[np.lexsort((f, violation))]
+    for count, steps in TOURNAMENT:
+        last = _sorted(*descend(evaluate, x[:count], steps))
+        x = np.array([own for __, own in last])
+    return last[0]
+
+
+def _sorted(x: Real, cost: Real) -> list[tuple[float, Real]]:
+    """Best first."""
+    return sorted(zip(cost.tolist(), x, strict=True), key=lambda one: one[0])
+
+
+def _reached(won: Sequence[tuple[float, Real]]) -> int:
+    """How many ended at the least; nothing is less than zero."""
+    least = min(cost for cost, __ in won)
+    return AGREED if least < ZERO**2 else sum(cost <= least * (1 + SAME) ** 2 for cost, __ in won)
+
+
+def residuals(candidates: Candidates) -> Evaluate:
+    """What is made least in squares; equalities stand beside it with a weight."""
+    objective, constraints = candidates.task.objective, candidates.constraints
+    assert isinstance(objective, Deviation)
+    unit = objective.spread * np.sqrt(len(objective.wanted))
+
+    def block(x: Real, each: int) -> Rows:
+        found = candidates.coarse(candidates.numbers(x), candidates.places)
+        parts = [
+            (quantity, reader(found, n, candidates.exact[n]), candidates.overs[n])
+            for n, quantity in enumerate(candidates.quantities)
+        ]  # fmt: skip
+        off, least = [objective.residuals(parts[0][1], parts[0][2], each) / unit], []
+        for constraint, (quantity, read, over) in zip(constraints, parts[1:], strict=True):
+            value = quantity.coarse(read, over)[:, None]
+            if constraint.equal:
+                off.append(WEIGHT * (value - constraint.least) / constraint.scale)
+                continue
+            if constraint.least is not None:
+                least.append((value - constraint.least) / constraint.scale)
+            if constraint.most is not None:
+                least.append((constraint.most - value) / constraint.scale)
+        return Rows(np.hstack(off), np.hstack(least))
+
+    def evaluate(x: Real, each: int) -> Rows:
+        size = max(1, BLOCK // each) * each
+        with np.errstate(all="ignore"):
+            rows = [block(x[at : at + size], each) for at in range(0, len(x), size)]
+        return Rows(np.concatenate([r.off for r in rows]), np.concatenate([r.least for r in rows]))
+
+    return evaluate
