@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from test_commands import process, tmm
 
-from tmm_cli import solve
+from tmm_cli import load, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.understood import doubts, understood
@@ -163,3 +163,9 @@ def test_explain_keeps_the_table_of_places_for_those_who_ask():
     table = "What each stage computes, when it is asked for"
     assert table not in tmm("explain", SHAPER).stdout
     assert table in tmm("explain", SHAPER, "--verbose").stdout
+
+
+def test_units_are_said_before_a_search_begins():
+    task = load(str(SHAPER.parent / "crank-rocker-optimal.yaml"))
+    assert next(iter(understood(task))).startswith("bare numbers: mm, deg")
+    assert "whole" not in vars(task)  # nothing was looked for

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from itertools import combinations
 from typing import Any
 
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Driver
-from tmm_cli.problem.record import Problem
+from tmm_cli.linkage import FRAME, Driver, Link
+from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
 from tmm_cli.results.table import with_unit
@@ -18,9 +17,10 @@ SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
 
 
-def understood(problem: Problem) -> Iterable[str]:
-    """Units, driver, gravity, sizes: a sentence each."""
-    yield bare_units(problem.units)
+def understood(task: Problem | TaskProblem) -> Iterable[str]:
+    """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
+    yield bare_units(task.units)
+    problem = task.whole
     if problem.source is not None and problem.source.given:
         yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
     linkage = problem.linkage
@@ -123,13 +123,22 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
 
 
 def _spans(problem: Problem) -> dict[str, tuple[float, str]]:
-    """Of each link with several places the largest distance of two points, and which two."""
+    """Of each link with several places a large distance of two points (of three points the largest), and which two."""
     found = {}
     for name, link in problem.linkage.links.items():
-        pairs = [(float(abs(link.points[a] - link.points[b])), a + b) for a, b in combinations(link.points, 2)]
-        if pairs and max(pairs)[0] > 0:
-            found[name] = max(pairs)
+        points = list(link.points)
+        if len(points) < 2:
+            continue
+        a = _farthest(link, points[0])
+        b = _farthest(link, a)
+        span = float(abs(link.points[a] - link.points[b]))
+        if span > 0:
+            found[name] = (span, "".join(sorted((a, b), key=points.index)))
     return found
+
+
+def _farthest(link: Link, point: str) -> str:
+    return max(link.points, key=lambda other: float(abs(link.points[other] - link.points[point])))
 
 
 def _short(number: float) -> str:
