@@ -169,3 +169,12 @@ def test_units_are_said_before_a_search_begins():
     task = load(str(SHAPER.parent / "crank-rocker-optimal.yaml"))
     assert next(iter(understood(task))).startswith("bare numbers: mm, deg")
     assert "whole" not in vars(task)  # nothing was looked for
+
+
+def test_a_bare_speed_of_a_cylinder_is_warned_of_beside_millimetres():
+    text = (SHAPER.parent / "cylinder.yaml").read_text(encoding="utf-8")
+    text = text.replace("speed: v1", "speed: 40")
+    assert list(doubts(build(read_text(text, "cylinder.yaml")))) == [
+        "the driver's speed has no unit and is taken as 40 m/s, though lengths are in mm: "
+        "write `40 m/s`, or `40 mm/s` if that is meant"
+    ]

@@ -77,14 +77,21 @@ def doubts(problem: Problem) -> Iterable[str]:
 
 
 def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """A speed without a unit means radians where every other angle of the file is in degrees."""
-    driver, named = problem.linkage.driver, {key.replace("_", " ") for key in data.get("units", {})}
-    degrees = problem.units.factor(ANGLE) != 1 and "angular speed" not in named
-    if problem.bare_speed and driver.kind == "turn" and driver.rate and degrees:
+    """A speed without a unit is in rad/s or m/s also where the file counts in degrees or millimetres."""
+    driver, units = problem.linkage.driver, problem.units
+    named = {key.replace("_", " ") for key in data.get("units", {})}
+    if not problem.bare_speed or not driver.rate:
+        return
+    if driver.kind == "turn" and units.factor(ANGLE) != 1 and "angular speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
             "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
-        ).format(motion=motion(driver), angle=problem.units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+        ).format(motion=motion(driver), angle=units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+    if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
+        yield _(
+            "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
+            "write `{speed} m/s`, or `{speed} {length}/s` if that is meant"
+        ).format(length=units.symbol(LENGTH), speed=f"{driver.rate:.6g}")
 
 
 def _sizes(problem: Problem) -> Iterable[str]:
