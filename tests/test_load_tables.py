@@ -1,5 +1,6 @@
 """A table of a load goes no farther than what it is against: rows beyond the cycle are refused, not cut."""
 
+import blocks
 import pytest
 from test_commands import tmm
 
@@ -50,3 +51,16 @@ def test_a_table_up_to_the_end_of_the_cycle_is_taken(tmp_path, against):
 
 def test_a_table_against_the_stroke_may_reach_beyond_it(tmp_path):
     assert forces(tmp_path, against="stroke", table="[[0, 0], [500, 5 kN]]").returncode == 0
+
+
+def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
+    table = "force: {angle: 0 deg, against: crank turn, table: [[0, 0], [1, 5]]}"
+    (tmp_path / "x.yaml").write_text(blocks.CYLINDER.replace("force: [0, -100]", table))
+    ended = tmm("forces", "x.yaml", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert ended.stderr == (
+        "error: x.yaml:12:58: loads.F.force.against: a table is against a crank, or the strokes that it gives: this "
+        "driver slides\n"
+        "  found:   crank turn\n"
+        "  allowed: size: one value\n"
+    )

@@ -6,7 +6,7 @@ What the positions alone would not show is looked for over the whole of what is 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Literal
 
@@ -24,6 +24,7 @@ from tmm_cli.vectors import Real, dot
 
 NO_WORK = 1e-6  # of all the work that a load does and takes: less in a stroke is none
 NO_DIFFERENCE = 1e-9  # of the largest: below, lever and force plan differ by rounding
+SEAM = 1e-7  # rad: an extreme is found to half the digits; this near to the end of a cycle it is at its beginning
 
 Kind = Literal["slot", "pressure", "load", "detail", "near dead", "lever"]
 
@@ -54,10 +55,14 @@ def checks(results: Results) -> tuple[Check, ...]:
     if results.lever is None or results.of or results.driver_range is None:
         return ()
     closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
-    return (
+    found = (
         *_slots(results), *_pressure(results), *_loads(results, closely), *_near_dead(results, closely),
         *_detail(results), *_lever(results),
     )  # fmt: skip
+    if not results.driver_range.full:
+        return found
+    cycle = results.driver_range.end - results.driver_range.start
+    return tuple(c if c.at is None else replace(c, at=max((c.at + SEAM) % cycle - SEAM, 0.0)) for c in found)
 
 
 def _slots(results: Results) -> Iterable[Check]:

@@ -91,9 +91,9 @@ class _Segment:
         k = int(np.argmax(far))
         low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
         place, short = least(lambda places: -self.at(places), low, high)
-        if -short <= AT_THE_END * self.length:
-            return Excess(self.slide, self.point, self.length, -short, place, ())
-        return Excess(self.slide, self.point, self.length, -short, place, self.ways(q, far, full) or ((place, place),))
+        most = 0.0 if abs(short) <= AT_THE_END * self.length else -short
+        ways = (self.ways(q, far, full) or ((place, place),)) if most > 0 else ()
+        return Excess(self.slide, self.point, self.length, most, place, ways)
 
     def ways(self, q: Real, far: Real, full: bool) -> tuple[tuple[float, float], ...]:
         """From where to where it is beyond; of a cycle the last way may go on through its end."""

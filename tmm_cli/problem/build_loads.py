@@ -94,6 +94,11 @@ def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> tuple
 
 def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path) -> LoadTable:
     argument = ANGLE
+    if linkage.driver.kind == "slide":
+        raise ProblemError(
+            _("a table is against a crank, or the strokes that it gives: this driver slides"), path=(*path, "against"),
+            found=str(given.against), allowed=_("size: one value"),
+        )  # fmt: skip
     if given.against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
         argument = LENGTH if link is not None and linkage.slides_on_frame(link) else ANGLE

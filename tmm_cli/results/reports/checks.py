@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 from tmm_cli.analysis.checks import Check, checks
@@ -10,8 +9,6 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.table import Table, table_of_words, with_unit
-
-SEAM = 1e-7  # rad: an extreme is found to half the digits; this near to the end of a cycle it is at its beginning
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -28,11 +25,7 @@ def tables(results: Results) -> Iterable[Table]:
 def _place(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
-    driver, driver_range = results.linkage.driver, results.driver_range
-    place = check.at
-    if driver.kind == "turn" and driver_range is not None and driver_range.full:
-        place = max((place + SEAM) % (2 * math.pi * driver_range.turns) - SEAM, 0.0)
-    return with_unit(results.problem.units, place, place_dimension(driver.kind))
+    return with_unit(results.problem.units, check.at, place_dimension(results.linkage.driver.kind))
 
 
 def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
