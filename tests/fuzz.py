@@ -49,6 +49,7 @@ POSITIONS = 24  # of what is solved: more of them show no more
 NUMBERS = [
     "0", "1", "-1", "0.5", "2", "3", "-0.0", "100", "250.5", "1e-9", "1e-17", "1e-300", "1e9", "1e19", "1e299", "1e999",
     "38.925549624985472123456789", "3.14159265358979", "180", "360", "1,5", "nan", "inf", "12:30", "010", "0x1F",
+    "1e200*1e200", "(1e200*1e200 - 1e200*1e200)", "1e306 km", "1e160 rpm",
 ]  # fmt: skip
 FACTORS = [0, -1, 1e-9, 1e3, 1e18, 2, 0.5, *[1 + 1e-12, 1.1, 0.9, 1.01, 0.99] * 4]
 CALLS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "min", "max", "sqrt", "abs", "sinh"]
@@ -94,7 +95,7 @@ class Grammar:
     def number(self) -> Any:
         written = self.random.choice(NUMBERS)
         size = self.random.choice([1, 10, 100, 1e3]) * self.random.uniform(-1, 3)
-        return self.random.choice([written, round(size, 3), size, int(size)])
+        return self.random.choice([written, written, round(size, 3), size, int(size)])
 
     def expression(self, depth: int = 0) -> Any:
         pick = self.random.random()
@@ -150,19 +151,23 @@ class Grammar:
             spots = list(_spots(data, shape_of(data)))
             sizes = [spot for spot in spots if _is_size(spot.parent[spot.key])]
             if gently and sizes:
-                self.resize(self.random.choice(sizes))
+                self.resize(*self.random.choice([[self.random.choice(sizes)]] * 9 + [sizes]))
             elif spots:
                 self.change(self.random.choice(spots), spots)
         return data
 
-    def resize(self, spot: Spot) -> None:
-        own, factor = spot.parent[spot.key], self.random.choice(FACTORS)
-        spot.parent[spot.key] = own * factor if isinstance(own, int | float) else f"({own})*{factor!r}"
+    def resize(self, *spots: Spot) -> None:
+        factor = self.random.choice([*FACTORS, self.random.uniform(0.5, 2)])
+        for spot in spots:
+            own = spot.parent[spot.key]
+            spot.parent[spot.key] = own * factor if isinstance(own, int | float) else f"({own})*{factor!r}"
 
     def change(self, spot: Spot, spots: list[Spot]) -> None:
         own, pick = spot.parent[spot.key], self.random.random()
-        if _is_size(own) and pick < 0.35:
+        if _is_size(own) and pick < 0.2:
             self.resize(spot)
+        elif _is_size(own) and pick < 0.7:
+            spot.parent[spot.key] = self.expression()
         elif pick < 0.55:
             spot.parent[spot.key] = self.value(spot.kind)
         elif pick < 0.65:
@@ -231,7 +236,7 @@ def _spots(data: Any, kind: Any) -> Iterator[Spot]:
     if isinstance(data, dict):
         fields = {one.alias or name: one.annotation for name, one in model.model_fields.items()} if model else {}
         task = data.get("synthesis")
-        if isinstance(task, dict) and task.get("task") in TASKS:
+        if isinstance(task, dict) and str(task.get("task")) in TASKS:
             fields["synthesis"] = block(task["task"]).Shape
         if get_origin(kind) is dict:
             fields = dict.fromkeys(data, get_args(kind)[1])
@@ -333,7 +338,7 @@ def cases(random: Random) -> Iterator[tuple[str, bool]]:
         if not solving and random.random() < 0.2:
             yield grammar.cut(texts[k]), False
         else:
-            data = grammar.changed(trees[k], gently=solving and random.random() < 0.8)
+            data = grammar.changed(trees[k], gently=random.random() < (0.8 if solving else 0.4))
             yield json.dumps(small(data), ensure_ascii=False), solving
 
 

@@ -12,7 +12,19 @@ from test_bench_speed import once
 from test_commands import ROOT, tmm
 
 from tmm_cli.bench import searches
-from tmm_cli.bench.searches import NAMES, PER_SECOND, SEARCHED, Found, Searches, SearchRate, known, prepared, text
+from tmm_cli.bench.searches import (
+    NAMES,
+    PER_SECOND,
+    REDUCED_PATHS,
+    SEARCHED,
+    Found,
+    PathFound,
+    Searches,
+    SearchRate,
+    known,
+    prepared,
+    text,
+)
 from tmm_cli.synthesis.optimal.exact import exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND)
@@ -61,6 +73,17 @@ def test_the_verdict():
     )
 
 
+def test_a_path_far_above_the_least_known_or_found_late_is_a_miss():
+    path = PathFound("line", 9, 1, 0.1, 0.0, True, 10.0)
+    ten = tuple(replace(path, seed=k) for k in range(10))
+    far, late = replace(path, off=0.02), replace(path, seconds=30.0)
+    one, two = (Searches((RATE,), (FOUND,) * 10, {}, paths) for paths in ((*ten[:9], far), (*ten[:8], far, far)))
+    assert one.failures == ()
+    assert two.failures == ("line: 8 of 10 seeds within 1 % of the least known",)
+    slow = replace(one, paths=(*ten[:9], late))
+    assert slow.failures == ("line: 30 s of the processor, target 20",)
+
+
 def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
     once(monkeypatch)
     monkeypatch.setattr(searches, "REDUCED_SEEDS", 1)
@@ -69,6 +92,7 @@ def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
     found = json.loads(done.stdout)
     assert {r["problem"] for r in found["rates"]} == set(NAMES) and all(r["per_second"] > 0 for r in found["rates"])
     assert found["near"] == len(found["found"]) == 1
+    assert [path["problem"] for path in found["paths"]] == list(REDUCED_PATHS)
     assert (done.returncode == 0) == (not found["failures"])
     assert json.loads((tmp_path / "synthesis.json").read_text(encoding="utf-8")) == found
     assert (tmp_path / "synthesis.png").read_bytes().startswith(b"\x89PNG")

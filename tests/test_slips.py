@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 
 import numpy as np
@@ -10,10 +11,12 @@ from test_bad_input import changed, refusal
 
 from tmm_cli import solve
 from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.expressions import evaluate
 from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import ANGLE
+from tmm_cli.synthesis.reading import alone, task_of
 
 FOUR_BAR = """tmm: 1
 points: {O: [0, 0], D: [300, 0]}
@@ -102,6 +105,13 @@ def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("item", ["1", "(1"])
+def test_long_lists_in_one_line_are_read_at_once(item: str) -> None:
+    start = time.process_time()
+    read_text(f"a: [{', '.join([item] * 20_000)}]", "f")
+    assert time.process_time() - start < 5
+
+
 @pytest.mark.parametrize(
     ("old", "new", "same"),
     [("at: 60", "at: pi rad", "at: 180"), ("1 rad/s", "2*pi rad/s", "60 rpm")],
@@ -116,6 +126,34 @@ def test_one_guide_one_position_and_one_place_need_no_list() -> None:
     whole, problem = (build(read_text(text, "x.yaml")) for text in (changed("OA: 110", "OA: 110"), short))
     assert (problem.linkage.slides, problem.request) == (whole.linkage.slides, whole.request)
     assert build(read_text(FOUR_BAR + "positions: {at: 90}\n", "x.yaml")).request.places == (np.pi / 2,)
+
+
+def test_what_is_asked_of_a_search_cannot_rest_on_what_it_varies() -> None:
+    task = "synthesis: {task: optimal, vary: {l: [80, 120], a0: [0, 90]}, objective: {of: path, point: B, at: [a0], "
+    text = FOUR_BAR.replace("length: 100", "length: l") + task + "through: [[250, 190]]}}\n"
+    with pytest.raises(ProblemError) as caught:
+        task_of(read_text(text, "x.yaml"))
+    assert str(caught.value) == (
+        "x.yaml:9:100: synthesis.objective.at[0]: this rests on what the synthesis finds\n  found:   'a0'\n"
+        "  allowed: numbers, and parameters that do not"
+    )
+
+
+@pytest.mark.parametrize(
+    ("task", "message"),
+    [
+        ("{task: crank-slider, stroke: 120, k: 0.11, pressure: 400}",
+         "x.yaml:2:49: synthesis.k: k is the time of the working stroke over that of the idle one, the shorter"
+         "\n  found:   0.11\n  allowed: another task: no other value of it was found to help"),
+        ("{task: four-bar-by-k, l3: 120, k: 1.1, psi1: 1e-14, psi2: 0}",
+         "x.yaml:2:70: synthesis.psi2: a rocker swings by more than zero and less than 180 deg"
+         "\n  found:   0\n  allowed: the nearest is psi2: 5.72987e-05 deg"),
+    ],
+)  # fmt: skip
+def test_tasks_that_no_mechanism_meets_end_at_once(task: str, message: str) -> None:
+    with pytest.raises(ProblemError) as caught:
+        alone(read_text(f"tmm: 1\nsynthesis: {task}\n", "x.yaml"))
+    assert str(caught.value) == message
 
 
 def test_the_group_that_was_sketched_wrong_is_blamed_and_not_a_later_one() -> None:
@@ -166,3 +204,9 @@ def test_a_bare_number_and_one_with_a_unit_have_the_same_decimals() -> None:
     bare = read_text(f"a: {written}", "f").data["a"]
     units = ExtendedUnits()
     assert evaluate(bare, {}, units, ANGLE) == evaluate(f"{written} deg", {}, units, ANGLE)
+
+
+def test_a_guide_may_run_through_a_share_of_the_way_between_two_points() -> None:
+    text = changed("along: CD", "through: {on: CD, at: 0.3}")
+    assert build(read_text(text, "x.yaml")).linkage.slides[0].through == pytest.approx(0.195)
+    assert np.isfinite(solved(text).motion.poses["5"].x).all()

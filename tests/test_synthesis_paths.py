@@ -9,11 +9,12 @@ import pytest
 
 from tmm_cli.bench.paths import PROBLEMS
 from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.least_squares import descend
 from tmm_cli.synthesis.optimal.many_starts import residuals
 from tmm_cli.synthesis.optimal.solver import best
-from tmm_cli.synthesis.reading import task_of
+from tmm_cli.synthesis.reading import build, task_of
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 SEMICIRCLE, ELLIPSE = "semicircle of 6 points, timed", "ellipse of 10 points"
@@ -38,6 +39,16 @@ def test_seeds_agree_in_ten_digits_of_the_objective_and_in_the_lengths(found):
     assert one.agree and two.agree and one.missed == two.missed == 0
     assert one.values[0] == pytest.approx(two.values[0], rel=1e-10)
     np.testing.assert_allclose(one.numbers, two.numbers, rtol=1e-6)
+
+
+def test_the_answer_says_when_independent_starts_do_not_agree(monkeypatch):
+    monkeypatch.setattr(many_starts, "ROUNDS", 1)
+    monkeypatch.setattr(many_starts, "AGREED", 100)
+    outcome = build(read_text(BY_NAME[SEMICIRCLE].text(), "x.yaml")).synthesis.outcome
+    assert outcome.notes[0] == (
+        "not sure to be the least: independent starts of the search ended at different linkages; try another seed, for "
+        "example seed: 2"
+    )
 
 
 def test_slopes_of_residuals_are_those_of_the_sum_of_squares():

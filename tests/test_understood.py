@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from test_commands import process, tmm
 
-from tmm_cli import solve
+from tmm_cli import load, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.understood import doubts, understood
@@ -143,3 +143,38 @@ def test_a_parameter_is_set_once():
 def test_a_short_h_asks_for_help(command):
     done = tmm(*command, "-h")
     assert (done.returncode, done.stdout) == (0, tmm(*command, "--help").stdout)
+
+
+def test_explain_says_the_structure_in_sentences_for_a_note():
+    told = tmm("explain", SHAPER).stdout
+    assert told.splitlines()[1:7] == [
+        "The mechanism has n = 5 moving links and p1 = 7 lower pairs (turning: 5, sliding: 2); by Chebyshev's formula "
+        "its mobility is W = 3n - 2 p1 = 3*5 - 2*7 = 1.",
+        "Link 1 (crank) is a driving link: 8.59 rad/s = 82 rpm, counterclockwise.",
+        "The formula of structure is I(0,1) -> II(2,3) -> II(4,5); the mechanism is of class II.",
+        "The group II(2,3) is of class II, order 2, type RPR; its outer pairs are A (link 1), C (frame).",
+        "The group II(4,5) is of class II, order 2, type RRP; its outer pairs are D (link 3), x (frame).",
+        "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "
+        "one; the balancing moment acts on link 1, and Zhukovsky's lever checks it.",
+    ]
+
+
+def test_explain_keeps_the_table_of_places_for_those_who_ask():
+    table = "What each stage computes, when it is asked for"
+    assert table not in tmm("explain", SHAPER).stdout
+    assert table in tmm("explain", SHAPER, "--verbose").stdout
+
+
+def test_units_are_said_before_a_search_begins():
+    task = load(str(SHAPER.parent / "crank-rocker-optimal.yaml"))
+    assert next(iter(understood(task))).startswith("bare numbers: mm, deg")
+    assert "whole" not in vars(task)  # nothing was looked for
+
+
+def test_a_bare_speed_of_a_cylinder_is_warned_of_beside_millimetres():
+    text = (SHAPER.parent / "cylinder.yaml").read_text(encoding="utf-8")
+    text = text.replace("speed: v1", "speed: 40")
+    assert list(doubts(build(read_text(text, "cylinder.yaml")))) == [
+        "the driver's speed has no unit and is taken as 40 m/s, though lengths are in mm: "
+        "write `40 m/s`, or `40 mm/s` if that is meant"
+    ]

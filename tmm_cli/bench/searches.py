@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from importlib.resources import files
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
+from tmm_cli.bench.paths import PROBLEMS, PathProblem
 from tmm_cli.errors import _
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.table import Table
@@ -26,6 +27,8 @@ NAMES = (SEARCHED, "six-bar", "shaper")
 GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itself
 PER_SECOND = 100_000.0  # candidates, at the size that the search uses
 NEAR = 1e-3  # of the best known
+NEAR_PATH, SECONDS = 1e-2, 20.0  # of the least known path; the processor's time for it
+REDUCED_PATHS = ("arc of 5 points, timed", "semicircle of 6 points, timed")  # which take little
 SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
 
 
@@ -72,12 +75,32 @@ class Found:
 
 
 @dataclass(frozen=True)
+class PathFound:
+    """What a seed led to on a published path problem: root mean square distance (mm), how far it is above the least
+    known (a share; where that is zero, of the points' spread), whether independent starts agree, processor's time (s).
+    """
+
+    problem: str
+    parameters: int
+    seed: int
+    distance: float
+    off: float
+    agree: bool
+    seconds: float
+
+    @property
+    def near(self) -> bool:
+        return self.off <= NEAR_PATH
+
+
+@dataclass(frozen=True)
 class Searches(Measured):
     """The whole measurement. known: what the long runs found (`known`)."""
 
     rates: tuple[SearchRate, ...]
     found: tuple[Found, ...]
     known: dict[str, Any]
+    paths: tuple[PathFound, ...] = ()
 
     @property
     def near(self) -> int:
@@ -92,10 +115,21 @@ class Searches(Measured):
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
         slow = tuple(filter(None, (rate.missed(slack(self.reduced)) for rate in self.rates)))
+        slow += tuple(filter(None, (self._far(name) for name in dict.fromkeys(path.problem for path in self.paths))))
         if self.near >= self.wanted:
             return slow
         near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
         return (*slow, f"{near} of the best known, target {self.wanted}")
+
+    def _far(self, name: str) -> str:
+        """Where more than one seed of ten ends far above the least known path, or takes long."""
+        own = [path for path in self.paths if path.problem == name]
+        near, longest = sum(path.near for path in own), max(path.seconds for path in own)
+        if near < len(own) - len(own) // SEEDS:
+            return f"{name}: {near} of {len(own)} seeds within {100 * NEAR_PATH:g} % of the least known"
+        if longest > SECONDS * slack(self.reduced):
+            return f"{name}: {longest:.0f} s of the processor, target {SECONDS:g}"
+        return ""
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
@@ -124,7 +158,14 @@ class Searches(Measured):
             [(str(f.seed), f"{f.objective:.9g}", f"{100 * f.off:.2g}", str(f.evaluations), f"{f.searching:.2f}",
               f"{f.polishing:.2f}") for f in self.found],
         )  # fmt: skip
-        return rates, found
+        paths = words(
+            "paths", _("Published path problems of four-bar linkages, least squares"),
+            (_("problem"), _("parameters"), _("seed"), _("distance, mm"), _("above the least known, %"),
+             _("starts agree"), _("s")),
+            [(p.problem, str(p.parameters), str(p.seed), f"{p.distance:.10g}", f"{100 * p.off:.2g}",
+              _("yes") if p.agree else _("no"), f"{p.seconds:.1f}") for p in self.paths],
+        )  # fmt: skip
+        return rates, found, paths
 
 
 @cache
@@ -158,7 +199,28 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
     for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
         progress(f"{SEARCHED}, seed {seed}")
         found.append(searched(search, seed, reference["objective"]))
-    return Searches(tuple(rates), tuple(found), reference, reduced=reduced)
+    return Searches(tuple(rates), tuple(found), reference, tuple(_paths(reduced, progress)), reduced=reduced)
+
+
+def _paths(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathFound]:
+    """Published path problems, from several seeds; of a reduced run some of them from one."""
+    for problem in PROBLEMS:
+        if reduced and problem.name not in REDUCED_PATHS:
+            continue
+        for seed in range(1, 2 if reduced else 1 + SEEDS):
+            progress(f"{problem.name}, seed {seed}")
+            yield path_found(problem, seed)
+
+
+def path_found(problem: PathProblem, seed: int) -> PathFound:
+    """What the ordinary search leads to."""
+    search = Candidates(task_of(read_text(problem.text(), f"{problem.name}.yaml")))
+    search.task = replace(search.task, seed=seed)
+    start = CLOCK()
+    one = best(search)
+    distance, spread = 1000 * one.values[0], 1000 * float(np.std(np.array(search.task.objective.wanted)))
+    off = distance / problem.least - 1 if problem.least else distance / spread
+    return PathFound(problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start)
 
 
 def rate(name: str, reduced: bool) -> list[SearchRate]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import warnings
 from collections.abc import Iterable
 from importlib import import_module
 from typing import Annotated, Any
@@ -54,6 +55,7 @@ def _options(
 
 def main() -> None:
     """Entry point of the command."""
+    warnings.simplefilter("ignore", RuntimeWarning)  # of numbers: what has no value is said in the product's own words
     gc.set_threshold(100_000)  # a short run makes little rubbish, and importing makes much that only looks like it
     # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")

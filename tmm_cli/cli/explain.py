@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from tmm_cli.cli.common import OK, Files, Settings, console, each
 
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
 
-def explain(files: Files, settings: Settings = None) -> None:
-    """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why."""
+
+def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -> None:
+    """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why.
+
+    The structure comes in sentences that may stand in a note.
+    """
 
     def work(file: str) -> int:
         from tmm_cli import solve
         from tmm_cli.cli.opening import opened
         from tmm_cli.results.explain import explain as tables
+        from tmm_cli.results.in_words import in_words
         from tmm_cli.results.terminal import show
 
         results = solve(opened(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
-        for table in tables(results):
+        for sentence in in_words(results):
+            screen.print(sentence)
+        for table in tables(results, verbose):
             show(table, results.problem.units, screen, most=None)  # there is no other place that has them all
         return OK
 

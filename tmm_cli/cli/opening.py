@@ -25,8 +25,7 @@ def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {bare_units(problem.units)}")
         return
-    problem = problem.whole
     for sentence in understood(problem):
         say(f"{problem.name}: {sentence}")
-    for doubt in doubts(problem):
+    for doubt in doubts(problem.whole):
         say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))

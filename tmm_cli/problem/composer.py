@@ -17,9 +17,11 @@ from tmm_cli.problem.yaml_errors import syntax_error
 MAX_DEPTH: Final = 20
 MAX_NODES: Final = 50_000
 
+LONGEST_CALL: Final = 100  # so far the end of a call that was cut is looked for
+
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _ITEM_BELOW = re.compile(r"[\r\n] *- ")
-_CALL = re.compile(r"[^\[\]{}\n]*?,[^\[\]{}\n]*?\)(?=\s*[,}\]\n])")  # what may end with its bracket behind a comma
+_CALL = re.compile(r"[^\[\]{}\n]*?,[^\[\]{}\n]*?\)(?=\s*[,}\]\n]|$)")  # what may end with its bracket behind a comma
 _COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
 
 
@@ -149,8 +151,9 @@ class Composer:
 
     def cut_by_comma(self, event: Any, path: Path) -> None:
         """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
-        cut = _CALL.match(self.text, event.start_mark.index)
-        if cut and event.value.count("(") > event.value.count(")"):
+        if event.value.count("(") <= event.value.count(")"):
+            return
+        if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + LONGEST_CALL]):
             self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:

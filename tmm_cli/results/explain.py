@@ -31,8 +31,8 @@ from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, step
 from tmm_cli.results.table import Table, table_of_words, with_unit
 
 
-def explain(results: Results) -> Iterable[Table]:
-    """Tables of words: the file in full, then the way of the calculation."""
+def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
+    """Tables of words: the file in full, then the way of the calculation; verbose: places that each stage computes."""
     problem = results.problem
     if problem.synthesis is not None and problem.synthesis.names:
         yield parameters(problem.synthesis, problem.units)
@@ -49,7 +49,8 @@ def explain(results: Results) -> Iterable[Table]:
             [_load(problem, load) for load in problem.linkage.loads],
         )  # fmt: skip
     yield steps(results)
-    yield stages_table(results)
+    if verbose:
+        yield stages_table(results)
     yield from skipped(problem)
 
 

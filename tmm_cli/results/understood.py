@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from itertools import combinations
 from typing import Any
 
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Driver
-from tmm_cli.problem.record import Problem
+from tmm_cli.linkage import FRAME, Driver, Link
+from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
 from tmm_cli.results.table import with_unit
@@ -18,9 +17,10 @@ SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
 
 
-def understood(problem: Problem) -> Iterable[str]:
-    """Units, driver, gravity, sizes: a sentence each."""
-    yield bare_units(problem.units)
+def understood(task: Problem | TaskProblem) -> Iterable[str]:
+    """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
+    yield bare_units(task.units)
+    problem = task.whole
     if problem.source is not None and problem.source.given:
         yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
     linkage = problem.linkage
@@ -77,14 +77,21 @@ def doubts(problem: Problem) -> Iterable[str]:
 
 
 def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """A speed without a unit means radians where every other angle of the file is in degrees."""
-    driver, named = problem.linkage.driver, {key.replace("_", " ") for key in data.get("units", {})}
-    degrees = problem.units.factor(ANGLE) != 1 and "angular speed" not in named
-    if problem.bare_speed and driver.kind == "turn" and driver.rate and degrees:
+    """A speed without a unit is in rad/s or m/s also where the file counts in degrees or millimetres."""
+    driver, units = problem.linkage.driver, problem.units
+    named = {key.replace("_", " ") for key in data.get("units", {})}
+    if not problem.bare_speed or not driver.rate:
+        return
+    if driver.kind == "turn" and units.factor(ANGLE) != 1 and "angular speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
             "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
-        ).format(motion=motion(driver), angle=problem.units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+        ).format(motion=motion(driver), angle=units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+    if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
+        yield _(
+            "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
+            "write `{speed} m/s`, or `{speed} {length}/s` if that is meant"
+        ).format(length=units.symbol(LENGTH), speed=f"{driver.rate:.6g}")
 
 
 def _sizes(problem: Problem) -> Iterable[str]:
@@ -123,13 +130,22 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
 
 
 def _spans(problem: Problem) -> dict[str, tuple[float, str]]:
-    """Of each link with several places the largest distance of two points, and which two."""
+    """Of each link with several places a large distance of two points (of three points the largest), and which two."""
     found = {}
     for name, link in problem.linkage.links.items():
-        pairs = [(float(abs(link.points[a] - link.points[b])), a + b) for a, b in combinations(link.points, 2)]
-        if pairs and max(pairs)[0] > 0:
-            found[name] = max(pairs)
+        points = list(link.points)
+        if len(points) < 2:
+            continue
+        a = _farthest(link, points[0])
+        b = _farthest(link, a)
+        span = float(abs(link.points[a] - link.points[b]))
+        if span > 0:
+            found[name] = (span, "".join(sorted((a, b), key=points.index)))
     return found
+
+
+def _farthest(link: Link, point: str) -> str:
+    return max(link.points, key=lambda other: float(abs(link.points[other] - link.points[point])))
 
 
 def _short(number: float) -> str:

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from tmm_cli.errors import _
 from tmm_cli.problem import schema
-from tmm_cli.problem.arithmetic import Parser
+from tmm_cli.problem.arithmetic import Parser, UnknownParameterError
 from tmm_cli.problem.build import build as build_linkage
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
@@ -172,6 +172,13 @@ class TaskFile:
             raise refusal(error, self.block, self.units).at("synthesis") from None
         except OfTheFile as error:
             raise error.error from None
+        except UnknownParameterError as error:
+            if error.found not in [quote(name) for name in self.names.values()]:
+                raise
+            raise ProblemError(
+                _("this rests on what the synthesis finds"), path=error.path, found=error.found,
+                allowed=_("numbers, and parameters that do not"),
+            ) from None  # fmt: skip
 
     def tried(self, found: Parameters, units: UnitSystem) -> Problem:
         """The linkage with other values of what is to be found, for a search. Raises OfTheFile."""

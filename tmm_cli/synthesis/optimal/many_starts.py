@@ -1,7 +1,7 @@
 """Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
 
 Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts make few
-steps, those with the least squares go on. The search ends where several rounds ended at the same least.
+steps, those with the least squares go on. The search ends where several of the last ended at the same least.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
 from tmm_cli.vectors import Real
 
 SAMPLES = 4000  # of a round, of which the best and those that evolved start
-TOURNAMENT = ((32, 8), (12, 20), (5, 60), (2, 150))  # so many of them, and their steps
-ROUNDS, AGREED = 8, 3  # at most; rounds that end at the same least
+TOURNAMENT = ((96, 8), (32, 20), (16, 60), (8, 150))  # so many of them, and their steps
+ROUNDS, AGREED = 4, 3  # at most; starts that end at the same least
 SAME = 1e-3  # of an objective: the same least
 ZERO = 1e-7  # of the size of what is wanted: it is met
 CLOSER, LAST = 360, 200  # places and steps of the winners
@@ -28,10 +28,9 @@ BLOCK = 400  # variants at once
 
 @dataclass(frozen=True)
 class Found:
-    """starts: best first; rounds: how many there were, and how many of them ended at the least; stopped: by hand."""
+    """starts: best first; reached: how many ended at the least; stopped: by hand."""
 
     starts: list[Real]
-    rounds: int
     reached: int
     stopped: bool
 
@@ -58,7 +57,7 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
         for k in range(ROUNDS):
             progress(k, ROUNDS)
             x = np.vstack([*(evolved if k == 0 else ()), chance.random((SAMPLES, len(candidates.low)))])
-            won.append(_round(candidates, evaluate, x))
+            won += _round(candidates, evaluate, x)
             if _reached(won) >= AGREED:
                 break
     except KeyboardInterrupt:
@@ -66,21 +65,21 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
     finally:
         progress(ROUNDS, ROUNDS)
     if not won:
-        return Found([], 0, 0, stopped)
+        return Found([], 0, stopped)
     won.sort(key=lambda one: one[0])
     closer = residuals(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
     last = _sorted(*descend(closer, np.array([x for __, x in won[:WINNERS]]), LAST))
-    return Found([x for __, x in last], len(won), _reached([*last, *won[WINNERS:]]), stopped)
+    return Found([x for __, x in last], _reached([*last, *won[WINNERS:]]), stopped)
 
 
-def _round(candidates: Candidates, evaluate: Evaluate, x: Real) -> tuple[float, Real]:
-    """The sum of squares to which a tournament leads, and where."""
+def _round(candidates: Candidates, evaluate: Evaluate, x: Real) -> list[tuple[float, Real]]:
+    """The sums of squares to which a tournament leads, and where."""
     f, violation = candidates.evaluate(x)
     x = x[np.lexsort((f, violation))]
     for count, steps in TOURNAMENT:
         last = _sorted(*descend(evaluate, x[:count], steps))
         x = np.array([own for __, own in last])
-    return last[0]
+    return last
 
 
 def _sorted(x: Real, cost: Real) -> list[tuple[float, Real]]:

@@ -44,17 +44,16 @@ def best(candidates: Candidates) -> Best:
     if choices is not None and choices.few:
         evolved = choices.every()
         return _best_of(candidates, choices.starts(), evolved)
+    many = many_starts.fits(candidates)
     evolved = evolve(
         choices or candidates.evaluate, len(task.parameters), population=candidates.population,
-        generations=candidates.generations // (SHORTER if many_starts.fits(candidates) else 1), seed=task.seed,
+        generations=max(1, candidates.generations // (SHORTER if many else 1)), seed=task.seed,
         equalities=any(constraint.equal for constraint in candidates.constraints), progress=task.progress,
     )  # fmt: skip
     starts = _apart(candidates, evolved)
-    if many_starts.fits(candidates):
+    if many and not evolved.stopped:
         found = many_starts.from_many(candidates, starts)
-        led = _best_of(
-            candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=evolved.stopped or found.stopped)
-        )
+        led = _best_of(candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=found.stopped))
         return replace(led, agree=found.agree)
     return _best_of(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
 

@@ -1,0 +1,74 @@
+"""The structure and the way of the calculation in sentences, as they stand in an explanatory note."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import _
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.results.reports.structure import ROLES
+from tmm_cli.results.understood import motion
+from tmm_cli.structure.assur import ROMAN, Group, Structure
+
+
+def in_words(results: Results) -> Iterable[str]:
+    """Whole sentences, in the order of a note."""
+    structure = results.structure
+    yield _mobility(structure)
+    if structure.passive:
+        yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
+            count=structure.redundant, w=structure.mobility + structure.redundant
+        )
+    for driver in results.linkage.drivers:
+        yield _("Link {link} ({role}) is a driving link: {motion}.").format(
+            link=driver.link, role=ROLES[results.roles[driver.link]], motion=motion(driver)
+        )
+    yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
+        formula=structure.formula, number=ROMAN[min(structure.mechanism_class, 10)]
+    )
+    for group in structure.groups:
+        text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
+        yield text.format(
+            group=group.title, number=ROMAN[min(group.group_class, 10)], order=group.order, type=group.type,
+            outer=_outer(group),
+        )  # fmt: skip
+    if structure.groups:
+        yield _(
+            "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "
+            "one; {balance}, and Zhukovsky's lever checks it."
+        ).format(balance=_balance(results.linkage))
+
+
+def _mobility(structure: Structure) -> str:
+    n, higher, w = len(structure.links), structure.higher, structure.mobility
+    lower = len(structure.pairs) - higher
+    turning = sum(pair.kind == "R" for pair in structure.pairs)
+    text = _(
+        "The mechanism has n = {n} moving links and p1 = {lower} lower pairs (turning: {turning}, sliding: {sliding}); "
+        "by Chebyshev's formula its mobility is W = 3n - 2 p1 = 3*{n} - 2*{lower} = {w}."
+    )
+    if higher:
+        text = _(
+            "The mechanism has n = {n} moving links, p1 = {lower} lower pairs (turning: {turning}, sliding: {sliding}) "
+            "and p2 = {higher} higher pairs; by Chebyshev's formula its mobility is "
+            "W = 3n - 2 p1 - p2 = 3*{n} - 2*{lower} - {higher} = {w}."
+        )
+    return text.format(n=n, lower=lower, turning=turning, sliding=lower - turning, higher=higher, w=w)
+
+
+def _outer(group: Group) -> str:
+    """The pairs that join a group to what is known, and that link."""
+    known = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
+    frame, moving = _("{pair} (frame)"), _("{pair} (link {link})")
+    return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in known)
+
+
+def _balance(linkage: Linkage) -> str:
+    driver = linkage.driver
+    if linkage.others:
+        return _("moments and forces on the driving links balance it")
+    text = _("the balancing moment acts on link {link}")
+    if driver.kind == "slide" or driver.balance == "force":
+        text = _("the balancing force acts on link {link}")
+    return text.format(link=driver.link)
