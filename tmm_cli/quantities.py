@@ -261,7 +261,8 @@ LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N m or N", MOMENT, (
 ENERGY: Final = (
     Quantity("inertia", "reduced moment of inertia, or mass", "kg m2 or kg", INERTIA, (_("J reduced"),),
              of_slider=(_("m reduced"), MASS)),
-    Quantity("slope", "its derivative by the driver", "SI", NUMBER),
+    Quantity("slope", "its derivative by the driver", "SI", NUMBER, (_("dJ/dphi, SI"),),
+             of_slider=(_("dm/ds, SI"), NUMBER)),
     Quantity("moment", "reduced moment of all loads but inertia, or force", "N m or N", MOMENT, (_("M reduced"),),
              of_slider=(_("F reduced"), FORCE)),
     Quantity("kinetic", "kinetic energy", "J", NUMBER, (_("kinetic energy, J"),)),
