@@ -67,5 +67,5 @@ def _list_assemblies(
                 say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
         for group in here.lost:
             say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
-    write_pictures(results, out, dict(files(sheets(results))))
+    write_pictures(results, out, dict(files(sheets(results), say)))
     return code

@@ -13,6 +13,7 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
 from tmm_cli.cli.opening import introduce
 from tmm_cli.errors import _
+from tmm_cli.problem.budget import refuse_digits
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.settings import with_settings
@@ -64,6 +65,8 @@ def bounds_of(results: Results | ChainResults, digits: bool) -> AccuracyReport |
         return None
     from tmm_cli.results.digits import accuracy  # the structure does not need it
 
+    if digits:
+        refuse_digits(results.linkage)
     return accuracy(results, digits)
 
 

@@ -36,7 +36,7 @@ def run(
         if drawings and not isinstance(results, ChainResults):
             from tmm_cli.draw import files as drawn
 
-            pictures = drawn(results)
+            pictures = drawn(results, say)
         found = bounds_of(results, digits)
         written = write_results(results, out, pictures, found)
         if as_json:

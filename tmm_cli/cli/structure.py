@@ -39,7 +39,7 @@ def structure(
         from tmm_cli.draw import files as drawn
 
         code = report(results, names, as_json, None)
-        pictures = dict(drawn(results))
+        pictures = dict(drawn(results, say))
         if not pictures:
             text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
             say(text.format(problem=results.problem.name))

@@ -46,7 +46,7 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
         with Staged(folder) as staged:
             for table in tables_of(found, measured, units, 15):
                 staged.write(f"{table.name}.csv", csv_text(table, units))
-            for drawing, picture in drawings(sheets(title, found.outcome, results, units, found.names)):
+            for drawing, picture in drawings(sheets(title, found.outcome, results, units, found.names), say):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=folder))

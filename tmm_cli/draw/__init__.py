@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
@@ -13,6 +13,7 @@ from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.plans import forces, lever, motion_plans
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
+from tmm_cli.problem.budget import refuse_drawings
 
 
 def sheets(results: Results) -> Drawn:
@@ -32,6 +33,7 @@ def sheets(results: Results) -> Drawn:
             yield from sheets_of(here)
 
 
-def files(results: Results) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format."""
-    return every_format(sheets(results))
+def files(results: Results, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
+    """Every sheet in every format; say: where a note on them goes. Raises ProblemError."""
+    refuse_drawings(results.linkage, results.problem.request)
+    return every_format(sheets(results), say)

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 
 from matplotlib.figure import Figure
+
+from tmm_cli.errors import _
 
 DPI = 110
 Drawn = Iterable[tuple[str, Figure]]
@@ -28,8 +33,31 @@ def svg(figure: Figure) -> bytes:
 FORMATS: dict[str, Callable[[Figure], bytes]] = {"png": png, "svg": svg}
 
 
-def files(drawn: Drawn) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format, by the name of its file."""
-    for stem, figure in drawn:
-        for kind, write in FORMATS.items():
-            yield f"{stem}.{kind}", write(figure)
+def files(drawn: Drawn, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
+    """Every sheet in every format, by the name of its file; at last what there is to say of them all."""
+    lacking: set[str] = set()
+    sheets = iter(drawn)
+    while True:
+        with _gathering(lacking):
+            found = next(sheets, None)
+            pictures = {kind: write(found[1]) for kind, write in FORMATS.items()} if found else {}
+        if found is None:
+            break
+        yield from ((f"{found[0]}.{kind}", picture) for kind, picture in pictures.items())
+    if lacking:
+        text = _("note: the font of the drawings lacks these characters, boxes stand for them: {characters}")
+        say(text.format(characters=" ".join(sorted(lacking))))
+
+
+@contextmanager
+def _gathering(lacking: set[str]) -> Iterator[None]:
+    """Characters that matplotlib warns of, one by one and sheet by sheet, are gathered instead."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        yield
+    for warning in told:
+        glyph = re.match(r"Glyph (\d+) ", str(warning.message))
+        if glyph is None:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+        else:
+            lacking.add(chr(int(glyph[1])))

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
+from tmm_cli.problem.budget import refuse_work
 from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
@@ -113,9 +114,11 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         if getattr(shape.checks, key) is not None:
             angles[number], said[number] = checks.positive(key, ANGLE), True
     name = tree.name
+    request = build_request(shape, first, values)
+    refuse_work(linkage, request)
     first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
-        name, shape.title or name, linkage, build_request(shape, first, values), values.units, limit, shape.description,
+        name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed), tree,
     )  # fmt: skip
 

@@ -16,7 +16,6 @@ from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULA
 
 FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
 UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
-MAX_WORK = 2_000_000  # positions times links
 
 
 def build_drivers(shape: schema.File, members: Members, values: ValueReader) -> tuple[Driver, ...]:
@@ -125,9 +124,6 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     wanted = ANGLE if driver.kind == "turn" else LENGTH
     places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ()))
     count = len(places) or given.count
-    if count * len(shape.links) > MAX_WORK:
-        most = _("at most {most}").format(most=MAX_WORK // len(shape.links))
-        raise part.refusal("count", _("too many positions for so many links"), str(count), most)
     for k, number in enumerate(given.detail):
         if not 0 <= number < count:
             raise ProblemError(

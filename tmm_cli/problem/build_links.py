@@ -15,6 +15,8 @@ from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
 from tmm_cli.quantities import ANGLE, LENGTH
 
+LONGEST_PAIR = 80  # letters of the names of two points
+
 
 @dataclass(frozen=True)
 class Members:
@@ -222,10 +224,12 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
 
 def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]) -> set[str]:
     """Points that are named beside the links' own lists of points, alone or two together (CD, C-D)."""
-    pairs = {a + b: (a, b) for a in everything for b in everything}
-    found: set[str] = set()
+    known, found = set(everything), set[str]()
     for word in _words({**data, "parameters": {}, "title": "", "description": ""}):
-        found |= {word, *pairs.get(re.sub(r"[-–, ]", "", word), ())}
+        found.add(word)
+        two = re.sub(r"[-–, ]", "", word)
+        for k in range(1, len(two) if len(two) <= LONGEST_PAIR else 0):
+            found |= {two[:k], two[k:]} if known >= {two[:k], two[k:]} else set()
     for slide in (s for link in shape.links.values() for s in link.sliding):
         if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
             found |= set(links[slide.on].points)  # its two points are the guide
