@@ -192,7 +192,10 @@ class Output:
 
 @dataclass(frozen=True)
 class Linkage:
-    """A planar linkage, complete. Links are in the order of the file, the frame first."""
+    """A planar linkage, complete. Links are in the order of the file, the frame first.
+
+    keep_side: in exact change points groups keep to the side of the sketch, instead of going smoothly through.
+    """
 
     links: Mapping[str, Link]
     hinges: tuple[Hinge, ...]
@@ -207,6 +210,7 @@ class Linkage:
     springs: tuple[Spring, ...] = ()
     friction: tuple[Friction, ...] = ()
     outputs: tuple[Output, ...] = ()
+    keep_side: bool = False
 
     @property
     def drivers(self) -> tuple[Driver, ...]:

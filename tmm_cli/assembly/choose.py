@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tmm_cli.assembly.change_points import smooth_way
 from tmm_cli.assembly.sketch import check_fit, nearest_to_sketch
 from tmm_cli.errors import AmbiguousSketchError, AssemblyError
 from tmm_cli.groups import CLOSED
@@ -55,6 +56,8 @@ def _assembled(
     closed = closed_form(group, linkage)
     if closed is not None:
         kernel, at = _choose(closed, linkage, poses, drives)
+        if kernel.assemblies > 1 and not linkage.keep_side:
+            kernel = replace(kernel, way=smooth_way(linkage, before, kernel))
         geared = {name for mesh in linkage.meshes for name in (mesh.i, mesh.j, mesh.carrier)} & set(group.links)
         if geared:
             kernel = replace(kernel, winding=_winding(linkage, (*before, kernel), tuple(geared)))

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 import numpy as np
 
 from tmm_cli.groups.branch_trace import BranchTrace
+from tmm_cli.groups.smooth_way import SmoothWay
 from tmm_cli.groups.state import (
     Accel,
     Accels,
@@ -114,6 +115,10 @@ class Kernel(ABC):
     def rebind(self, linkage: Linkage) -> Kernel:
         """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
 
+    def side(self, q: Real) -> Real:
+        """1, or -1 where the sign of its determinant has changed since the sketch, in change points that it passes."""
+        return np.ones(np.shape(q))
+
     near: ClassVar[float] = NEAR_DEAD  # a margin below this is said to be near a dead position
 
     @abstractmethod
@@ -143,11 +148,16 @@ class Kernel(ABC):
 class Closed(Kernel):
     """A group whose places are found in closed form. sign tells its two assemblies apart.
 
-    winding: how often its links have gone round, where something depends on that.
+    winding: how often its links have gone round, where something depends on that. way: where it goes smoothly through
+    change points, beyond which it has the other sign.
     """
 
-    sign: int = field(default=1, kw_only=True)
+    sign: Any = field(default=1, kw_only=True)
     winding: Winding | None = field(default=None, kw_only=True)
+    way: SmoothWay | None = field(default=None, kw_only=True)
+
+    def side(self, q: Real) -> Real:
+        return super().side(q) if self.way is None else self.way.side(q)
 
     @classmethod
     @abstractmethod
@@ -160,7 +170,13 @@ class Closed(Kernel):
         """A group with its numbers, in its first assembly."""
 
     def rebind(self, linkage: Linkage) -> Self:
-        return replace(type(self).of(self.group.rebind(linkage), linkage), sign=self.sign, winding=self.winding)
+        new = type(self).of(self.group.rebind(linkage), linkage)
+        return replace(new, sign=self.sign, winding=self.winding, way=self.way)
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is the same formulas at every place of the driver."""
+        return self.winding is None and self.way is None
 
     @property
     @abstractmethod
@@ -173,7 +189,7 @@ class Closed(Kernel):
         """Its outer pairs, each as its own link sees it."""
 
     def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
-        at = self.closed(poses, drives)
+        at = (self if self.way is None else replace(self, sign=self.sign * self.way.side(q))).closed(poses, drives)
         return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
 
     @abstractmethod

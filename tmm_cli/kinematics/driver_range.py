@@ -9,11 +9,12 @@ from functools import partial
 
 import numpy as np
 
+from tmm_cli.assembly.change_points import pinned
 from tmm_cli.groups.base import Closed, Kernel, reach
 from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states, towards
 from tmm_cli.groups.unwrapped_angles import Winding
 from tmm_cli.linkage import Linkage
-from tmm_cli.roots import least, roots
+from tmm_cli.roots import least
 from tmm_cli.structure.cycle import MOST, turns_of_cycle
 from tmm_cli.tolerances import CAME_BACK, DEAD
 from tmm_cli.vectors import Real
@@ -199,6 +200,9 @@ def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
         trace = kernel.followed
         if trace is not None and trace.closed and turns is not None:
             turns = math.lcm(turns, round((trace.q[-1] - trace.q[0]) / (2 * np.pi)))
+        way = kernel.way if isinstance(kernel, Closed) else None
+        if way is not None and way.cycle is not None and len(way.places) % 2 and turns is not None:
+            turns = math.lcm(turns, round(way.cycle / np.pi))
     return turns if turns is not None and turns <= MOST else None
 
 
@@ -229,7 +233,7 @@ def _lost(motion: LinkStates, side: list[float]) -> Real:
     went to infinity.
     """
     lost = [
-        motion.missing[kernel.group.title] | (np.sign(at.det) == -sign)
+        motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
         for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
     ]
     found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
@@ -275,17 +279,22 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: Drive
                 continue
             best, left = least(partial(_margin, linkage, upto), place - steps, place + steps)
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
-                best = _pinned(linkage, upto, best, steps)
-                found.append(DeadPosition(best, dyad.group.title, left))
+                best = pinned(linkage, upto, best, steps)
+                passive = getattr(dyad, "passive", False)  # what holds it twice leads it through
+                found.append(DeadPosition(best, dyad.group.title, left, passive))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
 def _passed(linkage: Linkage, upto: tuple[Kernel, ...], driver_range: DriverRange) -> list[DeadPosition]:
-    """Dead positions inside the range that a followed group, the last one, passes smoothly: nodes of its trace."""
-    trace, title = upto[-1].followed, upto[-1].group.title
-    if trace is None or not trace.dead.size:
+    """Dead positions inside the range that the last group passes smoothly: nodes of its trace, change points."""
+    last, title = upto[-1], upto[-1].group.title
+    trace, way = last.followed, last.way if isinstance(last, Closed) else None
+    if trace is not None and trace.dead.size:
+        places = trace.dead_within(driver_range.start, driver_range.end)
+    elif way is not None:
+        places = way.within(driver_range.start, driver_range.end)
+    else:
         return []
-    places = trace.dead_within(driver_range.start, driver_range.end)
     left = _margin(linkage, upto, places) if places.size else places
     return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
 
@@ -300,23 +309,3 @@ def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
     """Of the last group."""
     motion = link_states(linkage, kernels, q, 0)
     return np.where(motion.placed, motion.placements[-1].margin, 0.0)
-
-
-def _pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
-    """A dead position inside the range to the last bit: there the residual of the group stops growing.
-
-    The least of a quantity is known to half the digits only, the root of its rate to all of them.
-    """
-    last = kernels[-1]
-    if not isinstance(last, Closed):
-        return place
-
-    def residual_rate(q: Real) -> Real:
-        before = link_states(linkage, kernels[:-1], q, 1)
-        return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
-
-    low, high = np.array([place - step]), np.array([place + step])
-    with np.errstate(all="ignore"):
-        if not np.sign(residual_rate(low))[0] * np.sign(residual_rate(high))[0] < 0:
-            return place
-        return float(roots(residual_rate, low, high)[0])

@@ -99,6 +99,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = Linkage(
         links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),
         output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
+        keep_side=shape.change_points == "keep side",
     )  # fmt: skip
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))

@@ -278,6 +278,12 @@ class File(Strict):
         default_factory=dict,
         description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
     )
+    change_points: Literal["smooth", "keep side"] = Field(
+        default="smooth",
+        alias="change points",
+        description="how a parallelogram and its like pass the positions in which they could go over into another "
+        "assembly: smoothly, or always on the side of the sketch",
+    )
     masses: dict[Name, Mass] = Field(default_factory=dict)
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")

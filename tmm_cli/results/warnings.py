@@ -13,6 +13,7 @@ from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.loads import table_argument
 from tmm_cli.forces.springs import twisted
+from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import Load
@@ -95,9 +96,16 @@ def _sketch(results: Results) -> Iterable[str]:
 
 
 def _dead(results: Results) -> Iterable[str]:
+    closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, Closed)}
     for dead in results.dead:
         text = (
             _(
+                "change point of {group} inside the cycle at {place} (margin {margin}): there the group may go over "
+                "into another assembly; the results go smoothly through, as a machine that runs does (the other: "
+                "`change points: keep side`)"
+            )
+            if dead.passed and dead.group in closed
+            else _(
                 "dead position of {group} inside the cycle at {place} (margin {margin}): there the group "
                 "may leave its way for that of another assembly; the results go on along the smooth one"
             )

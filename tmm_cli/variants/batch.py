@@ -112,7 +112,7 @@ def prepare(
     kernels = assemble(first, structure)
     # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
-    if apart or first.friction or not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in kernels):
+    if apart or first.friction or not all(isinstance(kernel, Closed) and kernel.plain for kernel in kernels):
         return Batch(linkages, structure, kernels, wanted, forces, strokes, None)
     columns, together = parts(varying(linkages))
     if len(linkages) > 1 and not columns:  # all the same

@@ -38,7 +38,7 @@ class Taped:
         by_stroke = any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
         if self.linkage.others or self.linkage.friction or (forces and by_stroke):
             raise NoTapeError
-        if not all(isinstance(kernel, Closed) and kernel.winding is None for kernel in self.kernels):
+        if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):
             raise NoTapeError
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins

@@ -1,0 +1,85 @@
+"""Exact change points of groups in closed form: dead positions that they pass and do not turn back in.
+
+A parallelogram has two. There the determinant is zero and only its sign tells the two ways on; along the smooth one,
+on which velocities are continuous, that changes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tmm_cli.groups.base import Closed, Kernel, reach
+from tmm_cli.groups.sequence import link_states, towards
+from tmm_cli.groups.smooth_way import SmoothWay
+from tmm_cli.linkage import Linkage
+from tmm_cli.roots import least, roots
+from tmm_cli.structure.cycle import turns_of_cycle
+from tmm_cli.vectors import Real
+
+SCAN = 360  # places a turn
+BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
+SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
+
+
+def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> SmoothWay | None:
+    """The way of a group through its change points; None where it has none, or they are all touched only."""
+    upto = towards((*before, kernel), kernel.group.links)
+    turns = linkage.driver.kind == "turn"
+    number = turns_of_cycle(linkage) or 1
+    for other in upto[:-1]:
+        way = other.way if isinstance(other, Closed) else None
+        if way is not None and way.cycle is not None and len(way.places) % 2:
+            number *= 2
+    half = np.pi * number if turns else reach(linkage)
+    start, step = linkage.sketch.at - half, 2 * half / (SCAN * number)
+    q = start + step * np.arange(-2, SCAN * number + 3)
+    at = link_states(linkage, upto, q, 0, blank=False).placements[-1]
+    residual = np.where(np.isfinite(at.residual), at.residual, -np.inf)
+    inner, rise = residual[1:-1], np.abs(np.diff(residual))
+    with np.errstate(invalid="ignore"):
+        near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
+    found: list[float] = []
+    for k in np.flatnonzero(near) + 1:
+        place = _exact(linkage, upto, float(q[k]), float(step))
+        if place is not None:
+            found.append(place - 2 * half * float(np.floor((place - start) / (2 * half))) if turns else place)
+    places = np.array([p for k, p in enumerate(sorted(found)) if not k or p - sorted(found)[k - 1] > step])
+    if len(places) > 1 and turns and places[0] + 2 * half - places[-1] < step:
+        places = places[:-1]
+    return SmoothWay(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
+
+
+def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float) -> float | None:
+    """A change point near a place, to the last bit; None where the group has room to spare or cannot pass."""
+
+    def slack(q: Real) -> Real:
+        return -link_states(linkage, upto, q, 0).placements[-1].residual
+
+    best = pinned(linkage, upto, least(slack, place - step, place + step)[0], step)
+    beside = best + step * BESIDE * np.array([-2, -1, 0, 1, 2])
+    states = link_states(linkage, upto, beside, 0, blank=False)
+    at = states.placements[-1]
+    det = np.abs(at.det)
+    if not at.dead[2] or not np.all(states.placed) or max(det[0] / det[1], det[4] / det[3]) > SIMPLE:
+        return None
+    return best
+
+
+def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
+    """A dead position inside the range to the last bit: there the residual of the last group stops growing.
+
+    The least of a quantity is known to half the digits only, the root of its rate to all of them.
+    """
+    last = kernels[-1]
+    if not isinstance(last, Closed):
+        return place
+
+    def residual_rate(q: Real) -> Real:
+        before = link_states(linkage, kernels[:-1], q, 1)
+        return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
+
+    low, high = np.array([place - step]), np.array([place + step])
+    with np.errstate(all="ignore"):
+        if not np.sign(residual_rate(low))[0] * np.sign(residual_rate(high))[0] < 0:
+            return place
+        return float(roots(residual_rate, low, high)[0])
