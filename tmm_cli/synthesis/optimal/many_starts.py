@@ -18,7 +18,7 @@ from tmm_cli.vectors import Real
 
 SAMPLES = 4000  # of a round, of which the best and those that evolved start
 TOURNAMENT = ((96, 8), (32, 20), (16, 60), (8, 150))  # so many of them, and their steps
-ROUNDS, AGREED = 4, 3  # at most; starts that end at the same least
+ROUNDS, AGREED = 4, 6  # at most; starts that end at the same least
 SAME = 1e-3  # of an objective: the same least
 ZERO = 1e-7  # of the size of what is wanted: it is met
 CLOSER, LAST = 360, 200  # places and steps of the winners
