@@ -304,7 +304,7 @@ def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_pa
 
 @pytest.mark.parametrize("links, mobility", [(4, 2), (5, 3), (6, 2)])
 def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
-    every = 2 if links == 6 else 1
+    every = 6 if links == 6 else 1
     for scheme in schemes(links, mobility, named_types("RRR,RRP"))[::every]:
         made = skeleton(scheme, scheme.formula)
         assert made is not None

@@ -315,20 +315,6 @@ def test_what_cannot_be_is_refused_with_the_reason_and_what_can(block):
     assert str(caught.value).partition(": ")[2].startswith(REFUSED[block])
 
 
-def test_more_digits_come_from_more_digits():
-    found = problem(f"positions: {FOUR}, AB_turn: 10, DC_turn: 5").extended().linkage
-    pivots = [np.clongdouble(found.links["0"].points[name]) for name in "AD"]
-    local = found.links["2"].points
-    turns = np.longdouble("3.14159265358979323846264338327950288") / 180 * np.array([0, 15, 35, 60])
-    poses = Poses(np.array([0, 60 + 40j, 110 + 100j, 130 + 170j], np.clongdouble) / 1000, turns)
-    if np.finfo(np.longdouble).eps > 1e-18:
-        return
-    for pivot, turn in zip(pivots, (10, 5), strict=True):
-        truth = by_turn(poses, turns[1] / 15 * turn, 0).pivot
-        assert abs(pivot - truth) < 1e-17
-    assert abs(local["C"].imag) == 0
-
-
 def told(outcome):
     """Values that were found, by their names or what they are called."""
     return {v.name or v.text: v.value for v in outcome.found}

@@ -17,6 +17,7 @@ from tmm_cli.structure.cycle import turns_of_cycle
 from tmm_cli.vectors import Real
 
 SCAN = 360  # places a turn
+CLOSER = 129  # places between two of these, where it seems to come to nothing
 BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
 SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
 
@@ -55,6 +56,9 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float
     def slack(q: Real) -> Real:
         return -link_states(linkage, upto, q, 0).placements[-1].residual
 
+    closer = slack(place + step * np.linspace(-1, 1, CLOSER))
+    if not np.all(np.isfinite(closer)) or np.abs(np.min(closer)) > 2 * np.max(np.abs(np.diff(closer))):
+        return None
     best = pinned(linkage, upto, least(slack, place - step, place + step)[0], step)
     beside = best + step * BESIDE * np.array([-2, -1, 0, 1, 2])
     states = link_states(linkage, upto, beside, 0, blank=False)
