@@ -67,6 +67,13 @@ def process(*arguments, cwd=None):
     )  # fmt: skip
 
 
+def after_the_echo(stderr):
+    """What a command says on stderr after the three lines of what it understood, which come first."""
+    lines = stderr.splitlines(keepends=True)
+    assert [line.split(": ")[1] for line in lines[:3]] == ["bare numbers", "driver", "sizes"]
+    return "".join(lines[3:])
+
+
 @functools.cache
 def problem(path):
     """A problem of the bank, read (and what it searches for found) once for all the tests that only look at it."""

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_commands import ROOT, process, tmm
+from test_commands import ROOT, after_the_echo, process, tmm
 
 from tmm_cli.results import files
 from tmm_cli.results.files import Staged, folder_name, folder_of, held, listed, write_whole
@@ -72,7 +72,7 @@ def test_a_part_never_takes_the_place_of_a_problem_that_is_named_like_it(tmp_pat
     run_of(tmp_path / "sine-p2-no-drawings", "cycle.csv")
     done = tmm("run", SINE, "-p", 2, "--no-drawings", "-o", tmp_path)
     assert done.returncode == 2
-    assert done.stderr == f"error: {tmp_path}/sine-p2-no-drawings: other results are there\n"
+    assert after_the_echo(done.stderr) == f"error: {tmp_path}/sine-p2-no-drawings: other results are there\n"
 
 
 def test_what_a_whole_run_removes_is_said(tmp_path):
@@ -136,7 +136,8 @@ def test_a_directory_in_the_place_of_a_table_is_an_error_and_nothing_changes(tmp
     (beside / "cycle.csv").unlink()
     (beside / "cycle.csv").mkdir()
     done = tmm("run", SINE, "--no-drawings", "-o", tmp_path)
-    assert (done.returncode, done.stderr) == (2, f"error: {beside / 'cycle.csv'}: Is a directory\n")
+    assert done.returncode == 2
+    assert after_the_echo(done.stderr) == f"error: {beside / 'cycle.csv'}: Is a directory\n"
     assert sorted(os.listdir(tmp_path)) == ["sine", "sine-no-drawings"]
 
 

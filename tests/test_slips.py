@@ -31,7 +31,7 @@ TWINS = "this name looks like another one, but its letters differ"
 ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
     "tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, racks, cams, "
-    "springs, friction, sketch, masses, loads, gravity, output, positions, checks"
+    "springs, friction, sketch, change points, masses, loads, gravity, output, positions, checks"
 )
 
 

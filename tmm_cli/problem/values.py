@@ -58,7 +58,7 @@ class ValueReader:
                 message.format(want=want), path=path, found=quote(value) if isinstance(value, str) else str(value),
                 allowed=_("zero or more") if zero else _("more than zero"),
             )  # fmt: skip
-        if 0 < number < SMALLEST:
+        if 0 < number < SMALLEST and not (zero and want == NUMBER):  # a share that may be zero divides nothing
             least = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
             raise ProblemError(
                 _("this is too small for a mechanism"), path=path, found=quote(value),
