@@ -132,7 +132,7 @@ def test_strokes_of_a_slotted_lever_end_where_it_is_square_to_the_crank():
 
 @pytest.mark.parametrize("pivot", [(0.15, -0.2), (0.13, -0.21), (0.3, 0), (-0.11, 0.17)])
 def test_a_slotted_lever_as_long_as_the_crank_goes_through_where_the_stone_meets_its_pivot(pivot):
-    """Also where the distance of the two comes out as exactly nothing. Half a turn of the lever in one of the crank: the
+    """Also where the distance of the two comes out as exactly nothing. The lever turns half as fast as the crank: the
     stone is there twice in a cycle of two turns.
     """
     results = results_of(slotted_lever(math.hypot(*pivot), pivot, 0.7), "kinematics")
