@@ -90,10 +90,12 @@ NO_MECHANISM = {
     "crank-slider, stroke: 10, k: 1, pressure: 1e-200": "pressure: this is too small",
     "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
     "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
-    "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2":
-        "l3: this is too large for a mechanism\n  found:   1e+250\n  allowed: 0.001 to 1e+09 mm",
-    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]":
-        "near[0]: this is too large for a mechanism\n  found:   1e+200",
+    "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2":
+        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 0.001 to 1e+09 mm",
+    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]":
+        "near[0]: this is too large for a mechanism\n  found:   1e12",
+    "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too large",
+    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]": "near[0]: this is too large",
     "four-bar-by-k, l3: 100, psi1: 1e16, psi2: 10000000000000050, k: 1.2": "psi1: this is too large",
     "shaper, stroke: 10, k: 1.7, frame_ratio: .499, rod_ratio: 3e9": "rod_ratio: this is too large",
     "grashof, l1: 1e200, l2: 1e200, l3: 1e200, l4: 1e199": "l1: this is too large",

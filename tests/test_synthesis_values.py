@@ -114,7 +114,7 @@ MESSAGES = {
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
     "too many": ("l: {from: 1, to: 3e9, step: 1}", "1 to 9999 steps must lie between the bounds", "found:   1"),
-    "endless": ("l: {from: 1, to: 1e290, step: 1e-300}", "1 to 9999 steps must lie", "found:   1e-300"),
+    "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "1 to 9999 steps must lie", "found:   1e-9"),
     "too large a step": ("l: {from: 1, to: 3, step: 5}", "1 to 9999 steps must lie between", "found:   5"),
     "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
     "refused by the file": ("l: {among: [0, 180, 200]}", "with l = 0 mm, n2 = "),

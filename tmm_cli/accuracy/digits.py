@@ -4,7 +4,9 @@ Every value is computed once more by the same stages in double-doubles, from the
 the error of float64 itself; values near dead positions were taken from double-doubles already, and are off by their
 last rounding alone:
 
-    bound = |y - y_exact| + u |y|,    u = 2^-53
+    bound = |y - y_exact| + (u + w / margin) |y|,    u = 2^-53, w = 2^-102
+
+The last part is the rounding of double-doubles themselves, which a dead position enlarges too.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
 CLOSE = 2.0**-7  # of the square of the margin, where it is near one
+WIDE = 2.0**-102  # rounding of double-doubles
 LEAST = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
 CHUNK = 1500  # positions at once
 
@@ -144,7 +147,8 @@ class _Judge:
         rows = self.rows(self.of(base))
         values = np.stack([value[..., chosen] for value in self.values.values()])
         share, paper, by_q = self.responses(base, rows, first, near)
-        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
+        roundoff = ROUNDOFF + WIDE / np.maximum(_margins(wide), WIDE)
+        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + roundoff * np.abs(values)
         bound = bound + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
@@ -180,6 +184,16 @@ class _Judge:
         away: Real = np.abs(one - other)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
+
+
+def _margins(results: Results) -> Real:
+    """What each position has left to a dead one; 1 where there are no groups."""
+    motion = results.motion
+    assert motion is not None
+    found = np.ones(np.shape(motion.q))
+    for there in motion.placements:
+        found = np.fmin(found, rounded(there.margin))
+    return found
 
 
 def _step(results: Results, near: bool) -> float:

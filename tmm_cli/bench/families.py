@@ -118,7 +118,7 @@ def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) ->
     hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("C", (FRAME, "3")))
     slide = Slide("s", "3", "2", 0j, 0.0, 0j, 0.0, "A")
     sketch = Sketch(at, {"A": A, "K": c + lk * u}, {"3": math.atan2(u.imag, u.real)})
-    return Linkage(links, hinges, (slide,), CRANK, sketch, (Load("M", "3", moment=-20.0),))
+    return Linkage(links, hinges, (slide,), CRANK, sketch, (Load("M", "3", moment=-20.0),), keep_side=True)
 
 
 def triad(n: Numbers) -> Linkage:
