@@ -149,7 +149,7 @@ class _Judge:
         share, paper, by_q = self.responses(base, rows, first, near)
         roundoff = ROUNDOFF + WIDE / np.maximum(_margins(wide), WIDE)
         bound = rounded(self.gap(values, self.rows(self.of(wide)))) + roundoff * np.abs(values)
-        bound = bound + np.where(blur > 0, by_q * blur, 0.0)
+        bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
     def responses(self, base: Results, rows: Real, first: float, near: bool) -> tuple[Real, ...]:
