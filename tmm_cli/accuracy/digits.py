@@ -4,9 +4,9 @@ Every value is computed once more by the same stages in double-doubles, from the
 the error of float64 itself; values near dead positions were taken from double-doubles already, and are off by their
 last rounding alone:
 
-    bound = |y - y_exact| + (u + w / margin) |y|,    u = 2^-53, w = 2^-102
+    bound = |y - y_exact| + u |y| + w kappa,    u = 2^-53, w = 2^-102
 
-The last part is the rounding of double-doubles themselves, which a dead position enlarges too.
+with kappa, the response of y per unit relative change of every length: the rounding of double-doubles themselves.
 """
 
 from __future__ import annotations
@@ -147,8 +147,7 @@ class _Judge:
         rows = self.rows(self.of(base))
         values = np.stack([value[..., chosen] for value in self.values.values()])
         share, paper, by_q = self.responses(base, rows, first, near)
-        roundoff = ROUNDOFF + WIDE / np.maximum(_margins(wide), WIDE)
-        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + roundoff * np.abs(values)
+        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
         bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
@@ -184,16 +183,6 @@ class _Judge:
         away: Real = np.abs(one - other)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
-
-
-def _margins(results: Results) -> Real:
-    """What each position has left to a dead one; 1 where there are no groups."""
-    motion = results.motion
-    assert motion is not None
-    found = np.ones(np.shape(motion.q))
-    for there in motion.placements:
-        found = np.fmin(found, rounded(there.margin))
-    return found
 
 
 def _step(results: Results, near: bool) -> float:
