@@ -219,7 +219,7 @@ REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (_("F"),), r
 REACTION: Final = (
     Quantity("force", "on link `on`", "N", FORCE, (_("Fx"), _("Fy")), vector=True, leading=True, symbol="R"),
     REACTION_SIZE,
-    Quantity("angle", "of the force", "rad", ANGLE, (_("angle"),), read=lambda r: np.angle(r.force)),
+    Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (_("angle"),)),
     Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
     Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (_("R tangential"),), vector=True,
              goes_with="normal"),

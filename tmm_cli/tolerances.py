@@ -55,6 +55,9 @@ NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for roun
 NO_GAIN = 1e-12  # rad: a pressure angle this near to 90 deg has no coefficient of force increase
 NO_COORDINATE = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 INFINITELY_FAR = 1e9  # sizes: a guide's force that acts farther away is what rounding leaves of a couple
+NO_FORCE = 1e-12  # of the largest reaction there: a force below that is zero but for rounding, and points nowhere
+    1e-12  # of the largest reaction at a position: a force below that is zero but for rounding, and points nowhere
+)
 NO_MOMENT = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
 FRICTION_AGREES = 1e-13  # of the largest reaction: friction and the reactions that it comes from
 FRICTION_ROUNDED = 1e-15  # of the largest reaction: a smaller step of Newton's method is rounding

@@ -152,8 +152,8 @@ def accuracy(results: Results, full: bool = False) -> AccuracyReport:
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
             digits = judged(there, cells, mu=mu, blur=away)
     for key, bound in digits.bound.items():
-        if is_angle(key):  # no direction is farther from another one than half a turn
-            digits.bound[key] = np.minimum(bound, np.pi)
+        if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
+            digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)
     return AccuracyReport(results, share, sizes(results), found, chosen, there, digits, full)
 
 

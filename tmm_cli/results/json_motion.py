@@ -176,7 +176,7 @@ DRIVER_BALANCE = record(
 FORCES = record(
     "force plan",
     Field("loads", list_of(APPLIED), "everything applied", "reactions.applied"),
-    Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.all}),
+    Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.directed}),
     Field("compound_hinges", map_of(map_of(VECTOR)), "force of the pin on each link, by link, N", _pins),
     Field("balancing", DRIVER_BALANCE, "what balances the first driver", "reactions.balance"),
     Field("drivers", map_of(DRIVER_BALANCE), "what balances each driver, by its link",

@@ -27,7 +27,7 @@ def tables(results: Results) -> Iterable[Table]:
         _("name"): [label(r.by, r.on) for r in reactions.all],
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
-    values = [columns(REACTION, reaction) for reaction in reactions.all]
+    values = [columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
     loads = reactions.applied
     if loads:
