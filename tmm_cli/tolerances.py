@@ -52,12 +52,9 @@ NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign ch
 NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly
 SMOOTH = 1e-13  # of the largest value: what a polynomial leaves of a smooth function
 NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for rounding has no largest place
-NO_GAIN = 1e-12  # rad: a pressure angle this near to 90 deg has no coefficient of force increase
 NO_COORDINATE = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 INFINITELY_FAR = 1e9  # sizes: a guide's force that acts farther away is what rounding leaves of a couple
 NO_FORCE = 1e-12  # of the largest reaction there: a force below that is zero but for rounding, and points nowhere
-    1e-12  # of the largest reaction at a position: a force below that is zero but for rounding, and points nowhere
-)
 NO_MOMENT = 1e-9  # of all forces times the size of the linkage: a balancing moment below that is nothing
 FRICTION_AGREES = 1e-13  # of the largest reaction: friction and the reactions that it comes from
 FRICTION_ROUNDED = 1e-15  # of the largest reaction: a smaller step of Newton's method is rounding
