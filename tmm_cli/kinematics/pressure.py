@@ -35,8 +35,8 @@ class Pressure:
     """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
 
     pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
-    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest, infinite in a dead position. angles: at the positions of a
-    motion.
+    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest (infinite in a dead position).
+    angles: at the positions of a motion.
     """
 
     group: str
