@@ -1,5 +1,6 @@
 """Every quantity stands once: tables, result.json, its schema, bounds of rounding and `prepare` read the same list."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
+from tmm_cli.draw.mechanism import detailed
+from tmm_cli.draw.plans import lever, motion_plans
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
@@ -99,3 +102,15 @@ def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
     angles = next(column for column in told.columns if column.header == "angle")
     shown = dict(zip(told.columns[2].values, cells(angles, results.problem.units, range(told.rows)), strict=True))
     assert shown["B"] == shown["x"] == "-" and float(shown["K"])
+
+
+def test_units_are_written_one_way_in_tables_in_the_schema_and_on_drawings(shaper):
+    told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
+    described = json.dumps(schema(), ensure_ascii=False)
+    position = detailed(shaper)[0]
+    notes = [text.get_text() for draw in (motion_plans, lever) for __, sheet in draw(position)
+             for text in sheet.axes[0].texts]  # fmt: skip
+    assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("m/s^2/mm") for note in notes)
+    assert any(note.endswith(" N*m") for note in notes)
+    for other in ("m/s2", "m/s²", "N·m", "N m"):
+        assert not [text for text in (*told, described, *notes) if other in text], other
