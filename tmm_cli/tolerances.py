@@ -19,6 +19,7 @@ DEAD_SKETCH = 1e-7  # margin in the sketch: closer, the assembly it shows cannot
 SINGULAR = 1e-16  # margin: less is rounding of the matrix, and no velocity has a digit
 NEAR_DEAD = 0.05  # sine of the transmission angle, 3 deg: a warning is due
 NEAR_SINGULAR = 0.005  # singular values: likewise; a well-shaped triad has 0.1
+BLURRED_PASSIVE = 0.1  # singular values, of a group with passive constraints: float64 leaves 1e-14 of accelerations
 DEAD_COSINE = 5e-16  # of the terms of the cosine of a transmission angle in longdouble: 1 but for rounding
 DEAD_COSINE_DOUBLE = 4e-15  # of the same terms in float64
 DEAD_SWING = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
