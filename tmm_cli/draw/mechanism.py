@@ -72,9 +72,11 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
                 sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
                 sheet.circle(at, 0.25, face=DARK, z=6.3)
                 belongs(sheet, scene, link, at)
-            if centre not in names and point is None:
+            if centre in names:
+                continue
+            if point is None:
                 sheet.label(centre, at, 8, "#6b5310")
-            elif centre not in names:
+            else:
                 names[point].append(centre)
     for name, called in names.items():
         at = sheet.on(scene.point(name))
