@@ -223,5 +223,5 @@ def beside(table: Table) -> Table:
         columns.append(column)
         if column.bound is not None and (k > 1 or table.columns[0].header != _("position")):
             for part, header in PARTS.items():
-                columns.append(Column(header, getattr(column, part), column.dimension, digits=2))
+                columns.append(Column(header, getattr(column, part), column.dimension, digits=2, unit=column.unit))
     return replace(table, columns=tuple(columns))
