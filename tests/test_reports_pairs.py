@@ -129,7 +129,7 @@ def test_speeds_of_toothed_wheels_stand_in_turns_a_minute_too():
 
 
 def test_what_is_positive_does_not_depend_on_how_the_driver_turns_and_stands_below_the_tables():
-    """A crank bears the same weight at its end whether it turns one way or the other: M_b is the same, its power not."""
+    """A crank bears the same weight at its end however it turns: M_b is the same, its power is not."""
     text = """tmm: 1
 gravity: 0
 points: {O: [0, 0]}
