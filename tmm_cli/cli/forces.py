@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, Settings, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each
 
 
 def forces(
@@ -10,7 +10,7 @@ def forces(
     as_json: Json = False,
     out: Out = None,
     position: Position = None,
-    digits: Digits = False,
+    digits: WithDigits = False,
     settings: Settings = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""

@@ -12,12 +12,12 @@ from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.kinematics.pressure import find_pressure
 from tmm_cli.kinematics.strokes import find_travel, output_slope
 from tmm_cli.linkage import FRAME
+from tmm_cli.tolerances import SURE_SIGN
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.pipeline import Results
 
 NONE = math.nan
-NOISE = 64 * np.finfo(float).eps  # of the largest speed: the sign of a larger one is sure
 
 Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
 
@@ -57,7 +57,7 @@ def ratio_open(results: Results) -> float:
     every = np.abs(output_slope(at_positions(results, np.append(places, around)), strokes.link))
     speed = every[:-64].reshape(places.shape)
     dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # which begin and end to the last digit
-    sure = np.all(speed > NOISE * np.nanmax(every), axis=1) | dwells
+    sure = np.all(speed > SURE_SIGN * np.nanmax(every), axis=1) | dwells
     doubtful = np.sum(np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1)  # so many steps, and all nearer ones
     blur = float(np.sum(away[np.minimum(doubtful, len(away) - 1)]))
     return blur * (1 / float(lengths[works].sum()) + 1 / float(lengths[~works].sum()))

@@ -19,7 +19,8 @@ from tmm_cli.synthesis.mean_ratio import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.synthesis.shaper.drawing import construction
-from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN, STRAIGHT
+from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN
+from tmm_cli.tolerances import DEAD_SWING
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -81,7 +82,7 @@ def refuse(task: Task) -> None:
     if not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     half = float(theta_of(task.k)) / 2
-    if not np.pi - 2 * half > STRAIGHT:
+    if not np.pi - 2 * half > DEAD_SWING:
         raise Infeasible("k", HALF_A_TURN)
     f = find(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
