@@ -200,14 +200,33 @@ def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
         p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
         one, other = phi + phi0, psi + psi0
         rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
-        turn = np.sin(one - other)
-        slopes = np.stack(
-            [np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn], -1
-        )[..., columns]
-        step = (inverse(slopes) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
+        step = (inverse(slopes(values, phi, psi)[..., columns]) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
         values = values.copy()
         values[:, columns] -= np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
     return values
+
+
+def slopes(values: Any, phi: Any, psi: Any) -> Any:
+    """Of the equation over p, q, s, phi0, psi0 (tasks, 5): (tasks, pairs, 5); those over psi are the last."""
+    p, q, _, phi0, psi0 = (values[:, k, None] for k in range(5))
+    one, other = phi + phi0, psi + psi0
+    turn = np.sin(one - other)
+    columns = np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn
+    return np.stack(columns, -1)
+
+
+def outputs(one: Bars, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
+    """Output angles (without psi0) of a four-bar at input angles phi; side: the sign of (BC x DC).
+
+    open_: what stands where it does not close; None: the angle where it is nearest to that.
+    """
+    l1, l2, l3 = (np.asarray(x, dtype=float) for x in (one.l1, one.l2, one.l3))
+    way = l1 * np.exp(1j * (float(one.phi0) + phi)) - 1
+    cosine = (l3 * l3 + np.abs(way) ** 2 - l2 * l2) / (2 * l3 * np.abs(way))
+    psi = np.angle(way) + side * np.arccos(np.clip(cosine, -1, 1))
+    gap = psi - float(one.psi0) - near
+    found = near + gap - 2 * np.pi * np.round(gap / (2 * np.pi))
+    return found if open_ is None else np.where(np.abs(cosine) <= 1, found, open_)
 
 
 def bars(values: Any, phi: Any, psi: Any) -> Bars:
