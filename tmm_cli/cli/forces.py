@@ -14,7 +14,7 @@ def forces(
     settings: Settings = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
-    names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
+    names = ("cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
         from tmm_cli import solve

@@ -178,12 +178,6 @@ def to_scale(scene: Scene, places: Sequence[complex]) -> list[complex]:
     return found
 
 
-def moving_points(linkage: Linkage) -> list[str]:
-    """Named points that move, once each."""
-    fixed = linkage.links[FRAME].points
-    return list(dict.fromkeys(p for n in linkage.moving for p in linkage.links[n].points if p not in fixed))
-
-
 def fixed_pivots(linkage: Linkage) -> list[complex]:
     """Hinges with the frame, m."""
     return [complex(linkage.local(FRAME, hinge.point)) for hinge in linkage.hinges if FRAME in hinge.links]

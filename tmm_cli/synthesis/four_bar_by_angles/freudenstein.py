@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.double_double import PI
+from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.roots import bisect
 
 EXACT: Final = np.longdouble
@@ -193,25 +193,31 @@ WAVES: Final = _slopes()
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
-    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals in extended precision."""
+    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals of 31 digits: near pairs take ten of them."""
     columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
-    values = np.asarray(values, dtype=EXACT)
+    values, phi, psi = (_wide(numbers) for numbers in (values, phi, psi))
     for _ in range(POLISHES):
         p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
         one, other = phi + phi0, psi + psi0
         rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
-        step = (inverse(slopes(values, phi, psi)[..., columns]) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
-        values = values.copy()
-        values[:, columns] -= np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
-    return values
+        p, q, one, other = (numbers.astype(float) for numbers in (p, q, one, other))
+        step = (inverse(slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(-1)
+        step = np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
+        values[:, columns] = values[:, columns] - step
+    return values.hi.astype(EXACT) + values.lo
 
 
-def slopes(values: Any, phi: Any, psi: Any) -> Any:
-    """Of the equation over p, q, s, phi0, psi0 (tasks, 5): (tasks, pairs, 5); those over psi are the last."""
-    p, q, _, phi0, psi0 = (values[:, k, None] for k in range(5))
-    one, other = phi + phi0, psi + psi0
-    turn = np.sin(one - other)
-    columns = np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn
+def _wide(numbers: Any) -> DoubleDouble:
+    """Numbers with all their digits as double-doubles."""
+    numbers = np.asarray(numbers, dtype=EXACT)
+    near = numbers.astype(float)
+    return DoubleDouble(near, (numbers - near).astype(float))
+
+
+def slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
+    """Of the equation over p, q, s, phi0, psi0 (last axis), angles with their zeros; those over psi are the last."""
+    turn = np.sin(phi - psi)
+    columns = np.cos(psi), -np.cos(phi), np.ones_like(phi), q * np.sin(phi) + turn, -p * np.sin(psi) - turn
     return np.stack(columns, -1)
 
 

@@ -61,7 +61,7 @@ def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] |
     side = min((1.0, -1.0), key=lambda side: _off(x, phi, psi, side)[1])
     (off, least), damping = _off(x, phi, psi, side), FIRST
     for _ in range(STEPS):
-        rows = slopes(x[None], phi, psi + off)[0]
+        rows = slopes(x[0], x[1], phi + x[3], psi + off + x[4])
         with np.errstate(all="ignore"):
             rows = (-rows / rows[:, 4:])[:, free]  # of the error: as the equation holds at the angle that is reached
         sizes = np.linalg.norm(rows, axis=0)

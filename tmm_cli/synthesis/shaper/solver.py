@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.errors import _
 from tmm_cli.synthesis.mean_ratio import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.synthesis.shaper.drawing import construction
 from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN
 from tmm_cli.tolerances import DEAD_SWING
@@ -101,9 +101,6 @@ def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
     f = find(task)
-    given = tuple(
-        Value(name, value, *QUANTITIES[name]) for name, value in vars(task).items() if value is not None
-    )  # fmt: skip
     kind, text = QUANTITIES["pressure"]
     found = (
         Value("OA", f.crank, "length", _("crank OA")),
@@ -123,4 +120,4 @@ def solve(task: Task) -> Outcome:
     )
     source = _("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
                "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
-    return Outcome(given, found, source, demands, (construction(f),), output="slide")
+    return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")
