@@ -30,7 +30,7 @@ output: 3
 positions: {count: 4, from: phi1}
 """
 MET = 1e-12
-COUNT = 1000
+COUNT = 250
 
 
 def problem(block):

@@ -155,8 +155,8 @@ def test_what_a_thousand_choices_ask_for_comes_back():
 
 
 def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_positions_on_one_side():
-    task, _, _ = drawn(5, 1, 200)
-    for n in range(200):
+    task, _, _ = drawn(5, 1, 50)
+    for n in range(50):
         one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         c1, c2 = (one.support + one.l3 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
         for side in (-1, 1):
