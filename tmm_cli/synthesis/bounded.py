@@ -17,6 +17,7 @@ MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 
 # what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
 # k is refused by its task, which knows the bounds of it
 SIZES: Final = {NUMBER: ("ratio", "frame_ratio", "rod_ratio"), ANGLE: ("pressure",)}
+PLACES: Final = ("e", "xA", "yA")
 PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
 
 
@@ -40,7 +41,7 @@ class Bounded(ValueReader):
         most, key = MOST.get(want), path[-1] if path else ""
         if most is None or key == "k" or (path and path[0] in PLAIN):
             return found
-        sized = isinstance(key, str) and key != "e" and (want not in SIZES or key in SIZES[want])
+        sized = isinstance(key, str) and key not in PLACES and (want not in SIZES or key in SIZES[want])
         if (SMALLEST if sized else -most) <= found <= most:
             return found
         low, high = (f"{self.units.from_si(bound, want):.6g}" for bound in (SMALLEST, most))
