@@ -82,6 +82,8 @@ def test_a_path_far_above_the_least_known_or_found_late_is_a_miss():
     assert two.failures == ("line: 8 of 10 seeds within 1 % of the least known",)
     slow = replace(one, paths=(*ten[:9], late))
     assert slow.failures == ("line: 30 s of the processor, target 20",)
+    above = replace(one, paths=(*ten[:9], replace(path, printed=0.09)))
+    assert above.failures == ("line: 1 of 10 seeds above the best linkage printed",)
 
 
 def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
