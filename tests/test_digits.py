@@ -45,7 +45,9 @@ from tmm_cli.quantities import (
 )
 from tmm_cli.results.cells import cells, computed_tables, keys_of
 from tmm_cli.results.digits import accuracy
+from tmm_cli.results.reports import tables_of
 from tmm_cli.results.table import true_digits
+from tmm_cli.results.terminal import cells as shown
 from tmm_cli.structure.assur import analyse
 
 BARRED = """tmm: 1
@@ -257,6 +259,30 @@ def test_digits_are_judged_when_they_are_asked_for_only(tmp_path):
     told = tmm("forces", SHAPER, "--digits").stdout
     shares = [float(share) for share in re.findall(r"(?:off: up to|paper: up to) (\S+) %", " ".join(told.split()))]
     assert shares and max(shares) < 100, "of the largest value of a column, or of the stroke"
+
+
+@pytest.mark.parametrize("left", ["1e-4", "1e-8", "1e-11"])
+def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_end_is_where_the_end_is(left):
+    end = mp.acos((mp.mpf("0.64") + 1 - mp.mpf("1.69")) / mp.mpf("1.6"))  # coupler and rocker in line
+    text = BARRED.replace("angle: rad", "angle: deg").replace("at: 1,", "at: 1 rad,")
+    places = f"output: 3\npositions: {{at: [0.2 rad, 0.5 rad, {mp.nstr(end - mp.mpf(left), 25)} rad]}}\n"
+    results = solve(build(read_text(text + places, "barred.yaml")), "kinematics")
+    quality, pressure = accuracy(results).with_bounds(tables_of(results, ("quality", "pressure")))
+    units = results.problem.units
+    told = dict(zip(quality.columns[0].values, shown(quality.columns[1], units, range(quality.rows)), strict=True))
+    stretched = mp.degrees(mp.pi - mp.acos((1 + mp.mpf("0.36") - mp.mpf("2.25")) / mp.mpf("1.2")))  # crank and coupler
+    assert told["driver can go to"] == f"{float(mp.degrees(end)):.6g}"
+    swing = float(told["swing psi of link 3 over the positions asked"])
+    assert float(told["extreme position of link 3"]) - swing == pytest.approx(float(stretched), abs=1e-3)
+    place = next(column for column in pressure.columns if column.header == "driver there at")
+    assert shown(place, units, [0]) == [f"{float(mp.degrees(end)):.6g}"]
+
+
+def test_a_pressure_angle_that_is_the_same_everywhere_has_no_place_of_its_largest():
+    results = solve(load(str(ROOT / "problems" / "gear-doubling.yaml")), "kinematics")
+    (pressure,) = accuracy(results).with_bounds(tables_of(results, ("pressure",)))
+    place = next(column for column in pressure.columns if column.header == "driver there at")
+    assert "-" in shown(place, results.problem.units, range(pressure.rows))
 
 
 def test_half_a_unit_of_the_last_figure_is_not_below_the_bound():

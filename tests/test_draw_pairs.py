@@ -15,7 +15,7 @@ from tmm_cli.draw import sheets
 from tmm_cli.draw.actuators import BARREL, cylinder, springs
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.wheels import contact, extent, shape
+from tmm_cli.draw.wheels import contact, extent, outline
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
@@ -39,7 +39,7 @@ def scene(results, k):
 
 def shaped(name, k):
     results = solved(name)
-    return shape(scene(results, k), results.linkage.meshes[0])
+    return outline(scene(results, k), results.linkage.meshes[0])
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -131,7 +131,7 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
     text = PROBLEMS["flat follower"].replace("offset: 60", "offset: 5")
     text = text.replace("B: [0, 140]", "B: [0, 85]").replace("D: [120, 230]", "D: [120, 175]")
     results = solve(build(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
-    found = shape(scene(results, 0), results.linkage.meshes[0])
+    found = outline(scene(results, 0), results.linkage.meshes[0])
     assert not found.true
     turns = np.unwrap(np.angle(np.diff(found.disk[::6])))
     assert np.all(np.diff(turns) < 0.05) or np.all(np.diff(turns) > -0.05)  # convex all the same

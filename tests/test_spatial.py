@@ -13,9 +13,9 @@ from test_commands import PROBLEMS, ROOT, moved, problem, tmm
 from tmm_cli import count, load
 from tmm_cli.linkage import FRAME
 from tmm_cli.problem.build import build
-from tmm_cli.problem.build_chain import build_chain, load_chain
+from tmm_cli.problem.build_chain import build_chain
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.contours import classification, contours
 from tmm_cli.structure.redundancy import CHOICES, rank_of, space, spatial_chain
@@ -420,7 +420,7 @@ def test_words_of_the_classification():
 def test_problems_given_by_pairs_alone(name, expected):
     file = ROOT / "problems" / f"{name}.yaml"
     assert "Property to see:" in file.read_text(encoding="utf-8")
-    found = count(load_chain(str(file))).chain
+    found = count(build_chain(read_file(str(file)))).chain
     assert {key: getattr(found, key) for key in expected} == expected
 
 

@@ -58,7 +58,7 @@ def answers(results, motion, k):
     X, V, A, multipliers = body.at(k)
     case = Case("", linkage, structure, results.kernels)
     found = {"positions": {}, "velocities": {}, "accelerations": {}, "reactions": {}}
-    for point in case.points:
+    for point in case.linkage.moving_points:
         link = linkage.owner(point)
         i, arm = body.at_row[link], linkage.local(link, point) * body.pose(X, link)[1]
         found["positions"][point] = mp.mpc(X[i], X[i + 1]) + arm

@@ -18,7 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING, Literal
+
+from tmm_cli.errors import LinkageError
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.mechanism import Inputs
@@ -72,10 +76,7 @@ def solve(
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
     """The structure alone: no task of synthesis is solved for it, unless it hangs on lengths. Raises ProblemError."""
-    from dataclasses import replace
-
     from tmm_cli.analysis.pipeline import solve as compute
-    from tmm_cli.errors import LinkageError
     from tmm_cli.problem.record import TaskProblem
 
     draft = problem.draft() if isinstance(problem, TaskProblem) else None
@@ -89,8 +90,6 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 
 def inputs_of(problem: Problem) -> Inputs:
     """What the stages need of a problem."""
-    from functools import cache
-
     from tmm_cli.analysis.mechanism import Inputs
 
     again = problem.extended
@@ -108,8 +107,6 @@ def count(problem: ChainProblem) -> ChainResults:
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError."""
-    from dataclasses import replace
-
     from tmm_cli.analysis.other_driver import redriven
 
     whole = problem.whole
@@ -148,8 +145,6 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 @contextmanager
 def _in_words_of(problem: Problem) -> Iterator[None]:
     """What a stage refuses is said in the terms of the file. Raises ProblemError."""
-    from tmm_cli.errors import LinkageError
-
     try:
         yield
     except LinkageError as error:

@@ -235,6 +235,12 @@ class Linkage:
         """Names of the moving links, in the order of the file."""
         return tuple(name for name in self.links if name != FRAME)
 
+    @property
+    def moving_points(self) -> tuple[str, ...]:
+        """Named points that move, once each."""
+        every = dict.fromkeys(point for link in self.moving for point in self.links[link].points)
+        return tuple(point for point in every if point not in self.links[FRAME].points)
+
     def local(self, link: str, point: str) -> complex:
         """A named point in the axes of its link, m."""
         return self.links[link].points[point]

@@ -143,31 +143,31 @@ class _Judge:
             places = np.stack(results.inputs.extended().request.places)
             first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
         wide = at(results, exact(results), q, first, chosen)
-        base = wide if near else at(results, results.linkage, motion.q[chosen], results.start, chosen)
-        rows = self.rows(self.of(base))
-        values = np.stack([value[..., chosen] for value in self.values.values()])
-        share, paper, by_q = self.responses(base, rows, first, near)
-        bound = rounded(self.gap(values, self.rows(self.of(wide)))) + ROUNDOFF * np.abs(values)
+        values, true = np.stack([value[..., chosen] for value in self.values.values()]), self.rows(self.of(wide))
+        if near:
+            share, paper, by_q = self.responses(wide.linkage, q, first, chosen, true, _step(wide))
+        else:
+            share, paper, by_q = self.responses(results.linkage, motion.q[chosen], results.start, chosen, values, STEP)
+        bound = rounded(self.gap(values, true)) + ROUNDOFF * np.abs(values)
         bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
-    def responses(self, base: Results, rows: Real, first: float, near: bool) -> tuple[Real, ...]:
+    def responses(self, linkage: Linkage, q: Real, first: float, chosen: Real, rows: Real, step: float) -> Any:
         """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place.
 
-        All in one run: its positions are those of base once for each number that is changed there, the place first.
+        All in one run: its positions are those at q once for each number that is changed there, the place first. rows:
+        the values at q; step: the relative change of a length.
         """
-        assert base.motion is not None
-        step, count, data = _step(base, near), len(base.motion.q), lengths(self.results.linkage)
+        count, data = len(q), lengths(self.results.linkage)
         sizes: dict[str, float] = {}
         for length in data:
             sizes[length.link] = max(sizes.get(length.link, 0.0), abs(length.value))
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
         by = step * np.array([reach, *(sizes[length.link] for length in data)])
         there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
-        linkage = base.linkage
         for k, length in enumerate(data, 1):
             linkage = changed(linkage, length, np.where(number == k, by[k], 0.0))
-        other = at(base, linkage, base.motion.q[there] + np.where(number == 0, by[0], 0.0), first, there)
+        other = at(self.results, linkage, q[there] + np.where(number == 0, by[0], 0.0), first, chosen[there])
         gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
         slopes = gaps / by[:, None]
         values = np.array([abs(length.value) for length in data])
@@ -185,12 +185,10 @@ class _Judge:
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
 
-def _step(results: Results, near: bool) -> float:
-    """The relative change of a length that derivatives are taken with: small against what is left to a dead one."""
+def _step(results: Results) -> float:
+    """The relative change of a length for derivatives near dead positions: small against what is left to them."""
     motion = results.motion
     assert motion is not None
-    if not near:
-        return STEP
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
     return min(STEP, max(CLOSE * least**2, LEAST))
 

@@ -25,6 +25,9 @@ FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far b
 AROUND = 65  # places over the driver's way that tell how large a function is
 SMOOTH = 1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
 NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
+FINE = (
+    1e-10  # of the largest value: with more noise in float64 a position near a dead one would blur all that was found
+)
 LEAST = 1e-12  # of the way: ends of groups that were followed there
 GUESS = 1e-9  # of the way: dead positions where a margin is least
 
@@ -120,26 +123,35 @@ class Wide:
         return min(float(self.brackets(np.array([place]), closing, float(kernel.size))[0]), GUESS * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
-        """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only."""
+        """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only.
+
+        At an end of the way it is where the end is; where it is the same all the way, no place is known (infinity).
+        """
         if largest < NO_PRESSURE:
-            return largest + 4 * ROUNDOFF, span
+            return largest + 4 * ROUNDOFF, np.inf
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
         states = self.at(self.kind(place) + step * np.arange(-2, 3))
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
+        driver_range, edge = self.results.mechanism.driver_range, 2 * GUESS * span
+        for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
+            if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
+                return error, edge + 4 * ROUNDOFF * abs(place)
         bend = float(2 * here - b1 - a1) / step**2
         if not bend * step**2 > error:  # no bend that could be told from rounding
-            return error, span
+            return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
         off = abs(slope / bend)  # where the slope of a smooth top is nothing
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
-        return error, min(4 * off + SMOOTH * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat, span)
+        there = 4 * off + SMOOTH * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
+        return error, there if there < span else np.inf
 
 
 def coarsely(results: Results) -> Wide:
-    """In float64, with the rounding of the data as it may grow on its way through the groups."""
+    """In float64, with the rounding of the data as it may grow on its way through the groups, if that tells enough."""
     grown = growth(results)
-    return Wide(results, slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0)))
+    most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
+    return Wide(results, most if NOISE * ROUNDOFF * most < FINE else None)
 
 
 def _first(sure: Real, steps: Real) -> Real:

@@ -19,12 +19,8 @@ from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.roots import least
-from tmm_cli.tolerances import NO_PRESSURE
+from tmm_cli.tolerances import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES
 from tmm_cli.vectors import Real, dot
-
-NO_WORK = 1e-6  # of all the work that a load does and takes: less in a stroke is none
-NO_DIFFERENCE = 1e-9  # of the largest: below, lever and force plan differ by rounding
-SEAM = 1e-7  # rad: an extreme is found to half the digits; this near to the end of a cycle it is at its beginning
 
 Kind = Literal["slot", "pressure", "load", "detail", "near dead", "lever"]
 
@@ -62,7 +58,8 @@ def checks(results: Results) -> tuple[Check, ...]:
     if not results.driver_range.full:
         return found
     cycle = results.driver_range.end - results.driver_range.start
-    return tuple(c if c.at is None else replace(c, at=max((c.at + SEAM) % cycle - SEAM, 0.0)) for c in found)
+    seam = SEAM_OF_EXTREMES
+    return tuple(c if c.at is None else replace(c, at=max((c.at + seam) % cycle - seam, 0.0)) for c in found)
 
 
 def _slots(results: Results) -> Iterable[Check]:

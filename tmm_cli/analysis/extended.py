@@ -18,10 +18,10 @@ from tmm_cli.vectors import Real
 
 
 def near_dead(motion: Motion) -> Real:
-    """Positions where a group is near a dead position, but not in it."""
+    """Positions where a group is so near to a dead position that float64 blurs its motion, but not in it."""
     near = np.zeros(np.shape(motion.q), dtype=bool)
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
-        near |= at.margin < kernel.near
+        near |= at.margin < kernel.blurred
     return near & motion.moving
 
 

@@ -9,21 +9,23 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
+
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.errors import LinkageError
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import DriverMotion, towards
+from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange, find_dead, find_range
+from tmm_cli.kinematics.motion import move
+from tmm_cli.kinematics.pressure import Pressure, find_pressure
+from tmm_cli.kinematics.slots import Excess, find_slots
+from tmm_cli.kinematics.strokes import Strokes, Travel, find_strokes, find_travel, places, resisted
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.structure.assur import Structure
-from tmm_cli.structure.naming import roles
-
-if TYPE_CHECKING:  # what moves the linkage is imported when it is moved
-    from tmm_cli.groups.base import Kernel
-    from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
-    from tmm_cli.kinematics.pressure import Pressure
-    from tmm_cli.kinematics.slots import Excess
-    from tmm_cli.kinematics.strokes import Strokes, Travel
-    from tmm_cli.vectors import Real
-
+from tmm_cli.structure.naming import output_link, roles
+from tmm_cli.vectors import Real
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
 
@@ -73,8 +75,6 @@ class Mechanism:
     @cached_property
     def kernels(self) -> tuple[Kernel, ...]:
         """The groups in the assemblies of the sketch, in solving order."""
-        from tmm_cli.assembly.choose import assemble
-
         return assemble(self.linkage, self.structure)
 
     @cached_property
@@ -90,22 +90,16 @@ class Mechanism:
     @cached_property
     def driver_range(self) -> DriverRange:
         """How far the driver can go."""
-        from tmm_cli.kinematics.driver_range import find_range
-
         return find_range(self.linkage, self.kernels)
 
     @cached_property
     def dead(self) -> tuple[DeadPosition, ...]:
         """Dead positions inside that range."""
-        from tmm_cli.kinematics.driver_range import find_dead
-
         return find_dead(self.linkage, self.kernels, self.driver_range)
 
     @cached_property
     def output(self) -> str | None:
         """The main output link."""
-        from tmm_cli.structure.naming import output_link
-
         return output_link(self.linkage, self.structure.groups)
 
     @cached_property
@@ -116,15 +110,11 @@ class Mechanism:
     @cached_property
     def strokes(self) -> Strokes | None:
         """Strokes of the main output."""
-        from tmm_cli.kinematics.strokes import find_strokes, resisted
-
         return find_strokes(self.linkage, self.kernels, self.driver_range, resisted(self.linkage, self.output))
 
     @cached_property
     def further(self) -> tuple[Strokes, ...]:
         """Strokes of the other outputs."""
-        from tmm_cli.kinematics.strokes import find_strokes
-
         if not self.driver_range.full:
             return ()
         found = [find_strokes(self.linkage, self.kernels, self.driver_range, link=link) for link in self.outputs[1:]]
@@ -133,8 +123,6 @@ class Mechanism:
     @cached_property
     def asked(self) -> Real:
         """The driver's places of all positions that are asked for, whether they are computed or not (rad or m)."""
-        from tmm_cli.kinematics.strokes import places
-
         request = self.inputs.request
         strokes = self.strokes if request.start == "working stroke" else None
         return places(request, self.driver_range, strokes, self.linkage.driver.sense)
@@ -142,8 +130,6 @@ class Mechanism:
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
         """How far the outputs go between the ends of what is asked for, where the driver does not turn fully."""
-        from tmm_cli.kinematics.strokes import find_travel
-
         if self.driver_range.full:
             return ()
         found = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
@@ -152,15 +138,11 @@ class Mechanism:
     @cached_property
     def pressure(self) -> tuple[Pressure, ...]:
         """Largest pressure angles of the driven links."""
-        from tmm_cli.kinematics.pressure import find_pressure
-
         return find_pressure(self.linkage, self.kernels, self.driver_range, self.inputs.pressure_limits)
 
     @cached_property
     def slots(self) -> tuple[Excess, ...]:
         """How stones come to the ends of their guides, and beyond."""
-        from tmm_cli.kinematics.slots import find_slots
-
         return find_slots(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
@@ -183,11 +165,6 @@ class Mechanism:
     @cached_property
     def _turning(self) -> dict[str, bool]:
         """Which links turn through 360 degrees while the driver goes its way."""
-        import numpy as np
-
-        from tmm_cli.groups.sequence import DriverMotion, towards
-        from tmm_cli.kinematics.motion import move
-
         linkage, driver_range = self.linkage, self.driver_range
         turned = {d.link: driver_range.full and d.kind == "turn" for d in linkage.cranks}
         groups = [k.group for k in self.kernels]

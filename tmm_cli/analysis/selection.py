@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_cli.errors import UnknownNameError
+from tmm_cli.groups.sequence import towards
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import BALANCING, LINK, POINT, REACTION, Quantity
 
@@ -45,8 +46,6 @@ def check(linkage: Linkage, names: Sequence[str]) -> None:
 
 def places(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) -> Mapping[str, Place]:
     """The points and centres of mass among the names; a point on the link that takes the fewest groups to reach."""
-    from tmm_cli.groups.sequence import towards
-
     points, centres = named_points(linkage), mass_centres(linkage)
     found: dict[str, Place] = {}
     for name in names:

@@ -18,7 +18,7 @@ from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import Pose, State
-from tmm_cli.tolerances import CONVERGED, LAST_STEP
+from tmm_cli.tolerances import CONVERGED, LAST_STEP, SAME_STATE
 from tmm_cli.vectors import Real
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
@@ -29,7 +29,6 @@ MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longe
 SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
 FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
 FEW = 6  # rounds of Newton's method: more than that begin too far away
-SAME = 1e-7  # states this near are the same
 HALVINGS = 80
 FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
 LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it has to be followed
@@ -294,7 +293,7 @@ class Walker:
         """Whether two states are the same but for full turns."""
         around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
         same = State(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
-        return self.apart(one, same) < SAME
+        return self.apart(one, same) < SAME_STATE
 
 
 def _flat(state: State, size: float) -> Real:

@@ -17,20 +17,22 @@ from tmm_cli.double_double import exactly, rounded
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import State
-from tmm_cli.tolerances import LAST_STEP
+from tmm_cli.tolerances import (
+    CROSSING_AGREES,
+    CROSSING_FITTED,
+    CROSSING_KNOWN,
+    CROSSING_ROUNDED,
+    LAST_STEP,
+    NO_DETERMINANT,
+    SAMPLES_ROUNDED,
+)
 from tmm_cli.vectors import Real
 
 RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # of the samples about the place, in scales of the driver
 SAMPLES = 28  # of Chebyshev; those in the middle are left out
 MIDDLE = 0.2
 DEGREES = (10, 13)  # of the polynomials: places of both agree
-AGREED = 1e-13  # scales of the driver: closer than this is good enough at once
-WORST = 1e-10  # the same: a place that is known worse is none
-ROUNDED = 3e-14  # at the distance h (scales) a smooth way is met to this over h (sizes of the group, rad)
-FITTED = 1e-10  # and to this in any case
 PROBES = (1e-3, 1e-4, 1e-5, 1e-6)  # scales; a determinant that falls as h^2 leaves no digits at the last ones
-UNIT = 1e-16  # roundoff of what the samples are fitted from
-TOUCHED = 1e-8  # of its largest value among the samples: a determinant this small is zero
 FOUND = 0.02  # a corrected state may be this far from the predicted one
 ROUNDS = 12
 SMALL = 0.3  # of the largest determinant on the way: less than this may come to nothing
@@ -164,19 +166,19 @@ def crossing(correct: Correct, finest: Finest, nodes: list[Node], beyond: Node, 
     """
     flips = beyond.side != nodes[-1].side
     about = _between(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
-    best, error = None, WORST * scale
+    best, error = None, CROSSING_KNOWN * scale
     for radius in RADII:
         found = _place(correct, finest, nodes, about, radius * scale, flips)
         if found is None:
             continue
         dead, known, fit = found
-        known += scale * UNIT / (MIDDLE * radius) ** (1 if flips else 2)
+        known += scale * SAMPLES_ROUNDED / (MIDDLE * radius) ** (1 if flips else 2)
         if not known < error:
             continue
         if not _smooth(correct, dead, fit, scale):
             return None
         best, error = dead, known
-        if error < AGREED * scale:
+        if error < CROSSING_AGREES * scale:
             break
     return best
 
@@ -215,7 +217,7 @@ def _place(
     samples = [finest(sample) for sample in samples]
     roots = [_root(_fitted(samples, about, radius, degree), flips) for degree in DEGREES]
     fit = _fitted(samples, about, radius, DEGREES[-1])
-    if abs(fit.det(roots[-1])) > TOUCHED * max(abs(s.det) for s in samples):
+    if abs(fit.det(roots[-1])) > NO_DETERMINANT * max(abs(s.det) for s in samples):
         return None
     side = -nodes[-1].side if flips else nodes[-1].side
     q = about + radius * roots[-1]
@@ -288,7 +290,8 @@ def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
     for h in PROBES if dead.flips else PROBES[:2]:
         places = (dead.q - h * scale, dead.q + h * scale)
         found = [correct(q, fit.state(q, dead.state)) for q in places]
-        if any(one is None or one[1] > FITTED + ROUNDED / h ** (1 if dead.flips else 2) for one in found):
+        most = CROSSING_FITTED + CROSSING_ROUNDED / h ** (1 if dead.flips else 2)
+        if any(one is None or one[1] > most for one in found):
             return False
         low, high = (one[0].side for one in found if one is not None)
         if (low != high) != dead.flips:

@@ -16,7 +16,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from tmm_cli.assembly.choose import closed_form
+from tmm_cli.assembly.search import all_assemblies, close_from_afar
+from tmm_cli.assembly.triad import Triad, starts
 from tmm_cli.groups.base import Closed, Kernel
+from tmm_cli.groups.linear import least_over_largest
+from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.groups.state import Drives, Pose, State
 from tmm_cli.linkage import FRAME, Linkage
@@ -176,9 +180,6 @@ def _of_closed(kernel: Closed, linkage: Linkage, placed: Mapping[str, Pose], dri
 
 def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates) -> GroupAssemblies:
     """Groups of class III and higher, and those with higher pairs or drivers in them."""
-    from tmm_cli.groups.linear import least_over_largest  # class II alone needs none of this
-    from tmm_cli.groups.newton import Newton
-
     kernel = Newton.of(group, linkage)
     with np.errstate(all="ignore"):
         states, method, most = _searched(kernel, linkage, placed, motion)
@@ -201,9 +202,6 @@ def _searched(
     kernel: Newton, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
 ) -> tuple[list[State], Method, int | None]:
     """States of all assemblies (some more than once), the way they were found, and how many there are at most."""
-    from tmm_cli.assembly.search import all_assemblies, close_from_afar
-    from tmm_cli.assembly.triad import Triad, starts
-
     drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
     found = None if triad is None else starts(triad, placed)
@@ -229,8 +227,6 @@ def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: LinkStat
     With turning pairs alone the way of a group with one lead cut is closed, so that the lead closes an even number of
     times: an odd number shows that one is missing.
     """
-    from tmm_cli.assembly.search import all_assemblies
-
     own = _sketched(kernel.group, motion)
     states: list[State] = []
     if own is not None:

@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.assembly.continuation import CORRECTION, FEW, SAME
+from tmm_cli.assembly.continuation import CORRECTION, FEW
 from tmm_cli.assembly.crossing import Source
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import State
-from tmm_cli.tolerances import CONVERGED
+from tmm_cli.tolerances import CONVERGED, SAME_STATE
 
 NEARLY_DEAD = 0.05  # of the largest determinant: beside a dead position nodes have to lie closer
 
@@ -58,7 +58,7 @@ def corrected(kernel: Newton, source: Source, trace: BranchTrace, at: float, sta
     found = (
         bool(np.all(size < CONVERGED) and same_way)
         and apart(ahead, states.part(slice(1, None))) < CORRECTION
-        and apart(states.part(slice(1)), once) < SAME
-        and apart(State(states.x[here], states.unwrapped[here]), state) < SAME
+        and apart(states.part(slice(1)), once) < SAME_STATE
+        and apart(State(states.x[here], states.unwrapped[here]), state) < SAME_STATE
     )
     return replace(trace, states=states, first=first, second=second) if found else None

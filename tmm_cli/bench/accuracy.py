@@ -15,6 +15,7 @@ from tmm_cli.bench.measured import Measured, cell, slack, times, words
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable, errors
 from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
+from tmm_cli.bench.rivals import installed
 from tmm_cli.errors import _
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
@@ -112,8 +113,6 @@ def measure(
     progress: Callable[[str], None] = lambda __: None,
 ) -> Accuracy:
     """Errors of all methods against 50 digits; their times, taken by turns in one process, median of the repeats."""
-    from tmm_cli.bench.rivals import installed
-
     chosen = tuple(methods or (FEWER if reduced else METHODS))
     rivals, missing = installed()
     absent = [f"{name}: not installed" for name in missing]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -15,7 +16,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.bench.methods.case import Answers, Case
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.vectors import Real, Vector
+from tmm_cli.vectors import Real
 
 NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
 
@@ -39,14 +40,16 @@ def reference(name: str) -> Reference:
     """A reference by its name."""
     content = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
     results = solve(build(read_text(content["problem"], f"{name}.yaml")), "kinematics")
-    x, v, a, forces = (_series(content[key]) for key in ("positions", "velocities", "accelerations", "reactions"))
-    balancing = np.array([np.longdouble(value) for value in content["balancing"]])
-    return Reference(case_of(name, results), np.array(content["q"]), Answers(x, v, a, forces, balancing))
+    x, v, a, forces = (
+        {point: exact(values) for point, values in content[key].items()}
+        for key in ("positions", "velocities", "accelerations", "reactions")
+    )
+    return Reference(
+        case_of(name, results), np.array(content["q"]), Answers(x, v, a, forces, exact(content["balancing"]))
+    )
 
 
-def _series(content: dict[str, Any]) -> dict[str, Vector]:
-    found = {}
-    for name, pairs in content.items():
-        real, imag = (np.array([np.longdouble(pair[k]) for pair in pairs]) for k in (0, 1))
-        found[name] = real + 1j * imag
-    return found
+def exact(written: Sequence[Any]) -> Any:
+    """Numbers of 50 digits, or vectors of two of them, in longdouble."""
+    found = np.array(written, dtype=np.longdouble)
+    return found if found.ndim == 1 else found[:, 0] + 1j * found[:, 1]

@@ -13,6 +13,7 @@ from tmm_cli.analysis.pipeline import Results, at_positions, with_forces
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.measured import Measured
+from tmm_cli.draw import files
 from tmm_cli.errors import _
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion, towards
@@ -191,6 +192,4 @@ def _loaded(results: Results, linkage: Linkage) -> int:
 
 def _pictures(results: Results) -> int:
     """How many pictures are made."""
-    from tmm_cli.draw import files
-
     return sum(1 for __ in files(with_forces(results)))

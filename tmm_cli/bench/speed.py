@@ -15,6 +15,7 @@ from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
 from tmm_cli.bench.methods import taped
 from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
+from tmm_cli.bench.rivals import installed
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
@@ -235,8 +236,6 @@ def exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
 
 def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
     """Rivals that are installed, on the mechanisms that they can do, at 360 positions."""
-    from tmm_cli.bench.rivals import installed
-
     there, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
     found = []

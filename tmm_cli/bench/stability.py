@@ -23,6 +23,7 @@ from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.truths import Known, known
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.results.table import Table
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 
 OURS = "tmm"
@@ -30,7 +31,6 @@ WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itsel
 FIVE = 0.05  # what the drawing board states
 WIDE, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
 TRUE = 1e-40  # of the largest value: what is not known of the truth
-UNIT = 2.0**-53  # no value in float64 is nearer to the truth by right than this share of it
 SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
 WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
 NAIVE = (
@@ -267,7 +267,7 @@ def ours(case: Case, at: Known) -> Shot:
                 continue
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
             within = within and off <= bound + TRUE * at.largest[quantity]
-            floor = max(off, UNIT * abs(float(exact)), TRUE * at.largest[quantity])
+            floor = max(off, ROUNDOFF * abs(float(exact)), TRUE * at.largest[quantity])
             widths.append(bound / floor if bound else 1.0)  # a part that is nothing for certain
             total += off * off
             widest = max(widest, bound / at.largest[quantity])

@@ -10,10 +10,9 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-import numpy as np
-
 from tmm_cli.bench.families import BY_NAME, Family, Numbers, Scene
 from tmm_cli.bench.methods.case import QUANTITIES, Compared
+from tmm_cli.bench.references import exact
 
 KEYS: dict[Compared, str] = {
     "positions": "position", "velocities": "velocity", "accelerations": "acceleration", "reactions": "reaction",
@@ -54,22 +53,15 @@ def seeds(family: str) -> tuple[Seed, ...]:
     )
 
 
-def value(content: Any) -> Any:
-    """A number or a vector of the file in longdouble."""
-    if isinstance(content, str):
-        return np.longdouble(content)
-    return np.longdouble(content[0]) + 1j * np.longdouble(content[1])
-
-
 def known(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Known]:
     """All scenes of a family, or of its first so many seeds; every second distance and so on, the last one always."""
     of = BY_NAME[family]
     for number, seed in enumerate(seeds(family)[:chosen]):
-        exact = [{quantity: value(scene[key]) for quantity, key in KEYS.items()} for scene in seed.scenes]
+        true = [{quantity: exact([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]
         for k, scene in enumerate(seed.scenes):
             if k % every and k != len(seed.scenes) - 1:
                 continue
-            of_all = [exact[k], exact[0]] if of.unit in ("rad", "share") else [exact[k]]
+            of_all = [true[k], true[0]] if of.unit in ("rad", "share") else [true[k]]
             largest = {quantity: max(float(abs(one[quantity])) for one in of_all) for quantity in QUANTITIES}
             distance = Decimal(scene["distance"])
-            yield Known(of, number, distance, of.scene(seed.numbers, distance), exact[k], largest)
+            yield Known(of, number, distance, of.scene(seed.numbers, distance), true[k], largest)

@@ -24,7 +24,7 @@ Position = Annotated[
     list[int] | None,
     typer.Option("--position", "-p", min=0, help="Compute this position only (may be repeated).", show_default=False),
 ]
-Digits = Annotated[
+WithDigits = Annotated[
     bool,
     typer.Option("--digits", help="Show beside each value its bound by rounding and its sensitivity to the data."),
 ]

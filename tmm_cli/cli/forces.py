@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, Settings, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each
 
 
 def forces(
@@ -10,11 +10,11 @@ def forces(
     as_json: Json = False,
     out: Out = None,
     position: Position = None,
-    digits: Digits = False,
+    digits: WithDigits = False,
     settings: Settings = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
-    names = ("cycle", "loads", "reactions", "balance", "lever", "energy", "friction")
+    names = ("cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
         from tmm_cli import solve

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Digits, Files, Json, Out, Position, Settings, each, say
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each, say
 from tmm_cli.errors import _
 
 Assemblies = Annotated[
@@ -27,7 +27,7 @@ def kinematics(
     position: Position = None,
     assemblies: Assemblies = False,
     of: Of = "",
-    digits: Digits = False,
+    digits: WithDigits = False,
     settings: Settings = None,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Digits, Files, Json, Position, Settings, each, say
+from tmm_cli.cli.common import Files, Json, Position, Settings, WithDigits, each, say
 from tmm_cli.errors import _
 
 SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
@@ -19,7 +19,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
     as_json: Json = False,
     position: Position = None,
-    digits: Digits = False,
+    digits: WithDigits = False,
     settings: Settings = None,
     drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
 ) -> None:

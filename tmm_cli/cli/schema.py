@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli.cli.common import emit_json
+
 
 def schema(
     result: Annotated[bool, typer.Option("--result", help="Of result.json instead of problem files.")] = False,
 ) -> None:
     """Print the JSON Schema of problem files, for editors."""
-    from tmm_cli.cli.common import emit_json
-
     if result:
         from tmm_cli.results.as_json import schema as result_schema
 

@@ -12,7 +12,7 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
-from tmm_cli.draw.scene import Scene, fixed_pivots, moving_points, to_scale
+from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
@@ -60,7 +60,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
     mark: of the position, after the names of moving points.
     """
     linkage = scene.linkage
-    moving = moving_points(linkage)
+    moving = linkage.moving_points
     drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
     for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
         at = sheet.on(scene.point(name))
@@ -99,7 +99,7 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     """A sheet with the paths of all moving points over the cycle."""
     whole = at_positions(results, results.closely(DENSE), 0)
-    paths = [whole.spot(name) for name in moving_points(results.linkage)]
+    paths = [whole.spot(name) for name in results.linkage.moving_points]
     used = [*fixed_pivots(results.linkage), *(p for path in paths for p in path)]
     sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
     for path in paths:
@@ -165,7 +165,7 @@ def position(here: Position) -> Iterable[tuple[str, Figure]]:
     loads = [
         (load, complex(motion.point(load.link, load.at).x[k])) for load in (reactions.applied if reactions else ())
     ]
-    places = [*fixed_pivots(linkage), *(scene.point(p) for p in moving_points(linkage))]
+    places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     sheet = here.sheet("{caption}", to_scale(scene, [*places, *(at for __, at in loads)]), pad=30)
     measured(sheet, scene)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.wheels import Shape, contact, shape
+from tmm_cli.draw.wheels import Outline, contact, outline
 from tmm_cli.draw.wheels import extent as wheels_extent
 from tmm_cli.groups.state import Pose
 from tmm_cli.linkage import FRAME, Linkage, Slide
@@ -77,10 +77,10 @@ class Scene:
             return self.place(link, self.linkage.local(link, pair.point))
         return contact(self.higher(pair))
 
-    def higher(self, pair: Pair) -> Shape:
+    def higher(self, pair: Pair) -> Outline:
         """The wheels, or the cam and its follower, of a higher pair."""
         assert pair.mesh is not None
-        return shape(self, pair.mesh)
+        return outline(self, pair.mesh)
 
     def of(self, link: str) -> tuple[Pair, ...]:
         """The lower pairs of a link."""
@@ -171,17 +171,11 @@ def apart(places: Iterable[complex]) -> list[complex]:
 def to_scale(scene: Scene, places: Sequence[complex]) -> list[complex]:
     """Places (m) with what else must be on a sheet that has them: wheels, cams, ends of springs on the frame."""
     size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
-    found = [*places, *wheels_extent((shape(scene, mesh) for mesh in scene.linkage.meshes), size)]
+    found = [*places, *wheels_extent((outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
         if not spring.turns:
             found += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
     return found
-
-
-def moving_points(linkage: Linkage) -> list[str]:
-    """Named points that move, once each."""
-    fixed = linkage.links[FRAME].points
-    return list(dict.fromkeys(p for n in linkage.moving for p in linkage.links[n].points if p not in fixed))
 
 
 def fixed_pivots(linkage: Linkage) -> list[complex]:

@@ -16,7 +16,7 @@ from tmm_cli.draw.construction import construction
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
-from tmm_cli.draw.scene import Scene, moving_points
+from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, chart, scale_text, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
@@ -111,7 +111,7 @@ def extremes(results: Results) -> Sheet:
             if pair.slide is not None and pair.name not in cylinders(linkage):
                 slider(sheet, other, pair, MEASURED, INERTIA)
     measured(sheet, scene, ENDS[0])
-    points = moving_points(linkage)
+    points = linkage.moving_points
     sheet.ground.rivals += [sheet.on(here.point(name)) for here in (scene, *others) for name in points]
     for other in others:
         for name in points:

@@ -73,10 +73,10 @@ class CamShape:
     true: bool = False
 
 
-Shape = Teeth | CamShape
+Outline = Teeth | CamShape
 
 
-def shape(scene: Scene, mesh: Mesh) -> Shape:
+def outline(scene: Scene, mesh: Mesh) -> Outline:
     """A higher pair at a pose."""
     if mesh.kind == "cam":
         return _flat_faced(scene, mesh) if mesh.slide else _with_roller(scene, mesh)
@@ -89,12 +89,12 @@ def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
     return scene.place(base, axis(scene.linkage, link, base))
 
 
-def contact(found: Shape) -> complex:
+def contact(found: Outline) -> complex:
     """Where the two links touch, m."""
     return found.pitch if isinstance(found, Teeth) else found.touch
 
 
-def extent(found: Iterable[Shape], size: float, links: Collection[str] | None = None) -> list[complex]:
+def extent(found: Iterable[Outline], size: float, links: Collection[str] | None = None) -> list[complex]:
     """Places that must be on the sheet, m: of all links or some; `size` is that of the rest of the mechanism (m)."""
     places: list[complex] = []
     for one in found:
@@ -179,7 +179,7 @@ def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
     return CamShape(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
 
 
-def draw(sheet: Sheet, found: Shape, hue: Mapping[str, str], span: tuple[float, float] | None = None) -> None:
+def draw(sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float, float] | None = None) -> None:
     """What belongs to links that have a colour (hue), and a cam of any.
 
     span: how far the rack goes on both sides of the pitch point (m).

@@ -48,6 +48,16 @@ class Reaction:
 
 
 @dataclass(frozen=True)
+class PinForce:
+    """What the pin of a compound hinge does to one of its links (N), however the hinge is counted as pairs."""
+
+    point: str
+    link: str
+    pairs: tuple[str, ...]
+    force: Vector
+
+
+@dataclass(frozen=True)
 class GroupForces:
     """The force plan of a group: its reactions; loads and the reactions of later groups that it bears are inputs."""
 
@@ -102,6 +112,18 @@ class Reactions:
     def of(self, name: str) -> Reaction:
         """The reaction in a pair, by the pair's name."""
         return next(r for r in self.all if r.pair.name == name)
+
+    def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
+        """The forces of the pins of compound hinges on each of their links; those of one pin come to nothing."""
+        found = []
+        for hinge in linkage.hinges:
+            for link in hinge.links if len(hinge.links) > 2 else ():
+                own = [
+                    r for r in self.all if r.pair.kind == "R" and r.pair.point == hinge.point and link in (r.on, r.by)
+                ]
+                force = reduce(np.add, [r.onto(link) for r in own])
+                found.append(PinForce(hinge.point, link, tuple(r.pair.name for r in own), force))
+        return tuple(found)
 
 
 def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:

@@ -121,6 +121,11 @@ class Kernel(ABC):
 
     near: ClassVar[float] = NEAR_DEAD  # a margin below this is said to be near a dead position
 
+    @property
+    def blurred(self) -> float:
+        """A margin below this calls for double-doubles."""
+        return self.near
+
     @abstractmethod
     def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
         """Places of its links at the driver's places q, or the nearest it comes to being assembled (see residual)."""

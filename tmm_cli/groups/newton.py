@@ -34,7 +34,16 @@ from tmm_cli.pairs import PAIRS
 from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.driven import Driven
 from tmm_cli.structure.assur import Group
-from tmm_cli.tolerances import CONVERGED, LAST_STEP, LAST_STEP_EXTENDED, NEAR_SINGULAR, ROUNDINGS, SINGULAR, TRUNCATED
+from tmm_cli.tolerances import (
+    BLURRED_PASSIVE,
+    CONVERGED,
+    LAST_STEP,
+    LAST_STEP_EXTENDED,
+    NEAR_SINGULAR,
+    ROUNDINGS,
+    SINGULAR,
+    TRUNCATED,
+)  # fmt: skip
 from tmm_cli.vectors import Real, Vector, cross, roundoff, unit
 
 ROUNDS = 12  # of Newton's method at most
@@ -51,6 +60,12 @@ class Newton(Kernel):
     order: Mapping[str, int] = field(default_factory=dict)
 
     near = NEAR_SINGULAR
+
+    @property
+    def blurred(self) -> float:
+        """With passive constraints more than near a dead position: there motion follows from equations that agree to
+        the last bit of float64 only, which angles lose by 1/margin and accelerations by its square."""
+        return BLURRED_PASSIVE if self.passive else self.near
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Newton:

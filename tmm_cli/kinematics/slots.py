@@ -16,9 +16,8 @@ from tmm_cli.groups.sequence import link_states, towards
 from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import Linkage, Slide
 from tmm_cli.roots import least, roots
+from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.vectors import Real
-
-AT_THE_END = 1e-9  # of the segment: a stone this little beyond its end is at it
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ class _Segment:
         k = int(np.argmax(far))
         low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
         place, short = least(lambda places: -self.at(places), low, high)
-        most = 0.0 if abs(short) <= AT_THE_END * self.length else -short
+        most = 0.0 if abs(short) <= END_OF_SLOT * self.length else -short
         ways = (self.ways(q, far, full) or ((place, place),)) if most > 0 else ()
         return Excess(self.slide, self.point, self.length, most, place, ways)
 

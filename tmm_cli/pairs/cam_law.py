@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.tolerances import NO_JUMP_OF_CAM
 from tmm_cli.vectors import Real, pi
 
-Shape = Callable[[Any], tuple[Any, Any, Any]]
+Rise = Callable[[Any], tuple[Any, Any, Any]]
 TAU = 2 * np.pi
 
 
@@ -62,7 +62,7 @@ def _polynomial7(x: Any) -> tuple[Any, Any, Any]:
     )
 
 
-SHAPES: dict[str, Shape] = {
+SHAPES: dict[str, Rise] = {
     "linear": _linear, "parabolic": _parabolic, "cosine": _cosine, "sine": _sine, "3-4-5": _polynomial5,
     "4-5-6-7": _polynomial7,
 }  # fmt: skip

@@ -7,11 +7,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from tmm_cli.tolerances import NO_VECTOR
+
 ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
-NOTHING = 1e-9  # of the plan's size: shorter vectors are points
 
 Kind = Literal[
     "absolute", "relative", "normal", "tangential", "coriolis", "sliding", "load", "inertia", "reaction", "inner"
@@ -47,7 +48,7 @@ class Plan:
 
     def drawn(self) -> tuple[NamedVector, ...]:
         """Vectors that are more than a point."""
-        least = NOTHING * self.size
+        least = NO_VECTOR * self.size
         return tuple(v for v in self.vectors if abs(v.value) > least)
 
 

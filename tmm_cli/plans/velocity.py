@@ -46,9 +46,8 @@ def other_than(taken: Collection[str], letter: str) -> str:
 
 def ends_of(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
     """The pole, and the ends of the vectors of all moving points, by their letters; value: of a point by its name."""
-    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
-    moving = (p for link in linkage.moving for p in linkage.links[link].points if p not in fixed)
-    return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in moving}
+    letter_of = letters(linkage)
+    return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in linkage.moving_points}
 
 
 def relative(linkage: Linkage, ends: Mapping[str, complex]) -> list[NamedVector]:

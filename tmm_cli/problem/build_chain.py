@@ -7,7 +7,6 @@ from tmm_cli.linkage import FRAME
 from tmm_cli.problem import schema_chain
 from tmm_cli.problem.build import validated
 from tmm_cli.problem.errors import ProblemError, placed_in
-from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import ChainProblem
 from tmm_cli.problem.schema_parts import MAX_LINKS
 from tmm_cli.problem.tree import Path, Tree
@@ -20,13 +19,8 @@ PART: Path = ("structure", "spatial")
 BARE = ValueReader({}, UnitSystem())
 
 
-def load_chain(path: str) -> ChainProblem:
-    """Read, check and build a file that gives a chain by pairs alone. Raises ProblemError, located in the file."""
-    return build_chain(read_file(path))
-
-
 def build_chain(tree: Tree) -> ChainProblem:
-    """A chain from a file that has been read."""
+    """A chain from a file that has been read. Raises ProblemError, located in the file."""
     shape = validated(schema_chain.SpatialFile, tree)
     name = tree.name
     spatial = shape.structure.spatial

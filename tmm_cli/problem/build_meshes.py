@@ -14,12 +14,10 @@ from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.tolerances import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH
 from tmm_cli.vectors import cross, unit
 
-MESHES = 1e-6  # of the distance of the axes: pitch circles that miss one another by less touch
-IN_PHASE = 5e-7  # rad: wheels that come round a ring to one place but for less fit, as offsets are rounded
 MANY_TEETH = 100_000
-WHOLE = 1e-9  # teeth: a number that arithmetic gave is whole but for rounding
 
 
 def build_meshes(shape: schema.File, members: Members, values: ValueReader) -> tuple[Mesh, ...]:
@@ -49,7 +47,7 @@ def _no_contradiction(gears: list[Mesh]) -> None:
             for wheel, (own, place) in other.items():
                 one[wheel] = own * wanted / found, place + own * (angle - there) / found
                 trains[gear.carrier, wheel] = one
-        elif abs(wanted - found) > MESHES * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
+        elif abs(wanted - found) > PITCHES_TOUCH * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
             raise ProblemError(
                 _("gear {name} contradicts those before it: the wheels lock one another").format(name=gear.name),
                 path=("gears", gear.name), allowed=_("ratios and offsets that agree round a ring, or one gear less"),
@@ -111,7 +109,7 @@ def _ratio(part: Part, given: schema.Gear, distance: float) -> float:
         raise part.refusal("", wanted, allowed=_("teeth: [20, 40]"))
     size = next(iter(found.values()))
     i, j = given.between
-    if any(abs(other - size) > MESHES * size for other in found.values()):
+    if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
         raise part.refusal(
             "", _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
             ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
@@ -123,7 +121,7 @@ def _ratio(part: Part, given: schema.Gear, distance: float) -> float:
         radii = [module * number / 2 for number in teeth]
     if radii is not None:
         wanted_distance = abs(radii[0] - radii[1]) if given.inner else radii[0] + radii[1]
-        if abs(wanted_distance - distance) > MESHES * max(wanted_distance, distance):
+        if abs(wanted_distance - distance) > PITCHES_TOUCH * max(wanted_distance, distance):
             apart, needed = (
                 f"{values.units.from_si(v, LENGTH):.6g} {values.units.symbol(LENGTH)}"
                 for v in (distance, wanted_distance)
@@ -140,7 +138,7 @@ def _teeth(values: ValueReader, value: object, path: Path) -> float:
     """A number of teeth, which is whole."""
     teeth = values.positive(value, NUMBER, path)
     whole = round(float(teeth))
-    if abs(float(teeth) - whole) > WHOLE:
+    if abs(float(teeth) - whole) > WHOLE_TEETH:
         raise ProblemError(_("a number of teeth is whole"), path=path, found=quote(value))
     return float(whole) if isinstance(teeth, float) else teeth
 

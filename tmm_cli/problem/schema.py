@@ -265,6 +265,8 @@ class File(Strict):
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
     synthesis: Any = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
+    variants: Any = Field(default=None, description="what is free in a task for a group: {OA: {from, to, step}}")
+    grading: Any = Field(default=None, description="what students are asked, and how it is marked: {answers: [...]}")
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)

@@ -17,11 +17,11 @@ from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
+from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
 MOST_ANGLE = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
-AXIS = 2.5e-16  # the cosine of the double next to a right angle is below this
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
 
@@ -204,4 +204,4 @@ def direction(angle: float) -> complex:
     if not isinstance(angle, float):
         return planar(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)
-    return complex(*(0.0 if abs(part) < AXIS else part for part in (turned.real, turned.imag)))
+    return complex(*(0.0 if abs(part) < NO_COSINE else part for part in (turned.real, turned.imag)))

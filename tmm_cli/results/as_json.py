@@ -22,7 +22,7 @@ from tmm_cli.results.shapes import (
     NUMBER,
     TEXT,
     Field,
-    Shape,
+    JsonType,
     contents,
     list_of,
     properties,
@@ -45,7 +45,7 @@ def _synthesis(results: Results) -> dict[str, Any]:
 FIRST = (
     Field("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
     Field("space", SPACE, "the planar linkage counted in space", lambda r: space(r.linkage, r.structure)),
-    Field("synthesis", Shape({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
+    Field("synthesis", JsonType({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
           lambda r: r.problem.synthesis is not None and r.motion is not None),
 )  # fmt: skip
 CHECK = record(
@@ -99,10 +99,11 @@ def schema() -> dict[str, Any]:
     digits = record(
         "", Field("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
         Field("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
-        Field("bound", Shape(computed),
+        Field("bound", JsonType(computed),
               "how far each number may be from the truth by rounding; null: it is not known at all"),
-        Field("lengths", Shape(computed), "its change when every length changes by 0.1 %, worst case to first order"),
-        Field("paper", Shape(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
+        Field("lengths", JsonType(computed),
+              "its change when every length changes by 0.1 %, worst case to first order"),
+        Field("paper", JsonType(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
     )  # fmt: skip
     parts = (
         Field("problem", PROBLEM, "what was computed"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import errno
 import json
 import os
@@ -154,8 +155,6 @@ def _runs(process: int) -> bool:
     if process == os.getpid():
         return False
     if sys.platform == "win32":  # where os.kill would end it
-        import ctypes
-
         return bool(ctypes.windll.kernel32.OpenProcess(QUERY, False, process))
     try:
         os.kill(process, 0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import add
 from typing import Any, NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
@@ -146,15 +144,11 @@ KINEMATICS = record(
 
 
 def _pins(results: Results) -> dict[str, dict[str, Vector]]:
-    """At a compound hinge, what the pin does to each link (however the hinge is counted as pairs)."""
+    """At a compound hinge, what the pin does to each link."""
     assert results.reactions is not None
-    found = {}
-    for hinge in results.linkage.hinges:
-        pairs = [r for r in results.reactions.all if r.pair.kind == "R" and r.pair.point == hinge.point]
-        if len(hinge.links) > 2:
-            found[hinge.point] = {
-                link: reduce(add, [r.onto(link) for r in pairs if link in (r.on, r.by)]) for link in hinge.links
-            }
+    found: dict[str, dict[str, Vector]] = {}
+    for pin in results.reactions.pins(results.linkage):
+        found.setdefault(pin.point, {})[pin.link] = pin.force
     return found
 
 

@@ -17,7 +17,7 @@ from tmm_cli.quantities import Quantity
 
 
 @dataclass(frozen=True)
-class Shape:
+class JsonType:
     """A JSON Schema, and what makes the content of what was found. note: how descriptions of such fields end."""
 
     schema: dict[str, Any]
@@ -25,26 +25,26 @@ class Shape:
     note: str = ""
 
 
-NUMBER = Shape({"type": ["number", "null"]})
-INTEGER = Shape({"type": "integer"})
-TEXT = Shape({"type": "string"})
-FLAG = Shape({"type": "boolean"})
-FLAGS = Shape({"type": "array", "items": FLAG.schema}, note=", one value a position")
-SERIES = Shape({"type": "array", "items": NUMBER.schema}, note=", one value a position")
+NUMBER = JsonType({"type": ["number", "null"]})
+INTEGER = JsonType({"type": "integer"})
+TEXT = JsonType({"type": "string"})
+FLAG = JsonType({"type": "boolean"})
+FLAGS = JsonType({"type": "array", "items": FLAG.schema}, note=", one value a position")
+SERIES = JsonType({"type": "array", "items": NUMBER.schema}, note=", one value a position")
 
 
-def list_of(item: Shape) -> Shape:
+def list_of(item: JsonType) -> JsonType:
     """A list of what is iterable."""
-    return Shape({"type": "array", "items": item.schema}, lambda found: [item.content(part) for part in found])
+    return JsonType({"type": "array", "items": item.schema}, lambda found: [item.content(part) for part in found])
 
 
-def map_of(value: Shape) -> Shape:
+def map_of(value: JsonType) -> JsonType:
     """An object with a value for each key of a mapping."""
     schema = {"type": "object", "additionalProperties": value.schema}
-    return Shape(schema, lambda found: {key: value.content(part) for key, part in found.items()})
+    return JsonType(schema, lambda found: {key: value.content(part) for key, part in found.items()})
 
 
-def optional(shape: Shape) -> Shape:
+def optional(shape: JsonType) -> JsonType:
     """Null where there is nothing."""
     schema = {**shape.schema, "type": [shape.schema["type"], "null"]}
     return replace(shape, schema=schema, content=lambda found: None if found is None else shape.content(found))
@@ -55,7 +55,7 @@ class Field:
     """A key of a record. there: whether a record has it, if not always, or what it then has that is not None."""
 
     key: str
-    shape: Shape
+    shape: JsonType
     text: str
     read: str | Callable[[Any], Any] = ""
     there: str | Callable[[Any], bool] = lambda found: True
@@ -85,13 +85,13 @@ def properties(fields: Iterable[Field]) -> dict[str, Any]:
 def inside(attribute: str, fields: Iterable[Field]) -> tuple[Field, ...]:
     """The fields of what is an attribute of a record, as fields of that record."""
     part = attrgetter(attribute)
-    return tuple(replace(f, shape=Shape(f.shape.schema, f.content, f.shape.note), read=part) for f in fields)
+    return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=part) for f in fields)
 
 
-def record(text: str, *fields: Field) -> Shape:
+def record(text: str, *fields: Field) -> JsonType:
     """An object with these keys. text: what it is, where it stands in a list or a map."""
     schema = {"description": text, "type": "object", "properties": properties(fields)}
-    return Shape(schema, lambda found: dict(contents(fields, found)))
+    return JsonType(schema, lambda found: dict(contents(fields, found)))
 
 
 NAMES = list_of(TEXT)

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import VALUE, Name, Strict, Value, checked_value
+from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Tree
 from tmm_cli.synthesis import TASKS, block
 
@@ -86,7 +87,5 @@ def checked(tree: Tree) -> Block:
         shape = block(given["task"]).Shape
         found: Block = shape.model_validate(given)
     except ValidationError as error:
-        from tmm_cli.problem.shape_errors import shape_error  # only a bad file needs its words
-
         raise shape_error(error, tree, shape, ("synthesis",)) from None
     return found

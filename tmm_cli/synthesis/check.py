@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import FRAME, Output
 from tmm_cli.synthesis.record import Demand, Outcome
+from tmm_cli.tolerances import MET, NO_DEMAND
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.pipeline import Results
-
-MET = 1e-9  # relative: what differs by more is not met
-ROUNDING = 1e-12  # relative: what is smaller is zero
 
 
 @dataclass(frozen=True)
@@ -80,4 +78,4 @@ def _about(link: str | None, results: Results) -> Results:
 
 def _settled(demand: Demand, value: float) -> float:
     """The same; zero where it is nothing but rounding beside what counts."""
-    return 0.0 if abs(value) <= ROUNDING * max(abs(demand.value), demand.at) else value
+    return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

@@ -18,11 +18,11 @@ import numpy as np
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.tolerances import SAME_RATIO
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.pipeline import Results
 
-SAME: Final = 1e-12  # of the sum of the links: sums that differ by less are equal (0.1 + 0.2 is not 0.3)
 TYPES: Final = (  # in the order frame, input, coupler, output: by the shortest link, the longest, the shortest again
     "GCCC", "GCRR", "GRCR", "GRRC", "RRR1", "RRR2", "RRR3", "RRR4", "SCCC", "SCRR", "SRCR", "SRRC", "S2X", "S3X",
 )  # fmt: skip
@@ -69,7 +69,7 @@ def turning(links: FourBar) -> Turning:
     """Type and turning links of four-bars."""
     lengths = np.stack(np.broadcast_arrays(*links.ordered), axis=-1)
     total = lengths.sum(-1)
-    same = SAME * total
+    same = SAME_RATIO * total
     order = np.argsort(lengths, axis=-1, kind="stable")
     ranked = np.take_along_axis(lengths, order, axis=-1)
     excess = (ranked[..., 2] - ranked[..., 3]) + (ranked[..., 1] - ranked[..., 0])

@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.kinematics.strokes import output_slope
+from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.kinematics.pressure import find_pressure
+from tmm_cli.kinematics.strokes import find_travel, output_slope
 from tmm_cli.linkage import FRAME
+from tmm_cli.tolerances import SURE_SIGN
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.pipeline import Results
 
 NONE = math.nan
-NOISE = 64 * np.finfo(float).eps  # of the largest speed: the sign of a larger one is sure
 
 Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
 
@@ -22,8 +25,6 @@ Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is
 def stroke(results: Results, ends: Ends = None) -> float:
     """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over a way of the driver."""
     if results.driver_range is not None and (ends or not results.driver_range.full):
-        from tmm_cli.kinematics.strokes import find_travel
-
         way, link = results.driver_range, results.mechanism.output
         found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
         return found.high - found.low if found else NONE
@@ -45,8 +46,6 @@ def slower_ratio(results: Results) -> float:
 
 def ratio_open(results: Results) -> float:
     """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
-    from tmm_cli.analysis.pipeline import at_positions
-
     strokes = results.strokes
     if strokes is None or not strokes.strokes:
         return 0.0
@@ -58,7 +57,7 @@ def ratio_open(results: Results) -> float:
     every = np.abs(output_slope(at_positions(results, np.append(places, around)), strokes.link))
     speed = every[:-64].reshape(places.shape)
     dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # which begin and end to the last digit
-    sure = np.all(speed > NOISE * np.nanmax(every), axis=1) | dwells
+    sure = np.all(speed > SURE_SIGN * np.nanmax(every), axis=1) | dwells
     doubtful = np.sum(np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1)  # so many steps, and all nearer ones
     blur = float(np.sum(away[np.minimum(doubtful, len(away) - 1)]))
     return blur * (1 / float(lengths[works].sum()) + 1 / float(lengths[~works].sum()))
@@ -69,9 +68,6 @@ def pressure(results: Results, ends: Ends = None) -> float:
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
     if ends and results.motion is not None:
-        from tmm_cli.kinematics.driver_range import DriverRange
-        from tmm_cli.kinematics.pressure import find_pressure
-
         way = DriverRange(*ends, False, inclusive=True)
         over = find_pressure(results.linkage, results.kernels, way, results.inputs.pressure_limits)
     found = [p.largest for p in over if p.link == link] or [p.largest for p in over]

@@ -98,6 +98,11 @@ class Outcome:
         return {value.name: value for value in self.found if value.name}
 
 
+def given(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[Value, ...]:
+    """The fields of a task that are not None, by their kinds and what they are called."""
+    return tuple(Value(name, value, *quantities[name]) for name, value in vars(task).items() if value is not None)
+
+
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 

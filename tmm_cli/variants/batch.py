@@ -17,6 +17,7 @@ import numpy as np
 from tmm_cli.analysis.selection import values
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
+from tmm_cli.forces.friction import solve_friction
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.base import Closed, Kernel
@@ -157,6 +158,4 @@ def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) 
     free = react(motion, structure, acting)
     if not motion.linkage.friction:
         return free
-    from tmm_cli.forces.friction import solve_friction
-
     return solve_friction(motion, structure, acting, free).reactions

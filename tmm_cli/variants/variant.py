@@ -12,9 +12,8 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import Linkage, Request, Sketch
+from tmm_cli.tolerances import SAME_SKETCH
 from tmm_cli.vectors import Real
-
-ALIKE = 1e-6  # of the farthest point: sketches that differ by no more are of one assembly
 
 
 class NoTapeError(ValueError):
@@ -111,4 +110,4 @@ def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:
 def alike(one: Sketch, other: Sketch) -> bool:
     """Whether both show the same assembly."""
     size = max((abs(place) for place in one.points.values()), default=1.0)
-    return all(abs(place - other.points[name]) <= ALIKE * size for name, place in one.points.items())
+    return all(abs(place - other.points[name]) <= SAME_SKETCH * size for name, place in one.points.items())

@@ -58,7 +58,7 @@ class Scales:
         """Those that the product's sheets would have."""
         count = range(len(motion.q))
         fixed = [case.linkage.local(FRAME, h.point) for h in case.linkage.hinges if FRAME in h.links]
-        moving = [motion.named(point).x for point in case.points]
+        moving = [motion.named(point).x for point in case.linkage.moving_points]
         x = [sheet_scale([*fixed, *(complex(at[k]) for at in moving)], pad=30.0)[1] for k in count]
         v = [_scale(velocity_plan(motion, k)) for k in count]
         a = [_scale(acceleration_plan(motion, k)) for k in count]

@@ -18,7 +18,7 @@ from tmm_cli.groups.sequence import DriverMotion, drives_at
 from tmm_cli.groups.state import Accel, Pose, Rate, Wrench
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import Strokes
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure, analyse
 from tmm_cli.vectors import Real, Vector, cross
 
@@ -59,13 +59,6 @@ class Case:
     def size(self) -> float:
         """The farthest two points of one link, m: what gaps of length are measured against."""
         return max(spread(self.linkage, link) for link in self.linkage.links) or 1.0
-
-    @cached_property
-    def points(self) -> tuple[str, ...]:
-        """Named points that move."""
-        fixed = self.linkage.links[FRAME].points
-        found = {p: None for link in self.linkage.moving for p in self.linkage.links[link].points if p not in fixed}
-        return tuple(found)
 
     def motion(
         self, q: Real, poses: Mapping[str, Pose], first: Mapping[str, Rate], second: Mapping[str, Accel]
@@ -134,7 +127,7 @@ class Method:
 
 def answers(case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None) -> Answers:
     """The answers that a motion holds, with forces found from it."""
-    points = {name: motion.named(name) for name in case.points}
+    points = {name: motion.named(name) for name in case.linkage.moving_points}
     return Answers(
         {name: point.x for name, point in points.items()},
         {name: point.v for name, point in points.items()},

@@ -17,6 +17,7 @@ from tmm_cli.bench.methods.case import Answers, Case, answers
 from tmm_cli.bench.methods.following import Nodes, close, follow
 from tmm_cli.bench.methods.rows import Rows, by_links
 from tmm_cli.groups.linear import solve
+from tmm_cli.groups.sequence import frame_state
 from tmm_cli.groups.state import Accel, Pose, Poses, Rate, Wrench
 from tmm_cli.linkage import FRAME
 from tmm_cli.pairs.sliding import Guided
@@ -101,8 +102,7 @@ class Loops:
 
     def poses(self, X: Real, q: Real) -> dict[str, Pose]:
         local = self.case.linkage.local
-        still = np.zeros(len(q))
-        found = {FRAME: Pose(still + 0j, still + 1 + 0j, still)}
+        found = {FRAME: frame_state(q)[0]}
         for branch, s in zip(self.tree, self.all(X, q), strict=True):
             before, pair, slide = found[branch.before], branch.pair, branch.pair.slide
             if slide is None:
@@ -166,8 +166,8 @@ class Loops:
 
     def states(self, poses: Poses, speeds: list[Real], bends: list[Real]) -> tuple[dict[str, Rate], dict[str, Accel]]:
         """Rates and accelerations of all links from those of the coordinates."""
-        still = np.zeros(len(poses[FRAME].x))
-        first, second = {FRAME: Rate(still + 0j, still)}, {FRAME: Accel(still + 0j, still)}
+        _, rest, still = frame_state(poses[FRAME].x)
+        first, second = {FRAME: rest}, {FRAME: still}
         for branch, s1, s2 in zip(self.tree, speeds, bends, strict=True):
             rate, accel, before = first[branch.before], second[branch.before], poses[branch.before]
             own, slide = poses[branch.own], branch.pair.slide

@@ -17,7 +17,7 @@ from tmm_cli.bench.methods.case import Answers, Case, answers
 from tmm_cli.bench.methods.following import close, follow
 from tmm_cli.bench.methods.rows import Rows, by_links
 from tmm_cli.groups.linear import solve
-from tmm_cli.groups.sequence import drives_at
+from tmm_cli.groups.sequence import drives_at, frame_state
 from tmm_cli.groups.state import Accel, Pose, Rate
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import Real, unit
@@ -42,8 +42,7 @@ class Body:
 
     def poses(self, X: Real) -> dict[str, Pose]:
         """Poses of all links, the frame's too."""
-        still = np.zeros(X.shape[0])
-        found = {FRAME: Pose(still + 0j, still + 1 + 0j, still)}
+        found = {FRAME: frame_state(X[:, 0])[0]}
         for name, k in self.first.items():
             found[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
         return found
@@ -68,8 +67,8 @@ def prepare(case: Case) -> Callable[[Real], Answers]:
         J, poses = body.matrix(X, q), body.poses(X)
         asked = np.zeros_like(X)
         asked[:, -1] = 1.0
-        still = np.zeros(len(q))
-        first, second = {FRAME: Rate(still + 0j, still)}, {FRAME: Accel(still + 0j, still)}
+        _, rest, still = frame_state(q)
+        first, second = {FRAME: rest}, {FRAME: still}
         V = solve(J, asked)
         for name, k in body.first.items():
             first[name] = Rate(V[:, k] + 1j * V[:, k + 1], V[:, k + 2])

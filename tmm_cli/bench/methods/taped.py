@@ -18,7 +18,7 @@ def batch(case: Case, *, forces: bool = True) -> Batch:
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
         found: dict[str, Any] = {}
-        for name in case.points:
+        for name in case.linkage.moving_points:
             point = motion.named_on(case.linkage.owner(name), name)
             found |= {f"positions.{name}": point.x, f"velocities.{name}": point.v, f"accelerations.{name}": point.a}
         if plan is not None:

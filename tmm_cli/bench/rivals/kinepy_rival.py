@@ -87,7 +87,7 @@ class _Model:
                 self.system.change_signs(signs)
             self.system.solve_kinematics(q[None, :].copy())
             found = self.positions()
-            if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.points):
+            if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.linkage.moving_points):
                 return
         raise Unable("it does not solve this linkage")
 
@@ -122,7 +122,7 @@ class _Model:
     def positions(self) -> dict[str, Vector]:
         """Places of the named points."""
         found = {}
-        for point in self.case.points:
+        for point in self.case.linkage.moving_points:
             link = self.case.linkage.owner(point)
             x, y = self.solids[link].get_point(_xy(self.case.linkage.local(link, point)))
             found[point] = x + 1j * y

@@ -17,7 +17,7 @@ from tmm_cli.vectors import Real, unit
 def prepare(case: Case) -> Callable[[Real], Answers]:
     """Its answers in the common form, for places q at equal steps. Raises Unable."""
     simulated, names = _simulated(case)
-    own = [(k, name) for k, name in enumerate(names) if name in case.points]
+    own = [(k, name) for k, name in enumerate(names) if name in case.linkage.moving_points]
 
     def at(q: Real) -> Answers:
         x, v, a = ({name: part[:, k, 0] + 1j * part[:, k, 1] for k, name in own} for part in simulated(q))
@@ -46,7 +46,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     if driver.kind != "turn" or case.linkage.others:
         raise Unable("a crank is the only driver")
     start = move(case.linkage, case.kernels, np.array([case.start]), case.law)
-    places = {point: complex(start.named(point).x[0]) for point in case.points}
+    places = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
     for point, place in case.linkage.links[FRAME].points.items():
         parts[point] = Ground(place.real, place.imag, name=point)
@@ -66,7 +66,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
         """Joints one step before the first place, and what else its solver is given."""
         before = move(case.linkage, case.kernels, np.array([first - step]), case.law)
-        for name in set(case.points) & set(parts):
+        for name in set(case.linkage.moving_points) & set(parts):
             at = complex(before.named(name).x[0])
             parts[name].x, parts[name].y = at.real, at.imag
         crank.angular_velocity = step

@@ -23,7 +23,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("pressure", "motion", ("pressure",)),
     ("cycle", "motion", ("cycle",)),
     ("kinematics", "motion", ("points", "link-motion", "slides")),
-    ("forces", "reactions", ("reactions", "loads", "balance")),
+    ("forces", "reactions", ("reactions", "pins", "loads", "balance")),
     ("lever", "lever", ("lever",)),
     ("energy", "energy", ("energy", "friction")),
     ("assemblies", "assemblies", ()),

@@ -19,7 +19,7 @@ def label(by: str, on: str) -> str:
 
 
 def tables(results: Results) -> Iterable[Table]:
-    """Reactions, loads, and the driving link."""
+    """Reactions, in compound hinges link by link too, loads, and the driving link."""
     reactions = results.reactions
     assert reactions is not None
     words = {
@@ -29,6 +29,18 @@ def tables(results: Results) -> Iterable[Table]:
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
     values = [columns(REACTION, reaction) for reaction in reactions.all]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
+    pins = reactions.pins(results.linkage)
+    if pins:
+        words = {
+            _("pin"): [pin.point for pin in pins],
+            _("link"): [pin.link for pin in pins],
+            _("pairs"): [", ".join(pin.pairs) for pin in pins],
+        }
+        title = _("Compound hinges: the force of the pin on each of its links")
+        note = _(
+            "From the pairs that it is counted as; each link acts on the pin oppositely, and all together not at all."
+        )
+        yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
         words = {_("link"): [x.link for x in loads], _("name"): [x.name for x in loads]}

@@ -14,6 +14,7 @@ from tmm_cli.problem.values import ValueReader, planar
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.synthesis.blocks import Block
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
+from tmm_cli.tolerances import SAME_POSITION
 
 
 def _position(found: Any) -> Any:
@@ -25,7 +26,6 @@ def _position(found: Any) -> Any:
 Position = Annotated[list[Value], BeforeValidator(_position)]
 Where = Literal["left", "right"]
 DYADS = ("AB", "DC")
-SAME = 1e-12  # half a whole turn more is the same angle
 
 
 class Shape(Block):
@@ -67,8 +67,8 @@ def read(shape: Shape, values: ValueReader) -> Task:
         )
         for k, pose in enumerate(shape.positions)
     ]
-    for k in range(count):
-        same = [m for m in range(k) if poses[m][0] == poses[k][0] and abs(sin((poses[m][1] - poses[k][1]) / 2)) < SAME]
+    for k, (place, angle) in enumerate(poses):
+        same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
         if same:
             raise ProblemError(
                 "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",

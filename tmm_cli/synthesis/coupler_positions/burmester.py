@@ -18,11 +18,10 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.synthesis.four_bar import extreme_inputs
-from tmm_cli.tolerances import DEAD_COSINE
+from tmm_cli.tolerances import DEAD_COSINE, NO_TURN
 
 EXACT: Final = np.longdouble
 COMPLEX: Final = np.clongdouble
-SAME_ANGLE: Final = 1e-9  # rad: the plane does not turn by less
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def unit(angle: Any) -> Any:
 
 def equal_angles(angles: Any) -> bool:
     """Whether the plane does not turn between positions of these angles (rad)."""
-    return bool(np.all(np.abs(unit(np.asarray(angles) - angles[0]) - 1) < SAME_ANGLE))
+    return bool(np.all(np.abs(unit(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
 
 
 def centre(places: Any) -> Any:

@@ -99,13 +99,11 @@ def curve(poses: Poses) -> Curve:
         rest = [k for k in range(4) if k != odd]
         if equal_angles(poses.angles[rest]):
             return _circle(poses, rest, odd)
-    d, a = poses.places[1:] - poses.places[0], unit(poses.angles[1:] - poses.angles[0]) - 1
-    d2, d3, d4 = a[1] * d[2] - a[2] * d[1], a[2] * d[0] - a[0] * d[2], a[0] * d[1] - a[1] * d[0]
-    total = d2 + d3 + d4
+    *__, d2, _, size3, size4, total = poses.loop
     over, about = 2 * np.abs(total * d2), np.abs(total) ** 2 + np.abs(d2) ** 2
     toward = np.angle(total * np.conj(d2))
     with np.errstate(all="ignore"):
-        high, low = ((about - (np.abs(d3) + sign * np.abs(d4)) ** 2) / over for sign in (-1, 1))
+        high, low = ((about - (size3 + sign * size4) ** 2) / over for sign in (-1, 1))
     if not over > 0 or (high >= 1 and low <= -1):
         rows = [(EXACT(0), EXACT(np.nan), branch) for branch in (0, 1)]
     elif high >= 1:

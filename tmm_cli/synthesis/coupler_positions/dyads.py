@@ -14,8 +14,8 @@ from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
 from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
 from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
 from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.tolerances import SAME_PLACES
 
-SAME: Final = 1e-9  # of the size: three places that are so near to a line have no circle
 FINE: Final = 1440  # turns among which the pivot nearest to a place is sought
 SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
 FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
@@ -33,7 +33,7 @@ NO_LINKS: Final = _("Burmester's curves have no links of sensible length (0.15 t
 def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
     """Dyads AB and DC, and what they are worth. Raises Infeasible."""
     one, other = both(task)
-    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME * task.size:
+    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_PLACES * task.size:
         raise Infeasible(_key_of(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
     mark = marks(task.poses, one, other)
     if mark.defect and not task.keep:
@@ -71,11 +71,11 @@ def dyad(task: Task, name: str) -> Dyads:
     point = name[1] if pin_given else name[0]
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
-    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME * task.size:
+    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_PLACES * task.size:
         raise Infeasible(point, POLE.format(point=point))
     if len(places) == 3:
         found = centre(places)
-        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME:
+        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_PLACES:
             reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
             raise Infeasible(point, reason.format(point=point))
     else:
@@ -132,7 +132,7 @@ def exists(task: Task, found: Dyads) -> Any:
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
         length = np.abs(task.poses.on_frame(found.pin)[..., 0] - found.pivot)
-        return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME * task.size)
+        return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_PLACES * task.size)
 
 
 def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
@@ -173,7 +173,7 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
             _("the coupler does not turn, and its places lie on a line: links would be infinitely long"),
             _("places on a circle, or a slider"),
         )
-    if np.max(np.abs(np.abs(arms) - radius)) > SAME * radius:
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME_PLACES * radius:
         raise Infeasible(
             ("positions", 3),
             _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
@@ -182,7 +182,7 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
         )  # fmt: skip
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():
-        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME:
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_PLACES:
             reason = _("the coupler does not turn: both links turn as its places do on their circle")
             raise Infeasible(f"{name}_turn", reason, "{turn}", {"turn": (turn, "angle", "exact")})
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)

@@ -19,7 +19,7 @@ from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider.drawing import construction
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
@@ -215,9 +215,6 @@ def solve(task: Task) -> Outcome:
     """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
     refuse(task)
     found = find(task)
-    given = tuple(
-        Value(name, value, *QUANTITIES[name]) for name, value in vars(task).items() if value is not None
-    )  # fmt: skip
     lengths = tuple(Value(name, getattr(found, name), *FOUND[name]) for name in PARAMETERS)
     rest = [name for name in ("stroke", "ratio", "nu", "k", "pressure") if getattr(task, name) is None]
     more = tuple(
@@ -232,7 +229,7 @@ def solve(task: Task) -> Outcome:
         wanted = float(getattr(found, name))
         demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
     return Outcome(
-        given, lengths + more,
+        given(task, QUANTITIES), lengths + more,
         _("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
           "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
         tuple(demands), (construction(found),), output="slide",

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.double_double import PI
+from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.roots import bisect
 
 EXACT: Final = np.longdouble
@@ -193,21 +193,29 @@ WAVES: Final = _slopes()
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
-    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals in extended precision."""
+    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals of 31 digits: near pairs take ten of them."""
     columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
-    values = np.asarray(values, dtype=EXACT)
+    values, phi, psi = (_wide(numbers) for numbers in (values, phi, psi))
     for _ in range(POLISHES):
         p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
         one, other = phi + phi0, psi + psi0
         rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
+        p, q, one, other = (numbers.astype(float) for numbers in (p, q, one, other))
         turn = np.sin(one - other)
         slopes = np.stack(
             [np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn], -1
         )[..., columns]
-        step = (inverse(slopes) * np.asarray(rest, dtype=float)[..., None, :]).sum(-1)
-        values = values.copy()
-        values[:, columns] -= np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
-    return values
+        step = (inverse(slopes) * rest.astype(float)[..., None, :]).sum(-1)
+        step = np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
+        values[:, columns] = values[:, columns] - step
+    return values.hi.astype(EXACT) + values.lo
+
+
+def _wide(numbers: Any) -> DoubleDouble:
+    """Numbers with all their digits as double-doubles."""
+    numbers = np.asarray(numbers, dtype=EXACT)
+    near = numbers.astype(float)
+    return DoubleDouble(near, (numbers - near).astype(float))
 
 
 def bars(values: Any, phi: Any, psi: Any) -> Bars:

@@ -8,9 +8,10 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.errors import _
-from tmm_cli.synthesis.four_bar import CHANGE, SAME, TYPES, FourBar, turning
+from tmm_cli.synthesis.four_bar import CHANGE, TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.tolerances import SAME_RATIO
 
 PARAMETERS: Final[dict[str, str]] = {}
 LINKS: Final = {
@@ -79,7 +80,7 @@ Task = FourBar | CrankSlider | SlottedLever
 def crank_slider(task: CrankSlider) -> Condition:
     """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
     r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
-    same = SAME * (r + rod + e)
+    same = SAME_RATIO * (r + rod + e)
     margin = rod - (r + e)
     other = r - (rod + e)
     kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
@@ -89,7 +90,7 @@ def crank_slider(task: CrankSlider) -> Condition:
 def slotted_lever(task: SlottedLever) -> Condition:
     """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
     crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
-    same = SAME * (crank + frame + e)
+    same = SAME_RATIO * (crank + frame + e)
     margin = np.abs(frame - crank) - e
     kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
     return Condition(np.where(np.abs(margin) <= same, 3, kind), margin)

@@ -17,9 +17,10 @@ import numpy as np
 from tmm_cli.errors import _
 from tmm_cli.synthesis.mean_ratio import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.synthesis.shaper.drawing import construction
-from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN, STRAIGHT
+from tmm_cli.synthesis.slotted_lever.solver import HALF_A_TURN, QUICK_RETURN
+from tmm_cli.tolerances import DEAD_SWING
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -81,7 +82,7 @@ def refuse(task: Task) -> None:
     if not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     half = float(theta_of(task.k)) / 2
-    if not np.pi - 2 * half > STRAIGHT:
+    if not np.pi - 2 * half > DEAD_SWING:
         raise Infeasible("k", HALF_A_TURN)
     f = find(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
@@ -100,9 +101,6 @@ def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
     f = find(task)
-    given = tuple(
-        Value(name, value, *QUANTITIES[name]) for name, value in vars(task).items() if value is not None
-    )  # fmt: skip
     kind, text = QUANTITIES["pressure"]
     found = (
         Value("OA", f.crank, "length", _("crank OA")),
@@ -122,4 +120,4 @@ def solve(task: Task) -> Outcome:
     )
     source = _("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
                "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
-    return Outcome(given, found, source, demands, (construction(f),), output="slide")
+    return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")

@@ -19,10 +19,10 @@ from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
 from tmm_cli.synthesis.slotted_lever.drawing import construction, family
+from tmm_cli.tolerances import DEAD_SWING
 from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
-STRAIGHT: Final = 1e-6  # rad: a lever that swings by so little less than half a turn is dead at both ends
 QUICK_RETURN: Final = _(
     "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
 )
@@ -105,7 +105,7 @@ def refuse(task: Task) -> None:
         raise Infeasible("k", QUICK_RETURN)
     if task.swing is not None and not task.swing > 0:
         raise Infeasible("swing", _("a lever that does not swing has no strokes"))
-    if not np.pi - task.theta > STRAIGHT:
+    if not np.pi - task.theta > DEAD_SWING:
         raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
     if task.length is None and abs(task.b2 - task.b1) == 0:
         raise Infeasible("B2", _("B1 and B2 are the same place"), _("any place other than B1"))

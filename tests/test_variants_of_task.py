@@ -1,0 +1,57 @@
+"""Variants of a task solved together are what each is as a file of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_commands import SHAPER
+
+from tmm_cli import solve
+from tmm_cli.grading.grade import grade, numbers_of
+from tmm_cli.grading.record import Given, Submission, VariantTable
+from tmm_cli.grading.solution import solve as solved
+from tmm_cli.grading.task import read_task
+from tmm_cli.problem.reader import read_text
+from tmm_cli.variants.family import families
+
+ASKED = """
+variants: {OA: {from: 100, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}
+grading:
+  answers: [{of: H}, {of: k}, {of: class}, {of: v of E, at: [3, 7]}, {of: a of E, at: 3}, {of: R_34, at: 7},
+            {of: M_b, at: [3, 7]}]
+"""
+TABLE = VariantTable(("OA", "n1"), {"1": ("110", "82 rpm"), "2": ("105", "70 rpm"), "3": ("0.12 m", "90 rpm")})
+
+
+def task():
+    return read_task(read_text(SHAPER.read_text(encoding="utf-8") + ASKED, "task.yaml"))
+
+
+def family_of(own, table=TABLE):
+    dimensions, columns = numbers_of(own, table, list(table.rows))
+    return next(families(lambda numbers: own.make(table.names, dimensions, numbers), columns))[1]
+
+
+def test_a_family_is_what_its_variants_are_one_by_one():
+    own = task()
+    together = solved(family_of(own))
+    for n, row in enumerate(TABLE.rows.values()):
+        single = solve(own.variant(dict(zip(TABLE.names, row, strict=True))))
+        assert together.motion.q[n] == pytest.approx(single.motion.q, abs=1e-14)
+        assert together.reactions.balance.moment[n] == pytest.approx(single.reactions.balance.moment, rel=1e-13)
+        first = together.family.strokes.strokes[0]
+        assert abs(first.run[n, 0]) == pytest.approx(single.strokes.travel, rel=1e-14)
+
+
+def test_bare_numbers_of_a_table_are_in_the_units_of_the_file():
+    _, columns = numbers_of(task(), TABLE, ["1", "3"])
+    assert columns == pytest.approx(np.array([[0.11, 82 * np.pi / 30], [0.12, 90 * np.pi / 30]]))
+
+
+def test_answers_are_judged_against_the_largest_value_of_the_cycle():
+    given = {("H", None): Given(414), ("v of E", 3): Given(1.31), ("M_b", 3): Given(200, unit="N*m")}
+    marks, none = grade(task(), TABLE, [Submission("1", given), Submission("nobody")])
+    states = {mark.key: mark.state for mark in marks.marks}
+    assert [states[key] for key in given] == ["right", "right", "wrong"]
+    assert {mark.reading for mark in marks.marks if mark.key == ("H", None)} == {"mm"}
+    assert marks.points == 2 and none.problems == ("there is no variant of this student",)

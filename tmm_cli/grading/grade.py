@@ -1,0 +1,110 @@
+"""The way of grading: variants solved together, every answer judged, what is wrong explained."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.grading.readings import readings
+from tmm_cli.grading.record import Mark, StudentMarks, Submission, VariantTable
+from tmm_cli.grading.sheet import Right, Written, right
+from tmm_cli.grading.task import Task
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.quantities import Dimension
+from tmm_cli.variants.family import Family, families
+from tmm_cli.vectors import Real
+
+CHUNK = 500  # students at once: all their numbers stay near the processor
+
+
+def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
+    """Marks of every student, in the order of the submissions. Raises ProblemError."""
+    for first in range(0, len(submissions), CHUNK):
+        yield from _chunk(task, table, submissions[first : first + CHUNK])
+
+
+def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
+    found: dict[int, StudentMarks] = {}
+    known = [n for n, s in enumerate(submissions) if s.student in table.rows]
+    dimensions, columns = numbers_of(task, table, [submissions[n].student for n in known])
+    for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+        own = [known[row] for row in rows]
+        if isinstance(family, LinkageError):
+            found |= {n: _none(task, submissions[n], str(family)) for n in own}
+        else:
+            found |= dict(zip(own, _marks(task, family, [submissions[n] for n in own]), strict=True))
+    for n, submission in enumerate(submissions):
+        yield found.get(n) or _none(task, submission, _("there is no variant of this student"))
+
+
+def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
+    """Dimensions of the parameters, and their numbers (students, parameters): in SI, bare where no value has a unit.
+
+    Raises ProblemError.
+    """
+    found = [[task.value(text) for text in table.rows[student]] for student in students]
+    said = [next((v.dimension for v in column if v.dimension), None) for column in zip(*found, strict=True)]
+    own = task.dimensions(table.names)
+    dimensions = tuple(first or then for first, then in zip(said or own, own, strict=True))
+    columns = np.array([
+        [task.units.si(v.value, d) if d and not v.dimension else v.value for v, d in zip(row, dimensions, strict=True)]
+        for row in found
+    ]).reshape(len(students), len(table.names))  # fmt: skip
+    return dimensions, columns
+
+
+def _none(task: Task, submission: Submission, why: str) -> StudentMarks:
+    marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
+    return StudentMarks(submission.student, marks, (*submission.problems, why))
+
+
+def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
+    """Of the students of one family."""
+    wanted = right(family, task.asked)
+    written, how, refused = read(task, wanted, submissions)
+    error = wanted.error(written)
+    holds = error <= wanted.allowed
+    found = []
+    for n, submission in enumerate(submissions):
+        marks = []
+        for k, asked in enumerate(task.asked):
+            there, given = bool(written.there[n, k]), submission.answers.get(asked.key)
+            told = (refused[n, k],) if (n, k) in refused else ()
+            marks.append(Mark(
+                asked.key, "right" if holds[n, k] else "wrong" if there or told else "missing",
+                asked.points if holds[n, k] else 0.0, asked.points, complex(written.value[n, k]) if there else None,
+                complex(wanted.value[n, k]), float(error[n, k]) if there else 0.0, float(wanted.allowed[n, k]),
+                how.get((n, k), ""), told, text=given.text if given else "",
+            ))  # fmt: skip
+        found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
+    return found
+
+
+def read(
+    task: Task, wanted: Right, submissions: Sequence[Submission]
+) -> tuple[Written, dict[tuple[int, int], str], dict[tuple[int, int], str]]:
+    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
+    shape = len(submissions), len(task.asked)
+    value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
+    how: dict[tuple[int, int], str] = {}
+    refused: dict[tuple[int, int], str] = {}
+    for n, submission in enumerate(submissions):
+        for k, asked in enumerate(task.asked):
+            given = submission.answers.get(asked.key)
+            if given is None:
+                continue
+            try:
+                meant = readings(given, asked.quantity, task.units)
+            except ProblemError as error:
+                refused[n, k] = str(error)
+                continue
+            size[n, k] = asked.quantity.vector and given.form in ("number", "size")
+            unit = next(iter(meant))
+            if len(meant) > 1:
+                one = wanted.cell(n, k)
+                unit = min(meant, key=lambda name: one(meant[name], bool(size[n, k])))
+                how[n, k] = unit
+            value[n, k] = meant[unit]
+    return Written(value, size), how, refused

@@ -1,0 +1,62 @@
+"""A typical mistake: what would have come out with it, by the same stages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Self
+
+if TYPE_CHECKING:
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.grading.quantities.base import Quantity
+    from tmm_cli.grading.solution import Solution
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.kinematics.motion import Motion
+    from tmm_cli.variants.family import Family
+    from tmm_cli.vectors import Real
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One case of a mistake, e.g. that the normal part of link 3 was left out. It changes one of these, or several.
+
+    name: in tables and statistics; sentence: for the student, whole. Both may have fields of the mistake.
+    """
+
+    name: ClassVar[str]
+    sentence: ClassVar[str]
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        """All of its cases that this task has."""
+        yield cls()
+
+    @property
+    def told(self) -> str:
+        """The sentence with the fields of this case."""
+        return self.sentence.format(**vars(self))
+
+    @property
+    def called(self) -> str:
+        """The name with the fields of this case."""
+        return self.name.format(**vars(self))
+
+    def family(self, family: Family) -> Family:
+        """The variants as the student took them."""
+        return family
+
+    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
+        """The groups as the student solved them."""
+        return kernels
+
+    def motion(self, motion: Motion) -> Motion:
+        """The motion as the student found it."""
+        return motion
+
+    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+        """What the student let act on the links."""
+        return loads
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        """What the student wrote down of the values (variants, positions) that the stages gave."""
+        return values

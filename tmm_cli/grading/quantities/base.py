@@ -1,0 +1,45 @@
+"""What students may be asked: a quantity by the name that the tables give it, and how it is read from a solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from tmm_cli.quantities import Dimension
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.solution import Solution
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.structure.assur import Structure
+
+Stage = Literal["structure", "places", "velocities", "accelerations", "forces", "balance"]
+STAGES: tuple[Stage, ...] = ("structure", "places", "velocities", "accelerations", "forces", "balance")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of this linkage, by name.
+
+    read: its values in SI, (variants, positions), complex where it is a vector; (variants, 1) where it belongs to the
+    mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size in the cycle, its range
+    there (of a place), a full turn (of an angle, which is taken modulo 360 degrees), or nothing (it is exact, as a
+    class is). thing: the link, point or pair that it is of.
+    """
+
+    name: str
+    stage: Stage
+    dimension: Dimension
+    read: Callable[[Solution], Any]
+    vector: bool = False
+    whole: bool = False
+    against: Literal["largest", "range", "turn", "exact"] = "largest"
+    thing: str = ""
+
+    @property
+    def order(self) -> int:
+        """In which order the work is done."""
+        return STAGES.index(self.stage)
+
+
+Maker = Callable[["Linkage", "Structure"], "dict[str, Quantity]"]  # all quantities of a kind, by name

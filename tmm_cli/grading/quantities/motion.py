@@ -1,0 +1,84 @@
+"""Places, velocities and accelerations of points, links and sliding pairs."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_cli.analysis.selection import mass_centres, named_points
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.linkage import Linkage
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    LENGTH,
+    SPEED,
+    place_dimension,
+)
+from tmm_cli.structure.assur import Structure
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.solution import Solution
+
+
+def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+    """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in sliding pairs."""
+    found: dict[str, Quantity] = {}
+
+    def put(quantity: Quantity) -> None:
+        found[quantity.name] = quantity
+
+    for point, place in {**named_points(linkage), **mass_centres(linkage)}.items():
+        put(Quantity(f"x of {point}", "places", LENGTH, partial(_coordinate, point, place, "real"), against="range",
+                     thing=point))  # fmt: skip
+        put(Quantity(f"y of {point}", "places", LENGTH, partial(_coordinate, point, place, "imag"), against="range",
+                     thing=point))  # fmt: skip
+        put(Quantity(f"v of {point}", "velocities", SPEED, partial(_point, point, place, "v"), True, thing=point))
+        put(Quantity(f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True,
+                     thing=point))  # fmt: skip
+    for link in linkage.moving:
+        put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="turn", thing=link))
+        put(Quantity(f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_link, link, "omega"), thing=link))
+        put(Quantity(f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"),
+                     thing=link))  # fmt: skip
+        if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link):
+            slides = linkage.slides_on_frame(link)
+            put(Quantity(f"s of {link}", "places", place_dimension("slide" if slides else "turn"),
+                         partial(_run, link), against="range" if slides else "turn", thing=link))  # fmt: skip
+    for slide in linkage.slides:
+        name = f"{slide.runner} on {slide.carrier}"
+        put(Quantity(f"v of {name}", "velocities", SPEED, partial(_slide, slide.name, "v"), thing=slide.runner))
+        put(Quantity(f"a of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "a"),
+                     thing=slide.runner))  # fmt: skip
+        put(Quantity(f"Coriolis of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "coriolis"),
+                     True, thing=slide.runner))  # fmt: skip
+    return found
+
+
+def _point(point: str, place: tuple[str, complex], part: str, solution: Solution) -> Any:
+    link = place[0]
+    motion = solution.motion
+    if point in motion.linkage.links[link].points:
+        return getattr(motion.named(point), part)
+    return getattr(motion.centre(link), part)
+
+
+def _coordinate(point: str, place: tuple[str, complex], part: str, solution: Solution) -> Any:
+    return getattr(_point(point, place, "x", solution), part)
+
+
+def _link(link: str, part: str, solution: Solution) -> Any:
+    return getattr(solution.motion.link(link), part)
+
+
+def _run(link: str, solution: Solution) -> Any:
+    return output_run(solution.motion, link)[0]
+
+
+def _slide(name: str, part: str, solution: Solution) -> Any:
+    return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), part))

@@ -1,0 +1,126 @@
+"""What all students of a family wrote, and what they would have written, as arrays (students, answers asked)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution, solve
+from tmm_cli.grading.task import Asked
+from tmm_cli.variants.family import Family
+from tmm_cli.variants.stack import changed, numbers
+from tmm_cli.vectors import Real, Vector
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.mistakes.base import Mistake
+
+DRAWN, COMPUTED = 0.005, 0.0005  # how exactly lengths are taken off a drawing (0.5 mm of 100 mm), and computed with
+STEP = 1e-6  # by which lengths are changed to see what hangs on them
+SAME = 1e-6  # of a number that is exact, as a class is
+
+
+@dataclass(frozen=True)
+class Written:
+    """Answers in SI: nan where there is none; size: of a vector that is told by its size alone."""
+
+    value: Vector
+    size: Real
+
+    @property
+    def there(self) -> Real:
+        return ~np.isnan(self.value)
+
+    def take(self, rows: Real) -> Written:
+        """Those of some students, or of some again and again."""
+        return Written(self.value[rows], self.size[rows])
+
+
+@dataclass(frozen=True)
+class Right:
+    """What is right: value; scale, what errors are shares of; allowed, how large such a share may be."""
+
+    asked: tuple[Asked, ...]
+    value: Vector
+    scale: Real
+    allowed: Real
+
+    def error(self, written: Written, value: Vector | None = None) -> Real:
+        """How far answers are from a value, the right one when left out, as shares of the scale; nan without answer."""
+        wanted = self.value if value is None else value
+        gap = np.abs(written.value - wanted)
+        sizes = np.abs(np.abs(written.value) - np.abs(wanted))
+        gap = np.where(written.size, sizes, gap)
+        turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "turn"]
+        gap[:, turns] = np.abs(np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share: Real = gap / self.scale
+        return share
+
+    def cell(self, n: int, k: int) -> Callable[[complex, bool], float]:
+        """The error of one answer, of a value; the second argument: by its size alone."""
+        one = Right((self.asked[k],), *(part[n : n + 1, k : k + 1] for part in (self.value, self.scale, self.allowed)))
+        return lambda value, size: float(one.error(Written(np.array([[value]]), np.array([[size]])))[0, 0])
+
+    def take(self, rows: Real) -> Right:
+        """That of some students, or of some again and again."""
+        return Right(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
+
+
+def predicted(family: Family, asked: Sequence[Asked], mistakes: Sequence[Mistake] = ()) -> Vector:
+    """What would have been written down with these mistakes in, (students, asked)."""
+    solution = solve(family, mistakes)
+    return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
+
+
+def _value(asked: Asked, solution: Solution, mistakes: Sequence[Mistake]) -> Vector:
+    values = values_of(asked.quantity, solution)
+    for mistake in mistakes:
+        values = mistake.value(asked.quantity, values, solution)
+    return values[:, asked.position or 0].astype(complex)
+
+
+def values_of(quantity: Quantity, solution: Solution) -> Real:
+    """A quantity of all variants at all positions; (variants, 1) of the mechanism as a whole."""
+    found = np.asarray(quantity.read(solution))
+    return np.broadcast_to(found, (len(solution.family), found.shape[-1]))
+
+
+def right(family: Family, asked: Sequence[Asked]) -> Right:
+    """What is right for all variants of a family."""
+    solution = solve(family)
+    value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
+    scale = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
+    change = np.array([np.abs(predicted(other, asked) - value) for other in _nearby(family)]) / STEP
+    with np.errstate(divide="ignore", invalid="ignore"):
+        response = np.sqrt(np.sum(change**2, axis=0)) / scale
+    exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
+    allowed = np.hypot([one.tolerance for one in asked], exactly * np.nan_to_num(response))
+    exact = [one.quantity.against == "exact" for one in asked]
+    return Right(tuple(asked), value, scale, np.where(exact, SAME, allowed))
+
+
+def _scale(quantity: Quantity, solution: Solution) -> Real:
+    """What errors of a quantity are shares of, (variants,)."""
+    values = values_of(quantity, solution)
+    if quantity.against in ("turn", "exact"):
+        return np.full(len(values), 2 * np.pi if quantity.against == "turn" else 1.0)
+    if quantity.against == "range":
+        return np.asarray(np.nanmax(values, axis=1) - np.nanmin(values, axis=1))
+    return np.asarray(np.nanmax(np.abs(values), axis=1))
+
+
+def _nearby(family: Family) -> list[Family]:
+    """The family with the lengths of one link after the other a little longer, and with the driver a little on."""
+    found = []
+    for link in family.linkage.links:
+        lengths = {
+            path: value * (1 + STEP) for path, value in numbers(family.linkage)
+            if path.startswith(f"links.{link}.points.") and np.any(value != 0)
+        }  # fmt: skip
+        if lengths:
+            found.append(family.changed(changed(family.linkage, lengths)))
+    return [*found, family.changed(family.linkage, family.q + STEP)]

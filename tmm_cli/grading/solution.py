@@ -1,0 +1,52 @@
+"""A family of variants solved at its positions, as it is or with a mistake in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import Reactions, react
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.variants.family import Family
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.mistakes.base import Mistake
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Motion and forces of all variants at all positions, (variants, positions)."""
+
+    family: Family
+    motion: Motion
+    reactions: Reactions
+
+
+def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
+    """All stages; each mistake changes what it is a mistake in, the first one first."""
+    for mistake in mistakes:
+        family = mistake.family(family)
+    lead = family.linkage.driver
+    at: Any = family.linkage.sketch.at if family.linkage.others else family.q[:, :1]
+    law = DriverMotion(at, lead.rate, lead.acceleration, lead.sense)
+    kernels = family.kernels
+    for mistake in mistakes:
+        kernels = mistake.kernels(kernels, family)
+    motion = move(family.linkage, kernels, family.q, law)
+    for mistake in mistakes:
+        motion = mistake.motion(motion)
+    with np.errstate(all="ignore"):
+        loads = applied(motion, family.strokes)
+        for mistake in mistakes:
+            loads = mistake.loads(loads, motion, family)
+        reactions = react(motion, family.structure, loads)
+        if family.linkage.friction:
+            from tmm_cli.forces.friction import solve_friction  # few tasks have any
+
+            reactions = solve_friction(motion, family.structure, loads, reactions).reactions
+    return Solution(family, motion, reactions)

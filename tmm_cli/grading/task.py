@@ -1,0 +1,190 @@
+"""A task: a problem file some of whose parameters every student has other values of, and what is asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from tmm_cli import problem_of
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import _
+from tmm_cli.grading.block import AnswerRule, Blocks, Grading
+from tmm_cli.grading.quantities import quantities
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.problem.build import build_shape, checked_shape, parameters, validated
+from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote
+from tmm_cli.problem.expressions import evaluate_quantity
+from tmm_cli.problem.extended import VariedUnits
+from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.settings import with_settings
+from tmm_cli.problem.tree import Path, Tree
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import NUMBER, Dimension
+from tmm_cli.tape import DependsOnData
+from tmm_cli.tape.traced_number import TracedNumber
+from tmm_cli.variants.variant import Variant
+
+SI = UnitSystem({"length": "m", "angle": "rad", "inertia": "kg*m^2"})
+KINEMATICS, FORCES, COMPUTED = 0.03, 0.05, 0.005  # shares of the largest value: drawn, drawn, computed
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One answer that is asked: a quantity, at a position (from 0, as the product counts; None: of the whole).
+
+    number: the position as the students count it. tolerance: share of the largest value in the cycle. drawn: measured
+    off a drawing.
+    """
+
+    quantity: Quantity
+    position: int | None
+    number: int | None
+    points: float
+    tolerance: float
+    drawn: bool
+
+    @property
+    def key(self) -> tuple[str, int | None]:
+        return self.quantity.name, self.number
+
+    @property
+    def name(self) -> str:
+        """In tables: `v of E at 7`."""
+        name = self.quantity.name
+        return (
+            name if self.number is None else _("{quantity} at {position}").format(quantity=name, position=self.number)
+        )
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task's file. Every method raises ProblemError."""
+
+    tree: Tree
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """Its blocks `variants` and `grading`."""
+        own: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
+        return validated(Blocks, replace(self.tree, data=own))
+
+    @property
+    def rules(self) -> Grading:
+        """Its block `grading`."""
+        if self.blocks.grading is None:
+            raise ProblemError(
+                _("there is nothing to grade"), path=("grading",), allowed="grading: {answers: [{of: H}]}"
+            ).located(self.tree.file, self.tree)
+        return self.blocks.grading
+
+    @cached_property
+    def problem(self) -> Problem | TaskProblem:
+        """The file's own variant."""
+        return problem_of(self.tree)
+
+    @cached_property
+    def units(self) -> UnitSystem:
+        return self.problem.units
+
+    @cached_property
+    def quantities(self) -> dict[str, Quantity]:
+        """All that could be asked, by name."""
+        linkage = self.problem.whole.linkage
+        return quantities(linkage, mobile(linkage))
+
+    @cached_property
+    def asked(self) -> tuple[Asked, ...]:
+        """What is asked, in the order of the file."""
+        whole, rules = self.problem.whole, self.rules
+        values = ValueReader(self._parameters({}), self.units)
+        last = len(whole.request.places) or whole.request.count
+        with placed_in(self.tree):
+            return tuple(
+                asked for n, rule in enumerate(rules.answers)
+                for asked in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
+            )  # fmt: skip
+
+    def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Asked]:
+        quantity = self.quantities.get(rule.of)
+        if quantity is None:
+            raise ProblemError(
+                _("there is no such quantity"), path=(*path, "of"), found=quote(rule.of),
+                allowed=", ".join(self.quantities), near=nearest(rule.of, self.quantities),
+            )  # fmt: skip
+        drawn = rules.drawn if rule.drawn is None else rule.drawn
+        drawn = drawn and quantity.against != "exact"
+        usual = FORCES if quantity.order >= 4 else KINEMATICS
+        tolerance = (usual if drawn else COMPUTED) if rule.tolerance is None else values.positive(
+            rule.tolerance, NUMBER, (*path, "tolerance")
+        )  # fmt: skip
+        points = float(values.positive(rule.points, NUMBER, (*path, "points"), zero=True))
+        if quantity.whole == bool(rule.at):
+            why = _("{quantity} has no position") if quantity.whole else _("{quantity} is asked at a position")
+            raise ProblemError(
+                why.format(quantity=rule.of), path=(*path, "at"), found=quote(rule.at) if rule.at else None,
+                allowed=None if quantity.whole else f"at: {rules.count + 3}",
+            )  # fmt: skip
+        for k, number in enumerate(rule.at):
+            if not rules.count <= number < last + rules.count:
+                raise ProblemError(
+                    _("there is no such position"), path=(*path, "at", k), found=str(number),
+                    allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
+                )  # fmt: skip
+        if quantity.whole:
+            return [Asked(quantity, None, None, points, tolerance, drawn)]
+        return [Asked(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]
+
+    def _parameters(
+        self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
+    ) -> dict[str, PhysicalValue]:
+        raw = self._shape.parameters
+        rest = {name: value for name, value in raw.items() if name not in given}
+        return {**given, **parameters(rest, units or self.units, given)}
+
+    @cached_property
+    def _shape(self) -> Any:
+        return checked_shape(self.tree)
+
+    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
+        """What the file's own values of parameters measure; None for bare numbers."""
+        found = self._parameters({})
+        for name in names:
+            if name not in found:
+                raise ProblemError(
+                    _("there is no parameter of that name"), found=quote(name),
+                    allowed=", ".join(found) or _("none: the file has no parameters"), near=nearest(name, found),
+                )  # fmt: skip
+        return tuple(found[name].dimension for name in names)
+
+    def value(self, text: str) -> PhysicalValue:
+        """A value of a table of variants."""
+        return evaluate_quantity(text, {}, self.units)
+
+    def make(self, names: Sequence[str], dimensions: Sequence[Dimension | None], numbers: Sequence[Any]) -> Variant:
+        """The linkage for numbers of parameters (SI, or bare), which may be TracedNumbers."""
+        traced = any(isinstance(x, TracedNumber) for x in numbers)
+        if "synthesis" in self.tree.data:
+            if traced:
+                raise DependsOnData("lengths that a synthesis finds")
+            texts = (f"{float(x)!r} {SI.symbol(d) if d else ''}" for x, d in zip(numbers, dimensions, strict=True))
+            whole = self.variant(dict(zip(names, texts, strict=True))).whole
+            return Variant(whole.linkage, whole.request)
+        given = {name: PhysicalValue(x, d) for name, d, x in zip(names, dimensions, numbers, strict=True)}
+        units = VariedUnits(self.units) if traced else self.units
+        with placed_in(self.tree):
+            found = build_shape(self._shape, self.tree, ValueReader(self._parameters(given, units), units))
+        return Variant(found.linkage, found.request)
+
+    def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
+        """One variant as a problem of its own, its values as text."""
+        return problem_of(with_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
+
+
+def read_task(tree: Tree) -> Task:
+    """The task of a file, its blocks checked. Raises ProblemError."""
+    task = Task(tree)
+    task.blocks  # noqa: B018  refuses what is wrong in them
+    return task

@@ -1,0 +1,195 @@
+"""Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
+
+All stages then run over (variants, positions) at once. What cannot be told for all alike (groups that are followed or
+iterated, several drivers, outputs of more than two strokes) is a family of one variant, found as a file of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import LinkageError
+from tmm_cli.groups.base import Closed, Kernel
+from tmm_cli.groups.sequence import link_states, towards
+from tmm_cli.kinematics.strokes import OutputCurve, Stroke, Strokes, output_slope, resisted
+from tmm_cli.linkage import Linkage, Request
+from tmm_cli.roots import roots
+from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.naming import output_link
+from tmm_cli.tape import DependsOnData
+from tmm_cli.tape.traced_number import TracedNumber
+from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.variants.stack import changed, numbers
+from tmm_cli.variants.variant import Make
+from tmm_cli.vectors import Real, mapped
+
+SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one another than that are no task
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Variants that are assembled as the first one is. Their numbers are scalars or arrays (variants, 1).
+
+    q: places of the driver (variants, positions), rad or m. strokes: with arrays (variants, 1) in the place of numbers;
+    None where no output has any. sound: which variants go through all their cycle and have the strokes of the first.
+    """
+
+    linkage: Linkage
+    structure: Structure
+    kernels: tuple[Kernel, ...]
+    request: Request
+    q: Real
+    strokes: Strokes | None
+    sound: Real
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def take(self, rows: Sequence[int] | Real) -> Family:
+        """Some of the variants, or some of them again and again."""
+        rows = np.asarray(rows)
+        new = self.changed(rows_of(self.linkage, rows), self.q[rows])
+        return replace(new, strokes=rows_of(self.strokes, rows), sound=self.sound[rows])
+
+    def changed(self, linkage: Linkage, q: Real | None = None) -> Family:
+        """The same assemblies and strokes with other numbers, at other places."""
+        kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
+        structure = self.structure.rebind(linkage)
+        return replace(self, linkage=linkage, structure=structure, kernels=kernels, q=self.q if q is None else q)
+
+
+def rows_of(record: Any, rows: Real) -> Any:
+    """A record with these rows of its arrays (variants, 1)."""
+    return mapped(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
+
+
+def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
+    """Families of the variants whose numbers are the rows of columns (variants, n): which rows, and the family.
+
+    A variant that no stage takes comes with its error instead. Raises what `make` raises.
+    """
+    rows = np.arange(len(columns))
+    together = _together(make, columns) if len(columns) > 1 else None
+    if together is not None:
+        yield rows[together.sound], together.take(rows[together.sound])
+        rows = rows[~together.sound]
+    for row in rows:
+        try:
+            yield np.array([row]), _alone(make, columns[row])
+        except LinkageError as error:
+            yield np.array([row]), error
+
+
+def _together(make: Make, columns: Real) -> Family | None:
+    """All at once; None where that cannot be."""
+    first = columns[0].tolist()
+    try:
+        varied = make([TracedNumber(x, columns[:, k : k + 1]) for k, x in enumerate(first)])
+        plain = make(first).linkage
+        structure = mobile(plain)
+        kernels = assemble(plain, structure)
+    except (DependsOnData, LinkageError):
+        return None
+    if plain.others or plain.driver.kind != "turn" or varied.ends is not None:
+        return None
+    if not all(isinstance(kernel, Closed) and kernel.plain for kernel in kernels):
+        return None
+    linkage = replace(_stands(varied.linkage), sketch=plain.sketch)
+    structure = structure.rebind(linkage)
+    kernels = tuple(kernel.rebind(linkage) for kernel in kernels)
+    request = _stands(varied.request)
+    strokes, sound = _strokes(linkage, kernels, len(columns))
+    q = _places(request, strokes, linkage.driver.sense, len(columns))
+    return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
+
+
+def _stands(record: Any) -> Any:
+    """A record built of traced numbers with the arrays that they stand for."""
+    return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
+
+
+def _alone(make: Make, row: Real) -> Family:
+    """One variant, found as a file of its own. Raises LinkageError."""
+    variant = make(row.tolist())
+    structure = mobile(variant.linkage)
+    mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
+    q = np.asarray(mechanism.asked)[None, :]
+    sound = np.array([True])
+    return Family(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
+
+
+def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple[Strokes | None, Real]:
+    """Strokes of the output of all variants, and which have one working and one idle stroke and turn fully."""
+    q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
+    whole = link_states(linkage, kernels, q, 1)
+    sound = np.all(whole.moving, axis=1)
+    link = output_link(linkage, tuple(kernel.group for kernel in kernels))
+    if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
+        return None, sound
+    curve = OutputCurve(linkage, towards(kernels, [link]), link)
+    forward = np.broadcast_to(output_slope(whole, link), q.shape) >= 0
+    turns_back = forward[:, :-1] != forward[:, 1:]
+    sound = sound & (np.sum(turns_back, axis=1) == 2)
+    if not np.any(sound):
+        return None, sound
+    turns_back = np.where(sound[:, None], turns_back, turns_back[np.argmax(sound)])
+    at = np.nonzero(turns_back)[1].reshape(count, 2)
+    rows = np.arange(count)[:, None]
+    ends = roots(curve.slope, q[rows, at], q[rows, at + 1])
+    return _named(linkage, curve, ends, resisted(linkage, link)), sound
+
+
+def _named(linkage: Linkage, curve: OutputCurve, ends: Real, resists: Any) -> Strokes:
+    """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
+    sense, cycle = linkage.driver.sense, 2 * np.pi
+    ends = np.mod(ends, cycle)
+    lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
+    lows, runs = (part.reshape(ends.shape) for part in _runs(curve, ends, sense * lengths))
+    forward = np.where(runs > 0, lengths, 0).sum(axis=1)
+    back = np.where(runs < 0, lengths, 0).sum(axis=1)
+    slower = np.sign(np.where(np.abs(forward - back) > SAME_PLACE, forward - back, 0))
+    rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
+    direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
+    asked = linkage.output.working if linkage.output else "auto"
+    if asked != "auto":
+        direction = np.full(len(ends), 1.0 if asked == "forward" else -1.0)
+    first = (np.sign(runs[:, 1]) == direction).astype(int)
+    rows = np.arange(len(ends))
+    found = []
+    for order, working in ((first, True), (1 - first, False)):
+        start, length, low, run = (part[rows, order][:, None] for part in (ends, lengths, lows, runs))
+        found.append(Stroke(start, length, low, run, working))
+    return Strokes(curve.link, curve.kind, tuple(found), "")
+
+
+def _runs(curve: OutputCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
+    """As OutputCurve.runs, for (variants, 2) at once."""
+    shares = np.linspace(0, 1, 33)
+    found = []
+    for k in range(starts.shape[1]):
+        run = np.broadcast_to(curve.place(starts[:, k : k + 1] + ways[:, k : k + 1] * shares), (len(starts), 33))
+        run = np.unwrap(run, axis=1) if curve.swings else run
+        found.append((run[:, 0], run[:, -1] - run[:, 0]))
+    lows, runs = zip(*found, strict=True)
+    return np.stack(lows, axis=1), np.stack(runs, axis=1)
+
+
+def _places(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
+    """The positions of every variant, (variants, positions); None where they need strokes that are not there."""
+    ones = np.ones((count, 1))
+    if request.places:
+        return np.concatenate([place * ones for place in request.places], axis=1)
+    start: Any = request.start
+    if isinstance(start, str):
+        if strokes is None:
+            return None
+        start = strokes.strokes[0].start
+    places: Real = start * ones + sense * 2 * np.pi * np.arange(request.count) / request.count
+    return places
