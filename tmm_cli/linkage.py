@@ -184,7 +184,7 @@ class Sketch:
 
 @dataclass(frozen=True)
 class Output:
-    """The link whose stroke (m) or swing (rad) is the purpose of the mechanism."""
+    """What the mechanism is for: the stroke (m) or swing (rad) of a link, or a coordinate of a point, K.x (m)."""
 
     link: str
     working: Literal["auto", "forward", "backward"] = "auto"
@@ -252,6 +252,26 @@ class Linkage:
     def hinged_to_frame(self, link: str) -> bool:
         """Whether the link has a hinge on the frame."""
         return any(FRAME in h.links and link in h.links for h in self.hinges)
+
+    def output_point(self, output: str) -> str | None:
+        """The point of an output that is one of its coordinates; None of a link."""
+        return None if output in self.links else output.rpartition(".")[0]
+
+    def output_guide(self, output: str) -> Slide | None:
+        """The sliding pair in which an output runs: on the frame, or of a stone on a moving link."""
+        on_frame = next((s for s in self.slides if {s.carrier, s.runner} == {FRAME, output}), None)
+        if on_frame is not None or self.hinged_to_frame(output):
+            return on_frame
+        return next((s for s in self.slides if s.runner == output), None)
+
+    def output_carrier(self, output: str) -> str:
+        """The link that an output belongs to."""
+        point = self.output_point(output)
+        return output if point is None else self.owner(point)
+
+    def output_swings(self, output: str) -> bool:
+        """Whether an output is the angle of a link (rad), and no length (m)."""
+        return output in self.links and self.output_guide(output) is None
 
     def carriers(self, point: str) -> tuple[str, ...]:
         """All links that have the point, moving links before the frame."""

@@ -38,8 +38,9 @@ def diagrams(results: Results) -> Iterable[tuple[str, Figure]]:
     assert motion is not None and results.motion is not None
     q, marks = _turned(results, motion), _turned(results, results.motion)
     outputs = results.mechanism.outputs
-    panels = {f"diagrams-link-{link}": _output(results, motion, link) for link in outputs}
-    first = panels.pop(f"diagrams-link-{outputs[0]}") if outputs else []
+    stems = [f"diagrams-link-{x}" if x in results.linkage.links else f"diagrams-{x}" for x in outputs]
+    panels = {stem: _output(results, motion, output) for stem, output in zip(stems, outputs, strict=True)}
+    first = panels.pop(stems[0]) if stems else []
     cycle = _("Diagrams over the cycle; dots: computed positions")
     reactions = _("Reactions over the cycle; dots: computed positions")
     energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")

@@ -10,11 +10,11 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import FRAME, Linkage, Load, Request, Slide
+from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.roots import roots
 from tmm_cli.structure.naming import output_link
 from tmm_cli.tolerances import NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, Vector
 
 PARTS = 64  # of a stroke, through which an angle is followed
 
@@ -36,11 +36,11 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Strokes of the output link in a turn of the driver, beginning with the working one; empty when it has none.
+    """Strokes of an output in a turn of the driver, beginning with the working one; empty when it has none.
 
-    kind: the output slides (m), or swings (rad). k is the time of the working strokes over that of the idle ones at
-    constant speed, without the dwells between them. rule: why that stroke is the working one. cycle: how far the
-    driver goes until they repeat (rad).
+    link: a link's name, or a coordinate of a point (K.x). kind: it slides (m), or swings (rad). k is the time of the
+    working strokes over that of the idle ones at constant speed, without the dwells between them. rule: why that stroke
+    is the working one. cycle: how far the driver goes until they repeat (rad).
     """
 
     link: str
@@ -75,29 +75,42 @@ class Strokes:
 
 def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
     """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
-    slide = _guide(motion.linkage, link)
+    slide = motion.linkage.output_guide(link)
     if slide is not None:
         sliding = motion.slide(slide)
         return sliding.run, sliding.first, sliding.second
+    point = motion.linkage.output_point(link)
+    if point is not None:
+        moving = motion.named(point)
+        return _along(link, moving.x), _along(link, moving.first), _along(link, moving.second)
     turning = motion.link(link)
     return turning.angle, turning.first, turning.second
 
 
 def output_place(motion: LinkStates, link: str) -> Real:
     """Run of the output (m, or its angle in rad) alone."""
-    slide = _guide(motion.linkage, link)
+    point = motion.linkage.output_point(link)
+    if point is not None:
+        return _along(link, motion.spot(point))
+    slide = motion.linkage.output_guide(link)
     return motion.angle(link) if slide is None else motion.run(slide)
 
 
 def output_slope(motion: LinkStates, link: str) -> Real:
     """First transfer function of the output alone."""
-    slide = _guide(motion.linkage, link)
+    linkage = motion.linkage
+    point = linkage.output_point(link)
+    if point is not None:
+        own = linkage.owner(point)
+        return _along(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
+    slide = linkage.output_guide(link)
     return motion.first[link].w if slide is None else motion.slope(slide)
 
 
-def _guide(linkage: Linkage, link: str) -> Slide | None:
-    """The sliding pair of a link on the frame."""
-    return next((s for s in linkage.slides if {s.carrier, s.runner} == {FRAME, link}), None)
+def _along(output: str, vector: Vector) -> Real:
+    """The coordinate of a vector that an output K.x or K.y is about."""
+    part: Real = vector.real if output.endswith(".x") else vector.imag
+    return part
 
 
 @dataclass(frozen=True)
@@ -111,7 +124,7 @@ class OutputCurve:
     @property
     def swings(self) -> bool:
         """Whether it turns, else it slides."""
-        return not self.linkage.slides_on_frame(self.link)
+        return self.linkage.output_swings(self.link)
 
     @property
     def kind(self) -> str:
@@ -150,7 +163,7 @@ class Travel:
 
 def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link: str) -> Travel | None:
     """Extremes of an output over the places asked for, found between them; for drivers that do not turn fully."""
-    curve = OutputCurve(linkage, towards(kernels, [link]), link)
+    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
     q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
     moved = link_states(linkage, kernels, q, 1)  # all groups: it goes only where the whole linkage can
     run, slope = output_place(moved, link), output_slope(moved, link)
@@ -176,16 +189,16 @@ def find_strokes(
     resists: float = 0.0,
     link: str | None = None,
 ) -> Strokes | None:
-    """Strokes of an output over the driver's way; None when it is not joined to the frame.
+    """Strokes of an output over the driver's way; None when there is no output.
 
     link: the main output when left out. resists: sign of the output's run against which the useful resistance acts, 0
     when it tells nothing. The working stroke is the slower one; when both last equally long, the one that is resisted;
     then the one that runs forward.
     """
     link = link or output_link(linkage, tuple(d.group for d in kernels))
-    if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
+    if link is None:
         return None
-    curve = OutputCurve(linkage, towards(kernels, [link]), link)
+    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
     none = Strokes(link, curve.kind, (), "")
     if not driver_range.full:
         return none

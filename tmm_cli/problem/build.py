@@ -128,7 +128,15 @@ def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader)
     moving = [name for name in links if name != FRAME]
     outputs = cast("list[schema.Output]", shape.output)  # as its validator left it
     paths: list[Path] = [("output", number) if len(outputs) > 1 else ("output",) for number in range(len(outputs))]
-    return tuple(
-        Output(values.known(given.link, moving, path, "link"), given.working)
-        for given, path in zip(outputs, paths, strict=True)
-    )
+    points = [p for name in moving for p in links[name].points if p not in links[FRAME].points and p not in moving]
+    found: list[Output] = []
+    for given, path in zip(outputs, paths, strict=True):
+        if given.link in points:
+            found += [Output(f"{given.link}.{axis}", given.working) for axis in "xy"]
+        else:
+            found.append(
+                Output(
+                    values.known(given.link, dict.fromkeys([*moving, *points]), path, "link or point"), given.working
+                )
+            )
+    return tuple(found)

@@ -101,7 +101,7 @@ def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: V
         )  # fmt: skip
     if given.against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
-        argument = LENGTH if link is not None and linkage.slides_on_frame(link) else ANGLE
+        argument = ANGLE if link is None or linkage.output_swings(link) else LENGTH
     rows = given.table or []
     path = (*path, "table")
     arguments = [values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows)]

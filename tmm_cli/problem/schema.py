@@ -216,9 +216,12 @@ class Friction(Strict):
 
 
 class Output(Strict):
-    """The link whose stroke or swing is the purpose of the mechanism."""
+    """The link whose stroke or swing is the purpose of the mechanism, or a point of a moving link: its x and y."""
 
-    link: Name
+    link: Name = Field(
+        description="of a link joined to the frame its stroke or swing, of a coupler its angle, of a stone its place "
+        "along the slot"
+    )
     working: Literal["auto", "forward", "backward"] = Field(
         default="auto", description="direction of the working stroke; auto: the slower one"
     )
@@ -290,7 +293,7 @@ class File(Strict):
     loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
     output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
-        default=[], max_length=20, description="a link, or {link, working}, or several of them in a list"
+        default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)

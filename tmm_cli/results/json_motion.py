@@ -74,8 +74,8 @@ STROKE = record(
 )  # fmt: skip
 OUTPUT = record(
     "strokes of an output",
-    Field("link", TEXT, "output link"),
-    Field("kind", TEXT, "slide or swing"),
+    Field("link", TEXT, "output link, or coordinate of a point, K.x or K.y"),
+    Field("kind", TEXT, "slide (runs and coordinates, m) or swing (rad)"),
     Field("travel", NUMBER, "stroke H, m, or swing psi, rad", lambda s: s.travel if s.strokes else None),
     Field("k", NUMBER, "coefficient of change of mean speed", lambda s: s.k if s.strokes else None),
     Field("rule", TEXT, "why that stroke is the working one"),
@@ -83,7 +83,7 @@ OUTPUT = record(
 )
 TRAVEL = record(
     "extremes",
-    Field("link", TEXT, "output link"),
+    Field("link", TEXT, "output link, or coordinate of a point, K.x or K.y"),
     Field("kind", TEXT, "slide or swing"),
     Field("low", NUMBER, "least run, m or rad"),
     Field("high", NUMBER, "greatest"),
@@ -131,7 +131,7 @@ SLIDE_MOTION = record(
 )
 KINEMATICS = record(
     "motion",
-    Field("output", optional(TEXT), "output link", "mechanism.output"),
+    Field("output", optional(TEXT), "output link or coordinate", "mechanism.output"),
     Field("points", map_of(POINT_MOTION), "every named point that moves",
           lambda r: moving_points(r.linkage, r.motion, r.of)),
     Field("centres", map_of(POINT_MOTION), "centres of mass, S and the link",
@@ -213,7 +213,7 @@ MOTION_PARTS = (
     Field("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", "motion"),
     Field("pressure", list_of(PRESSURE), "driven links of the groups", there=_whole),
     Field("dead_positions", list_of(DEAD), "inside the range of the driver", "dead", _whole),
-    Field("output", optional(OUTPUT), "strokes of the output; null when no link of the last group is on the frame",
+    Field("output", optional(OUTPUT), "strokes of the output; null when none is named or found on the frame",
           "strokes", _whole),
     Field("further_outputs", list_of(OUTPUT), "of the others, as the first one", "further", _whole),
     Field("travels", list_of(TRAVEL), "outputs where the driver does not turn fully, over the positions asked",

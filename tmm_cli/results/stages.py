@@ -101,7 +101,7 @@ def stages(results: Results) -> Iterable[Row]:
             yield what, every, str(SCAN + 1), velocities, note
             continue
         note = _("position 0 hangs on it") if request.start == "working stroke" and not request.places else ""
-        yield what, _titles(towards(kernels, [link]), kernels), str(scan + 1), velocities, note
+        yield what, _titles(towards(kernels, [linkage.output_carrier(link)]), kernels), str(scan + 1), velocities, note
     yield _("dead positions"), every, str(scan), places, ""
     yield _("pressure angles"), every, str(scan), places, _("from statics")
     note = _("--position: these only; --of: groups on the way only")

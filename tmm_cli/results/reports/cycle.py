@@ -49,7 +49,9 @@ def tables(results: Results) -> Iterable[Table]:
     for driver in results.linkage.others:
         name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
         columns.append(_place(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
-    for link in filter(motion.poses.__contains__, results.mechanism.outputs):  # with --of only some links move
+    for link in results.mechanism.outputs:
+        if results.linkage.output_carrier(link) not in motion.poses:  # with --of only some links move
+            continue
         columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
@@ -62,9 +64,10 @@ def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple
     run, first, second = output_run(motion, link)
     v = first * motion.rate
     a = second * motion.rate**2 + first * motion.acceleration
-    quantities = SLIDE if results.linkage.slides_on_frame(link) else LINK
+    words = OF_OUTPUT if link in results.linkage.links else OF_OUTPUT | {"run": "{link}"}
+    quantities = LINK if results.linkage.output_swings(link) else SLIDE
     for quantity, values in zip(quantities, (run, v, a), strict=False):
-        yield OF_OUTPUT[quantity.name].format(link=link), values, quantity.dimension
+        yield words[quantity.name].format(link=link), values, quantity.dimension
 
 
 def _balance(results: Results) -> Iterable[Column]:

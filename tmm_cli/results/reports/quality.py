@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
-from tmm_cli.kinematics.strokes import Strokes, Travel
-from tmm_cli.quantities import NUMBER, Dimension, place_dimension
+from tmm_cli.kinematics.driver_range import SCAN
+from tmm_cli.kinematics.strokes import OutputCurve, Strokes, Travel
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
 
 Row = tuple[str, Any, Dimension]
@@ -26,40 +30,61 @@ def tables(results: Results) -> Iterable[Table]:
         rows += [(_("driver can go from"), driver_range.start, place), (_("driver can go to"), driver_range.end, place)]
     for strokes in (results.strokes, *results.further):
         if strokes is not None and strokes.strokes:
-            rows += _strokes(strokes, place)
+            rows += _strokes(results.linkage, strokes, place)
+        elif strokes is not None and driver_range.full and results.linkage.output_swings(strokes.link):
+            rows.append(
+                (_("link {link} turns in a cycle by").format(link=strokes.link), _turned(results, strokes), ANGLE)
+            )
     for travel in results.travels:
-        rows += _travel(travel, place)
+        rows += _travel(results.linkage, travel, place)
     rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
         yield Table("quality", _("Quality"), _mixed(rows, results))
 
 
-def _strokes(strokes: Strokes, place: Dimension) -> Iterable[Row]:
+def _strokes(linkage: Linkage, strokes: Strokes, place: Dimension) -> Iterable[Row]:
     """Strokes of an output that goes there and back as the driver turns."""
     link, run = strokes.link, place_dimension(strokes.kind)
-    name = _("stroke H of link {link}") if strokes.kind == "slide" else _("swing psi of link {link}")
-    yield name.format(link=link), strokes.travel, run
+    point, guide = linkage.output_point(link), linkage.output_guide(link)
+    name = _("swing psi of link {link}") if guide is None else _("stroke H of link {link}")
+    if point is not None:
+        name = _("travel of {link}")
+    elif guide is not None and FRAME not in (guide.carrier, guide.runner):
+        name = _("stroke H of link {link} along link {carrier}")
+    yield name.format(link=link, carrier=guide.carrier if guide is not None else ""), strokes.travel, run
     yield _("coefficient of change of mean speed k"), strokes.k, NUMBER
     for stroke in strokes.strokes:
         yield _("working stroke starts at") if stroke.working else _("idle stroke starts at"), stroke.start, place
-        yield _("link {link} is then at").format(link=link), stroke.low, run
+        then = _("link {link} is then at") if point is None else _("{link} is then at")
+        yield then.format(link=link), stroke.low, run
         yield _("working stroke lasts") if stroke.working else _("idle stroke lasts"), stroke.length, place
         if stroke.rest:
             name = _("dwell after the working stroke") if stroke.working else _("dwell after the idle stroke")
             yield name, stroke.rest, place
 
 
-def _travel(travel: Travel, place: Dimension) -> Iterable[Row]:
+def _turned(results: Results, strokes: Strokes) -> float:
+    """By how much (rad) an output turns that does not come back."""
+    curve = OutputCurve(results.linkage, results.kernels, strokes.link)
+    angle = np.unwrap(curve.place(results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)))
+    return abs(float(angle[-1] - angle[0]))
+
+
+def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]:
     """How far an output goes over the positions asked."""
     link, run = travel.link, place_dimension(travel.kind)
-    name = (
-        _("stroke H of link {link} over the positions asked")
-        if travel.kind == "slide"
-        else _("swing psi of link {link} over the positions asked")
-    )
-    yield name.format(link=link), travel.high - travel.low, run
+    point, guide = linkage.output_point(link), linkage.output_guide(link)
+    name, extremes = _("swing psi of link {link} over the positions asked"), _("extreme position of link {link}")
+    if point is not None:
+        name, extremes = _("travel of {link} over the positions asked"), _("extreme of {link}")
+    elif guide is not None and FRAME not in (guide.carrier, guide.runner):
+        name = _("stroke H of link {link} along link {carrier} over the positions asked")
+    elif guide is not None:
+        name = _("stroke H of link {link} over the positions asked")
+    carrier = guide.carrier if guide is not None else ""
+    yield name.format(link=link, carrier=carrier), travel.high - travel.low, run
     for extreme, at in ((travel.low, travel.low_at), (travel.high, travel.high_at)):
-        yield _("extreme position of link {link}").format(link=link), extreme, run
+        yield extremes.format(link=link), extreme, run
         yield _("with the driver at"), at, place
 
 

@@ -218,7 +218,7 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path) 
         sense.known(link, linkage.links, (*path, "links", n), "link")
     wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
     if given.values:
-        dimension = LENGTH if linkage.slides_on_frame(name) else ANGLE
+        dimension = ANGLE if linkage.output_swings(name) else LENGTH
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
     places = tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
     if len(places) != len(wanted) and (places or given.values):

@@ -137,7 +137,7 @@ class Goal(ABC):
     def slides(self, linkage: Linkage, groups: Any) -> bool:
         """Whether that link slides."""
         link = self.output(linkage, groups)
-        return link is not None and linkage.slides_on_frame(link)
+        return link is not None and not linkage.output_swings(link)
 
     def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
         """What is written down for it at places of an analysed mechanism."""

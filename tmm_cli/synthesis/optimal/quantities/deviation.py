@@ -96,7 +96,7 @@ class Law(Deviation):
 
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         run = output_place(motion_at(results, np.array(self.places)), self.name)
-        over = Over(results.linkage, not results.linkage.slides_on_frame(self.name))
+        over = Over(results.linkage, results.linkage.output_swings(self.name))
         found: Real = self.deviations(lambda __: run[None, :], over)[0]
         return found
 
