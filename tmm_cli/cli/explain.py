@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli import solve
 from tmm_cli.cli.common import OK, Files, Settings, console, each
 
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
@@ -18,7 +19,6 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
     """
 
     def work(file: str) -> int:
-        from tmm_cli import solve
         from tmm_cli.cli.opening import opened
         from tmm_cli.results.explain import explain as tables
         from tmm_cli.results.in_words import in_words

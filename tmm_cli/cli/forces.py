@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tmm_cli import solve
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each
 
 
@@ -17,7 +18,6 @@ def forces(
     names = ("cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
-        from tmm_cli import solve
         from tmm_cli.cli.opening import opened
         from tmm_cli.cli.reporting import report
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli import solve
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each, say
 from tmm_cli.errors import _
 
@@ -35,7 +36,6 @@ def kinematics(
     names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
-        from tmm_cli import solve
         from tmm_cli.cli.opening import opened
         from tmm_cli.cli.reporting import report
 
