@@ -218,7 +218,7 @@ def test_a_crank_that_cannot_turn_fully_gives_its_range_and_results_there(tmp_pa
     text = text.replace("B: [350, 86]", "B: [170, 70]")
     file = tmp_path / "rocker.yaml"
     file.write_text(text, encoding="utf-8")
-    done = tmm("run", file, "-o", tmp_path)
+    done = tmm("forces", file)
     assert done.returncode == 0
     assert (
         "driving link 1 cannot turn fully: it can go from -63.14933 deg to 63.14933 deg; there II(2,3) comes to its "

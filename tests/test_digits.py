@@ -13,6 +13,7 @@ import json
 import re
 from collections import defaultdict
 from dataclasses import replace
+from functools import cache
 
 import mpmath as mp
 import multibody
@@ -169,6 +170,16 @@ def assembled(it):
     return kernels, find_range(it, kernels)
 
 
+@cache
+def near_the_ends(seed, kinds):
+    """What is judged at two places near an end of the way of a random linkage; nothing where it has none."""
+    it = any_linkage(seed, kinds)
+    kernels, way = assembled(it)
+    if way.full:
+        return []
+    return judged(it, np.array(way.end - 10.0 ** -np.random.default_rng(seed).uniform(2, 13, 2)), kernels)[0]
+
+
 def widths(rows):
     return [bound / max(error, U / 4 * size) for _, size, error, bound in rows if error > 0]
 
@@ -185,9 +196,9 @@ def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_na
 def test_bounds_hold_on_the_way_to_a_dead_position_or_the_position_is_refused(size, many_digits):
     it = four_bar(size)
     kernels, way = assembled(it)
-    q = np.append(way.end - 10.0 ** -np.arange(1, 15), way.end)
+    q = np.append(way.end - 10.0 ** -np.arange(2, 15, 3), way.end)
     rows, results = judged(it, q, kernels)
-    assert results.motion.moving.tolist() == [True] * 14 + [False]
+    assert results.motion.moving.tolist() == [True] * 5 + [False]
     assert [row for row in rows if not row[2] <= row[3]] == []
     worst = max(bound / size for _, size, _, bound in rows if size > 0 and bound < size)
     assert worst < 1e-12, "however near, the numbers of double-doubles have all the digits that are printed"
@@ -195,24 +206,14 @@ def test_bounds_hold_on_the_way_to_a_dead_position_or_the_position_is_refused(si
 
 @pytest.mark.parametrize("kinds", [("RRP",), ("RPR",), ("PRP",), ("III",), ("IV",), ("RPR", "RRP")])
 def test_bounds_hold_near_the_ends_of_the_way_of_every_class(kinds, many_digits):
-    rows, number = [], np.random.default_rng(7)
-    for seed in range(3):
-        it = any_linkage(seed, kinds)
-        kernels, way = assembled(it)
-        if not way.full:
-            rows += judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)), kernels)[0]
+    rows = [row for seed in range(2) for row in near_the_ends(seed, kinds)]
     assert len(rows) > 50
     assert [row for row in rows if not row[2] <= row[3]] == []
 
 
 def test_nine_of_ten_bounds_are_narrow_near_dead_positions(many_digits):
-    found, number = [], np.random.default_rng(5)
-    for kinds in (("RRR",), ("RRP",), ("RPR",), ("IV",)):
-        for seed in range(4):
-            it = any_linkage(seed, kinds)
-            kernels, way = assembled(it)
-            if not way.full:
-                found += widths(judged(it, np.array(way.end - 10.0 ** -number.uniform(2, 13, 2)), kernels)[0])
+    some = [(seed, kinds) for kinds in (("RRR",), ("RRP",), ("RPR",), ("IV",)) for seed in range(2)]
+    found = widths([row for seed, kinds in some for row in near_the_ends(seed, kinds)])
     assert np.mean(np.array(found) <= 100) >= 0.9
 
 
@@ -224,11 +225,11 @@ DIMENSIONS = {
 
 @pytest.mark.parametrize("kinds", [kinds for _, kinds in CLASSES])
 def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kinds):
-    for seed in range(6):
+    for seed in range(2):
         it = made(seed, kinds)
         kernels, way = assembled(it)
-        near = [] if way.full else way.end - 10.0 ** -np.random.default_rng(seed).uniform(1, 12, 3)
-        rows, results = judged(it, np.array([*(it.sketch.at + np.array([0.0, 0.02])), *near]), kernels, bounded=False)
+        near = [] if way.full else way.end - 10.0 ** -np.random.default_rng(seed).uniform(1, 12, 2)
+        rows, results = judged(it, np.array([it.sketch.at, *near]), kernels, bounded=False)
         share, size = relative(results), sizes(results)
         places = np.repeat(np.flatnonzero(results.motion.moving), len(rows) // np.sum(results.motion.moving))
         for place, (key, _, error, _) in zip(places, rows, strict=True):

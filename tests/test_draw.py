@@ -10,7 +10,10 @@ from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
 from tmm_cli.draw import files, sheets
+from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.labels import Ground, Label, extent
+from tmm_cli.draw.mechanism import all_positions, detailed
+from tmm_cli.draw.plans import motion_plans
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -52,11 +55,11 @@ def test_labels_do_not_cover_each_other_or_lines():
 @pytest.mark.parametrize("unit", ["um", "mm", "km"])
 def test_any_size_is_drawn(unit):
     results = solve(shaper(("length: mm", f"length: {unit}")))
-    drawn = dict(sheets(results))
-    ram = plain(drawn["mechanism"])
+    ram = plain(dict(all_positions(results))["mechanism"])
     assert {"O", "A", "C", "D", "E"} <= ram  # every named point
     assert any(text.startswith("μ_l = ") for text in ram)
-    assert {"p", "p′"} & plain(drawn["velocity-03"])
+    (here,) = detailed(results)
+    assert {"p", "p′"} & plain(dict(motion_plans(here))["velocity-03"])
 
 
 def test_kinematics_alone_has_no_sheets_of_forces():
@@ -67,8 +70,8 @@ def test_kinematics_alone_has_no_sheets_of_forces():
 
 
 def test_a_title_is_never_read_as_mathematics_and_is_cut():
-    results = solve(shaper(("Crank shaper, variant 7", "'$\\frac{1}{0}$ " + "x" * 150 + "'")))
-    for _, figure in sheets(results):
+    results = solve(shaper(("Crank shaper, variant 7", "'$\\frac{1}{0}$ " + "x" * 150 + "'")), "kinematics")
+    for _, figure in (*all_positions(results), *diagrams(results)):
         figure.savefig(io.BytesIO(), format="png", dpi=30)
 
 
@@ -82,13 +85,17 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
 
 
 @pytest.mark.parametrize("name", ["six-bar", "course-2", "cylinder", "inclined-slider", "tangent"])
-def test_sheets_of_other_linkages(name):
-    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
-    written = dict(files(results))
-    assert {stem.split(".")[1] for stem in written} == {"png", "svg"}
-    assert all(data.startswith(b"\x89PNG" if stem.endswith("png") else b"<?xml") for stem, data in written.items())
+def test_every_point_of_a_moving_link_is_named(name):
+    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "kinematics")
     moving = {point for link in results.linkage.moving for point in results.linkage.links[link].points}
-    assert moving <= plain(dict(sheets(results))["mechanism"])
+    assert moving <= plain(dict(all_positions(results))["mechanism"])
+
+
+def test_every_sheet_is_written_in_every_format():
+    results = solve(load(str(ROOT / "problems" / "tangent.yaml")), "kinematics")
+    written = dict(files(results))
+    assert set(written) == {f"{stem}.{kind}" for stem, _ in sheets(results) for kind in ("png", "svg")}
+    assert all(data.startswith(b"\x89PNG" if stem.endswith("png") else b"<?xml") for stem, data in written.items())
 
 
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from functools import cache
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 from higher import PROBLEMS
 
-from tmm_cli import solve
+from tmm_cli import draw, solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.actuators import BARREL, cylinder, springs
 from tmm_cli.draw.scene import Scene
@@ -33,6 +32,12 @@ def solved(name):
     return solve(build(read_text(PROBLEMS[name], f"{name}.yaml")))
 
 
+@cache
+def drawn(name):
+    """Every sheet of a problem."""
+    return dict(sheets(solved(name)))
+
+
 def scene(results, k):
     return Scene(results.linkage, results.structure, results.motion.poses, k)
 
@@ -43,18 +48,22 @@ def shaped(name, k):
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_every_sheet_is_made_and_nothing_lies_outside_of_it(name):
-    results = solved(name)
-    drawn = dict(sheets(results))
-    assert {"structure", "groups", "mechanism", "diagrams", "reactions", "energy"} <= {s.split("-0")[0] for s in drawn}
-    for stem, figure in drawn.items():
-        figure.savefig(io.BytesIO(), format="png", dpi=20)
-        if len(figure.axes) == 1 and not figure.axes[0].axison:  # a sheet in millimetres
-            width, height = (25.4 * size for size in figure.get_size_inches())
-            for line in figure.axes[0].lines:
-                x, y = (np.asarray(line.get_data()[i], float) for i in (0, 1))
-                assert np.all((x > 0) & (x < width) | np.isnan(x)), (stem, x)
-                assert np.all((y > 0) & (y < height) | np.isnan(y)), (stem, y)
+def test_nothing_lies_outside_of_the_sheets_in_millimetres(name, monkeypatch):
+    monkeypatch.setattr(draw, "diagrams", lambda results: ())  # curves have axes of their own
+    found = dict(sheets(solved(name)))
+    assert {"structure", "groups", "mechanism", "position", "velocity"} <= {stem.split("-0")[0] for stem in found}
+    for stem, figure in found.items():
+        width, height = (25.4 * size for size in figure.get_size_inches())
+        for line in figure.axes[0].lines:
+            x, y = (np.asarray(line.get_data()[i], float) for i in (0, 1))
+            assert np.all((x > 0) & (x < width) | np.isnan(x)), (stem, x)
+            assert np.all((y > 0) & (y < height) | np.isnan(y)), (stem, y)
+
+
+@pytest.mark.parametrize("name", ["gear", "two cranks", "cylinder"])
+def test_every_sheet_is_made(name):
+    stems = {stem.split("-0")[0] for stem in drawn(name)}
+    assert {"structure", "groups", "mechanism", "diagrams", "reactions", "energy"} <= stems
 
 
 @pytest.mark.parametrize("name", WHEELS)
@@ -263,25 +272,23 @@ def test_a_point_p_is_not_the_pole():
 
 
 def test_diagrams_show_the_whole_cycle_of_several_turns():
-    drawn = dict(sheets(solved("gear")))
     for stem in ("diagrams", "reactions", "energy", "pressure"):
-        for axes in drawn[stem].axes:
+        for axes in drawn("gear")[stem].axes:
             assert axes.get_xlim() == (0, 720)
             x, y = axes.lines[0].get_data()
             assert x[-1] == 720 and y[-1] == pytest.approx(y[0], abs=1e-6 * np.ptp(y))
 
 
 def test_every_output_and_every_driver_has_its_curve():
-    drawn = dict(sheets(solved("two cranks")))
-    assert [a.get_ylabel().split(",")[0] for a in drawn["diagrams-link-3"].axes] == [
+    assert [a.get_ylabel().split(",")[0] for a in drawn("two cranks")["diagrams-link-3"].axes] == [
         "angle of 3", "omega of 3", "epsilon of 3",
     ]  # fmt: skip
-    last = drawn["diagrams"].axes[-1]
+    last = drawn("two cranks")["diagrams"].axes[-1]
     assert [t.get_text() for t in last.get_legend().get_texts()] == ["Mb₁", "Mb₄"]
 
 
 def test_the_lever_of_several_drivers_says_what_its_sum_is_of():
-    figure = dict(sheets(solved("two cranks")))["lever-02"]
+    figure = drawn("two cranks")["lever-02"]
     told = " ".join(t.get_text() for t in figure.axes[0].texts)
     balance = {b.driver.link: b.moment[2] for b in solved("two cranks").reactions.balances}
     assert f"Mb₁ = {balance['1']:.6g} N·m" in told and "Mb₁ -2·Mb₄" in told
@@ -289,5 +296,5 @@ def test_the_lever_of_several_drivers_says_what_its_sum_is_of():
 
 
 def test_in_a_cycle_of_several_turns_positions_of_one_place_share_a_label():
-    told = [t.get_text() for t in dict(sheets(solved("gear")))["mechanism"].axes[0].texts]
+    told = [t.get_text() for t in drawn("gear")["mechanism"].axes[0].texts]
     assert "4, 16" in told and "4" in told  # the second is the ram's number

@@ -46,9 +46,9 @@ def slider(k, ratio):
 
 CASES = {
     **{f"rocker {k} {low} {high}": (rocker, (k, low, high))
-       for k, (low, high) in product((1.02, 1.05, 1.2, 1.5, 2.0), ((80, 100), (60, 110), (130, 40)))},
+       for k, (low, high) in product((1.02, 1.2, 2.0), ((80, 100), (130, 40)))},
     **{f"slider {k} {ratio}": (slider, (k, ratio))
-       for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.08, 3.5), (1.2, 3.0), (1.35, 2.2), (1.8, 1.5))},
+       for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.2, 3.0), (1.8, 1.5))},
     **{f"shaper {k}": (lambda k: drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=0.4), (k,))
        for k in (1.1, 1.5, 2.0)},
     **{f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, frame=0.2), (k,))
@@ -177,9 +177,9 @@ def test_the_history_is_never_empty():
     assert list(shown.lines[0].y[2:]) == [2.5, 2.6] and np.all(np.isnan(shown.lines[0].y[:2])) and not shown.lower
 
 
-@pytest.mark.parametrize("k", [1.1, 1.3, 1.5, 2.0])
+@pytest.mark.parametrize("k", [1.1, 2.0])
 def test_no_label_stands_on_the_hatching_of_a_guide(k):
-    for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.4, 0.6)):
+    for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.6)):
         sheet = construction("", one, UnitSystem())
         guide = next(s for s in one.segments if s.style == "guide")
         left, right = sorted(sheet.on(z).real for z in (guide.start, guide.end))

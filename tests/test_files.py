@@ -125,6 +125,22 @@ def test_when_a_rename_fails_the_old_results_stay_whole(refused, tmp_path, monke
     assert os.listdir(tmp_path) == ["out"]
 
 
+def test_results_that_another_program_holds_are_one_error(tmp_path, monkeypatch):
+    """As on Windows, where a table is open in a spreadsheet."""
+    run_of(tmp_path / "sine", "cycle.csv", part="no-drawings")
+    before = content(tmp_path / "sine")
+
+    def refused(source, target):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(source), None, str(target))
+
+    for name in ("rename", "replace"):
+        monkeypatch.setattr(files.os, name, refused)
+    done = tmm("run", SINE, "--no-drawings", "-o", tmp_path)
+    assert done.returncode == 2
+    assert after_the_echo(done.stderr) == f"error: {tmp_path / 'sine'}: Permission denied\n"
+    assert content(tmp_path / "sine") == before and os.listdir(tmp_path) == ["sine"]
+
+
 def test_a_directory_in_the_place_of_a_table_is_an_error_and_nothing_changes(tmp_path):
     folder = tmp_path / "sine"
     run_of(folder, "old.csv")

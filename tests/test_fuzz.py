@@ -6,6 +6,6 @@ from fuzz import fuzz
 
 
 def test_no_file_ends_in_anything_but_a_problem_or_the_products_own_error() -> None:
-    ended, faults = fuzz(seed=14, loads=220)
+    ended, faults = fuzz(seed=14, loads=100)
     assert faults == {}
-    assert ended["solves"] >= 20 and ended["solved"] and ended["loaded"] and ended["refused"]
+    assert ended["solves"] >= 8 and ended["solved"] and ended["loaded"] and ended["refused"]

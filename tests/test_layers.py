@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from fnmatch import fnmatch
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -84,8 +85,17 @@ def imported(path: Path) -> set[str]:
 
 
 MODULES = modules()
-IMPORTS = {name: imported(path) for name, path in MODULES.items()}
-OURS = {name: {other for other in others if other in MODULES} for name, others in IMPORTS.items()}
+
+
+@cache
+def imports() -> dict[str, set[str]]:
+    """What each file imports."""
+    return {name: imported(path) for name, path in MODULES.items()}
+
+
+def ours() -> dict[str, set[str]]:
+    """What each file imports of the package."""
+    return {name: {other for other in others if other in MODULES} for name, others in imports().items()}
 
 
 def allowed(name: str, other: str) -> bool:
@@ -109,27 +119,27 @@ def test_only_what_everything_leans_on_stands_beside_the_folders():
 @pytest.mark.parametrize("own", sorted({folder(name) for name in MODULES}))
 def test_imports_run_one_way(own):
     upward = [
-        f"{name} imports {other}" for name in MODULES if folder(name) == own for other in sorted(OURS[name])
+        f"{name} imports {other}" for name in MODULES if folder(name) == own for other in sorted(ours()[name])
         if not allowed(name, other)
     ]  # fmt: skip
     assert not upward
 
 
 def test_no_files_import_one_another_in_a_circle():
-    TopologicalSorter(OURS).prepare()  # raises CycleError, which names the circle
+    TopologicalSorter(ours()).prepare()  # raises CycleError, which names the circle
 
 
 def test_what_computes_knows_nothing_of_files_and_screens():
     numeric = {one for floor in NUMERIC for one in floor} | {"top"}
     talking = [
-        f"{name} imports {other}" for name in MODULES if folder(name) in numeric for other in IMPORTS[name]
+        f"{name} imports {other}" for name in MODULES if folder(name) in numeric for other in imports()[name]
         if other.partition(".")[0] in FILES_AND_SCREENS and not any(fnmatch(name, r) for r in READS_A_TASK)
     ]  # fmt: skip
     assert not talking
 
 
 def test_scipy_is_for_optimisation_and_integration_alone():
-    users = {folder(name) for name in MODULES if any(other.partition(".")[0] == "scipy" for other in IMPORTS[name])}
+    users = {folder(name) for name in MODULES if any(other.partition(".")[0] == "scipy" for other in imports()[name])}
     assert users <= MAY_IMPORT_SCIPY
 
 

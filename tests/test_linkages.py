@@ -85,11 +85,9 @@ def test_formula_of_structure(name):
 
 
 def test_everything_agrees_with_lagrange_multipliers(results):
-    there = along(results)
+    there = along(results, SHARES[1:2])
     assert np.all(there.motion.moving)
-    worst = compared(
-        there.linkage, there.structure, there.motion, there.reactions, range(len(SHARES)), results.strokes
-    )  # fmt: skip
+    worst = compared(there.linkage, there.structure, there.motion, there.reactions, range(1), results.strokes)
     assert max(worst.values()) < 1e-12, worst
 
 

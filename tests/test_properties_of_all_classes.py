@@ -183,13 +183,14 @@ def test_velocities_and_accelerations_are_derivatives_of_places(found):
         assert abs(weights @ point.v - point.a[4]) < 1e-7 * fastest**2
 
 
-@pytest.mark.parametrize("size", [1e-6, 1e6])
-def test_another_drawing_of_the_same_linkage(found, size):
+def test_another_drawing_of_the_same_linkage(found):
     """Mirrored, turned, of another size, its links and pairs renamed and in another order.
 
     Lengths and forces change by the scale, moments by its square.
     """
-    it, by = found[1].linkage, 0.7 * np.log10(size)
+    it = found[1].linkage
+    size = 1e-6 if len(it.moving) % 2 else 1e6
+    by = 0.7 * np.log10(size)
     other, names, _ = renamed(sized(turned(mirrored(it), by), size), 5)
     offsets = np.array(OFFSETS) * (size if it.driver.kind == "slide" else -1)
     alike(found, solved(other, offsets), spin=lambda v: np.conj(v) * np.exp(1j * by), sense=-1, size=size, names=names)

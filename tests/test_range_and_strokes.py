@@ -56,11 +56,14 @@ def test_a_dwell_at_the_end_of_a_stroke_makes_no_strokes_of_rounding():
     assert abs(results.strokes.travel - 0.2) < 1e-15
 
 
-@pytest.mark.parametrize("cam", ["flat follower", "swinging follower"])
-@pytest.mark.parametrize("output", ["2", "4"])
-@pytest.mark.parametrize(("turns", "first_rest", "second_rest"), [("ccw", 60, 80), ("cw", 80, 60)])
-@pytest.mark.parametrize("start", [0, -50, 77.3])
-def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, turns, first_rest, second_rest, start):
+@pytest.mark.parametrize(
+    ("cam", "output", "turns", "start"),
+    [
+        ("flat follower", "2", "ccw", -50), ("flat follower", "4", "cw", 77.3),
+        ("swinging follower", "2", "cw", 0), ("swinging follower", "4", "ccw", 77.3),
+    ],
+)  # fmt: skip
+def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, turns, start):
     """Rise over 120 deg, dwell over 60, return over 100, dwell over 80; whichever way the cam turns the rise is slower.
 
     Turned the other way the cam has its second dwell after what was the rise.
@@ -71,7 +74,7 @@ def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, tu
     strokes = solve(build(read_text(text, "cam.yaml")), "kinematics").strokes
     assert strokes.k == pytest.approx(1.2, rel=1e-12)
     found = [math.degrees(x) for stroke in strokes.strokes for x in (stroke.length, stroke.rest)]
-    assert found == pytest.approx([120, first_rest, 100, second_rest], abs=1e-9)
+    assert found == pytest.approx([120, 60, 100, 80] if turns == "ccw" else [120, 80, 100, 60], abs=1e-9)
     assert [stroke.working for stroke in strokes.strokes] == [True, False]
     begins = start if turns == "ccw" else start + 120
     assert math.remainder(strokes.strokes[0].start - math.radians(begins), 2 * math.pi) == pytest.approx(0, abs=1e-12)

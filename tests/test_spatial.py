@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 
 import numpy as np
 import pytest
@@ -249,15 +250,16 @@ def proposal(found):
 
 
 def lower_only(file):
-    """Without higher pairs (see test_higher_pairs_in_space) and without constraints that are passive in the plane."""
-    linkage = problem(file).linkage
-    return not linkage.meshes and analyse(linkage).sound
+    """Without higher pairs: see test_higher_pairs_in_space."""
+    return not re.search(r"^(gears|racks|cams):", file.read_text(encoding="utf-8"), re.MULTILINE)
 
 
-@pytest.mark.parametrize("file", [file for file in PROBLEMS if lower_only(file)], ids=lambda p: p.stem)
+@pytest.mark.parametrize("file", filter(lower_only, PROBLEMS), ids=lambda p: p.stem)
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(file):
     results = moved(file)
     linkage, structure, motion = results.linkage, results.structure, results.motion
+    if not structure.sound:
+        pytest.skip("some constraints are passive in the plane")
     found = space(linkage, structure)
     kinds = proposal(found)
     # a lower pair asks for three conditions out of the plane, teeth and cams for one

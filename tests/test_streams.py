@@ -27,9 +27,7 @@ def shell(line, cwd=ROOT, **environment):
 
 
 @posix
-@pytest.mark.parametrize(
-    "command", ["schema", f"explain {SINE}", f"forces {SINE} --json", "--help", "check problems/x"]
-)
+@pytest.mark.parametrize("command", [f"forces {SINE} --json", "--help", "check problems/x"])
 def test_a_reader_that_leaves_is_no_error(command):
     done = shell(f"(tmm {command}; echo code $? >&2) | true")
     said = done.stderr.decode()
@@ -38,7 +36,7 @@ def test_a_reader_that_leaves_is_no_error(command):
 
 
 @posix
-@pytest.mark.parametrize("command", ["schema", f"structure {SINE}", f"forces {SINE} --json"])
+@pytest.mark.parametrize("command", [f"structure {SINE}", "schema"])
 def test_a_full_disk_is_one_error(command):
     done = shell(f"tmm {command} > /dev/full")
     assert done.returncode == 2
@@ -47,15 +45,14 @@ def test_a_full_disk_is_one_error(command):
 
 
 @posix
-@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-"])
+@pytest.mark.parametrize("closed", [">&- 2>&-", "<&-"])
 def test_a_closed_stream_swallows_what_is_printed(closed, tmp_path):
     done = shell(f"tmm run {SINE} --no-drawings -o {tmp_path} {closed}")
     assert done.returncode == 0 and b"Traceback" not in done.stderr + done.stdout
     assert (tmp_path / "sine" / "result.json").exists()
 
 
-@pytest.mark.parametrize("encoding", ["cp1251", "cp866", "ascii", "utf-8"])
-@pytest.mark.parametrize("command", ["explain", "forces"])
+@pytest.mark.parametrize(("encoding", "command"), [("cp1251", "explain"), ("cp866", "forces"), ("ascii", "forces")])
 def test_a_console_that_lacks_characters_shows_question_marks(encoding, command, tmp_path):
     file = tmp_path / "задача.yaml"
     text = SINE.read_text(encoding="utf-8")
@@ -73,7 +70,7 @@ def test_a_console_that_lacks_characters_shows_question_marks(encoding, command,
 def test_a_file_whose_name_is_not_utf_8_is_worked_on_like_any(tmp_path):
     name = os.path.join(os.fsencode(tmp_path), b"\xea\xf3\xeb.yaml")
     shutil.copy(SINE, name)
-    for command in (["run", "--no-drawings", "-o", str(tmp_path)], ["explain"], ["forces", "--json"], ["check"]):
+    for command in (["run", "--no-drawings", "-o", str(tmp_path)], ["check"]):
         done = subprocess.run(
             [sys.executable, "-m", "tmm_cli", command[0], name, *command[1:]],
             capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False,
@@ -96,7 +93,7 @@ def interrupted(where):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False)
 
 
-@pytest.mark.parametrize("where", ["tmm_cli.cli", "typer", "tmm_cli.cli.run", "numpy", "tmm_cli.results.output"])
+@pytest.mark.parametrize("where", ["tmm_cli.cli", "typer", "numpy"])
 def test_ctrl_c_at_any_time_ends_with_130_and_no_word(where):
     done = interrupted(where)
     assert (done.returncode, done.stderr) == (130, b"")

@@ -13,7 +13,8 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, solutions
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, of_zeros, outputs, solutions
+from tmm_cli.synthesis.four_bar_by_angles.least_squares import signed_bars
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task, chosen, quality, real, through
 from tmm_cli.synthesis.reading import build
 from tmm_cli.variants.batch import prepare
@@ -30,7 +31,7 @@ output: 3
 positions: {count: 4, from: phi1}
 """
 MET = 1e-12
-COUNT = 1000
+COUNT = 250
 
 
 def problem(block):
@@ -242,6 +243,67 @@ def test_two_pairs_and_the_ratio_of_two_links_come_back():
     comes_back(phi, psi, bars)
 
 
+@pytest.mark.parametrize("held", ["l1", "l3"])
+def test_three_pairs_with_the_frame_and_the_crank_or_the_rocker_come_back(held):
+    phi, psi, l1, l2, l3, phi0, psi0 = random_tasks(3, 11)
+    phi, psi = (phi + phi0[:, None], psi) if held == "l1" else (phi, psi + psi0[:, None])
+    zeros, known = ((0.0, None), l1) if held == "l1" else ((None, 0.0), l3)
+    tasks = [
+        Task(tuple(a), tuple(b), {held: one, "l4": 1.0}, *zeros) for a, b, one in zip(phi, psi, known, strict=True)
+    ]
+    bars = Bars(*(np.concatenate(numbers) for numbers in zip(*map(through, tasks), strict=True)))
+    for value, truth in ((bars.l1, l1), (bars.l2, l2), (bars.l3, l3)):
+        assert np.asarray(value, float) == pytest.approx(truth, rel=1e-9)
+    comes_back(phi, psi, bars)
+
+
+@pytest.mark.parametrize(("count", "zeros"), [(5, (0.0, 0.0)), (8, (None, 0.0)), (8, (0.0, None)), (12, (None, None))])
+def test_more_pairs_of_a_four_bar_than_are_needed_find_it(count, zeros):
+    phi, psi, *lengths, phi0, psi0 = random_tasks(count, count)
+    for k in range(0, COUNT, 200):
+        a = phi[k] + (0 if zeros[0] is None else phi0[k])
+        b = psi[k] + (0 if zeros[1] is None else psi0[k])
+        found = through(Task(tuple(a), tuple(b), {"l4": 1.0}, *zeros))
+        assert np.concatenate(found[:3]) == pytest.approx([one[k] for one in lengths], rel=1e-6)
+
+
+@pytest.mark.parametrize("block", [
+    "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], points: 12",
+    "function: exp(x), x: [0, 1], input: [45, 105], output: [0, 60], points: 15, phi0: 0, psi0: 0",
+    "pairs: [[40, 70], [45, 76], [50, 83], [55, 91], [60, 100]], phi0: 0, psi0: 0",
+    "pairs: [[0, 0], [10, 12], [20, 25], [30, 39], [40, 54], [50, 71]], psi0: 40",
+    "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], points: 20",
+])  # fmt: skip
+def test_errors_at_more_pairs_have_the_least_squares_and_are_those_of_the_mechanism(block):
+    found = problem(f"{block}, l4: 100")
+    outcome = found.synthesis.outcome
+    every = measured(outcome, solve(found, "kinematics"))
+    for m in every:
+        assert m.difference <= MET, m
+    (pairs,) = outcome.listings
+    phi, psi, _, error = np.array(pairs.rows).T
+    least = np.mean(error**2)
+    assert np.sqrt(least) == pytest.approx(every[0].value, rel=1e-9)
+    one = [float(outcome.parameters[name].value) for name in ("l1", "l2", "l3", "phi0", "psi0")]
+    one[:3] = np.array(one[:3]) / float(outcome.parameters["l4"].value)
+    free = 3 if "psi0: 0" in block else 4 if "psi0" in block else 5
+    for k in range(free):
+        for step in (-1e-4, 1e-4):
+            other = Bars(*(value + step * (k == n) for n, value in enumerate(one)))
+            off = min((outputs(other, phi, psi, side) - psi for side in (1, -1)), key=np.linalg.norm)
+            assert np.mean(off**2) > least
+
+
+def test_the_pairs_of_a_weaving_machine_are_met_better_than_by_least_squares_of_the_equation():
+    # a laboratory task: five pairs from the frame, 180 mm, by least squares of Freudenstein's equation
+    phi, psi = np.radians([[40, 45, 50, 55, 60], [70, 76, 83, 91, 100]])
+    equation = signed_bars(np.append(of_zeros(phi[None], psi[None])[0], [0, 0]))
+    assert float(equation.l1) == pytest.approx(0.980334, rel=1e-6)  # of Gauss's normal equations
+    found = through(Task(tuple(phi), tuple(psi), {"l4": 0.18})).at(0)
+    means = [np.degrees(np.sqrt(np.mean((outputs(one, phi, psi, -1.0) - psi) ** 2))) for one in (equation, found)]
+    assert means == pytest.approx([0.0982, 0.0931], abs=1e-4)
+
+
 def test_two_pairs_alone_get_the_best_transmission():
     task = Task((0.5, 1.4), (1.0, 1.6), {"l4": 1.0})
     (least,) = quality(through(task), task).least
@@ -252,7 +314,9 @@ def test_two_pairs_alone_get_the_best_transmission():
 
 @pytest.mark.parametrize("block", [
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100", "pairs: [[30, 60], [80, 90]], l4: 100, l1: 40",
-    "pairs: [[30, 60], [80, 90]], l1: 100", "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l1: 100",
+    "pairs: [[30, 60], [80, 90]], l1: 100", "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80",
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l1: 80, phi0: 10",
+    "pairs: [[30, 40], [60, 70], [90, 100]], l4: 100, l1: 80", "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l1: 100",
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], phi0: 20, l3: 100",
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l2: 100, choose: crank",
     "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], l4: 100",
@@ -302,6 +366,14 @@ REFUSED = {
         "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 to 1e+09 mm",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
+    "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100":
+        "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, "
+        "or as the input locks on the way\n  found:   a list of 6\n  allowed: other angles, or phi0 and psi0",
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5":
+        "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0",
+    "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80":
+        "synthesis: one length gives the size of the four-bar\n  found:   l1, l3\n"
+        "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3",
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0",
     "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100":

@@ -135,12 +135,17 @@ def test_what_a_thousand_choices_ask_for_comes_back():
     family, chosen = at(task, w, side), []
     for n in range(1000):
         one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
-        way = ("best", "l4", "near", "level")[n % 4]
+        way = ("best", "l4", "near", "level", "xA", "yA")[n % 6]
         if way == "level":  # turned until the pivot of the family is as high as D
             turn = -float(np.angle(family.a[n] - task.support[n]))
             task.psi1[n], task.psi2[n] = one.psi1 + turn, one.psi2 + turn
             one = replace(one, psi1=one.psi1 + turn, psi2=one.psi2 + turn)
-        f = choose(replace(one, choose=way, l4=float(family.l4[n]), near=complex(family.a[n])))
+        place = complex(family.a[n])
+        f = choose(replace(one, choose=way, l4=float(family.l4[n]), near=place, xA=place.real, yA=place.imag))
+        if way in ("xA", "yA"):
+            there = (f.a.real, place.real) if way == "xA" else (f.a.imag, place.imag)
+            assert abs(there[0] - there[1]) < MET * f.l4
+            assert f.pressure <= family.pressure[n] * (1 + 1e-9)
         if way == "l4":
             assert f.l4 == pytest.approx(family.l4[n], rel=MET, abs=0)
             assert f.pressure <= family.pressure[n] * (1 + 1e-9)
@@ -155,8 +160,8 @@ def test_what_a_thousand_choices_ask_for_comes_back():
 
 
 def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_positions_on_one_side():
-    task, _, _ = drawn(5, 1, 200)
-    for n in range(200):
+    task, _, _ = drawn(5, 1, 50)
+    for n in range(50):
         one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         c1, c2 = (one.support + one.l3 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
         for side in (-1, 1):
@@ -221,7 +226,18 @@ def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
 
 
 @pytest.mark.parametrize(
-    "more", ["", ", l1: 60", ", l2: 250", ", l4: 300", ", choose: supports level", ", near: [300, 40]", ", turns: cw"]
+    "more",
+    [
+        "",
+        ", l1: 60",
+        ", l2: 250",
+        ", l4: 300",
+        ", choose: supports level",
+        ", near: [300, 40]",
+        ", turns: cw",
+        ", xA: xF",
+        ", yA: yF",
+    ],
 )
 @pytest.mark.parametrize("angles", [("50 deg", "105 deg"), ("100 deg", "60 deg"), ("0", "-70 deg")])
 def test_the_ordinary_stages_measure_what_was_asked(more, angles):
@@ -229,7 +245,8 @@ def test_the_ordinary_stages_measure_what_was_asked(more, angles):
         more = more.replace("supports level", "best transmission").replace(
             "[300, 40]", "[220, 10]" if angles[0] == "0" else "[-100, 150]"
         )
-    found = problem(more, *angles)
+    x, y = {"50 deg": (200, 60), "100 deg": (-90, 150), "0": (200, 60)}[angles[0]]
+    found = problem(more.replace("xF", str(x)).replace("yF", str(y)), *angles)
     for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
@@ -273,8 +290,10 @@ REFUSED = [
     (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
      ".choose: no pivot of the admissible arcs is as high as D",
      "'supports level'", "best transmission"),
+    (", yA: 500", {}, ".yA: no pivot of the admissible arcs is at this height", "500", "the nearest is yA: 495.295 mm"),
+    (", xA: -90", {}, ".xA: no pivot of the admissible arcs has this x", "-90", "the nearest is xA: 144.727 mm"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
-     "choose and l4", "one of choose, l1, l2, l4, near"),
+     "choose and l4", "one of choose, l1, l2, l4, near, xA, yA"),
     (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
      "95", "the nearest is "),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
@@ -315,12 +334,13 @@ def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
                 choose(one)
 
 
-@pytest.mark.parametrize("way", ["best", "level", "near"])
+@pytest.mark.parametrize("way", ["best", "level", "near", "xA", "yA"])
 def test_a_support_that_is_far_away_takes_no_digits(way):
-    one = Task(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None)
+    one = Task(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None, xA=1.5, yA=-0.5)
     here = choose(one)
     for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
-        there = choose(replace(one, support=far, near=None if one.near is None else one.near + far))
+        there = choose(replace(one, support=far, near=None if one.near is None else one.near + far,
+                               xA=1.5 + np.real(far), yA=-0.5 + np.imag(far)))  # fmt: skip
         assert (there.w, there.l1, there.l2, there.l4) == (here.w, here.l1, here.l2, here.l4)
 
 
@@ -350,6 +370,8 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     assert outcome.notes == ("with k = 1 the circle is the line C1C2: A is any place of it beyond C1",)
     for m in measured(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
+    at_height = problem(", yA: 130", k=1).synthesis.outcome.parameters
+    assert at_height["yA"].value == pytest.approx(0.13, rel=1e-14)
     assert refusal(", l4: 190", k=1).startswith(".l4: no pivot of the admissible arcs is at this distance from D")
 
 

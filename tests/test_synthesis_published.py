@@ -178,6 +178,14 @@ def test_chebyshevs_linkage_from_three_pairs_of_angles():
     assert [values[name] for name in ("l4", "l1", "l2", "l3")] == pytest.approx([4, 5, 2, 5], rel=1e-14)
 
 
+@pytest.mark.parametrize("held", ["l1", "l3"])
+def test_chebyshevs_linkage_from_three_pairs_of_angles_and_one_of_its_levers(held):
+    pairs = "[acos(4/5), 90 deg], [acos(3/5), acos(-3/5)], [90 deg, acos(-4/5)]"
+    values = found(by_angles(f"pairs: [{pairs}], l4: 4 m, {held}: 5 m, defects: keep"))
+    assert [values[name] for name in ("l4", "l1", "l2", "l3")] == pytest.approx([4, 5, 2, 5], rel=1e-14)
+    assert [values["phi0"], values["psi0"]] == pytest.approx([0, 0], abs=1e-14)
+
+
 BEST = {
     "r1": 39.35432733966176, "r2": 8.738597335076454, "r3": 27.91020567579063, "r4": 38.41653206619049,
     "xK": 36.576759454887835, "yK": 18.058222622003274, "t0": 3.922197401424182, "x0": -9.015069651004032,

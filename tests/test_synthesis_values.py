@@ -77,7 +77,7 @@ def test_a_ratio_that_may_be_any_number_leaves_a_rocking_wheel_its_cycle():
     """Its partner swings, so all is back after a turn; bare bounds of a ratio are no lengths."""
     text = text_of(
         "gear-doubling", (("teeth: [120, 40], module: 2", "ratio: i"),),
-        "vary: {i: [2, 4]}\n  objective: {of: stroke, target: 80}\n  population: 8\n  generations: 12",
+        "vary: {i: [2, 4]}\n  objective: {of: stroke, target: 80}\n  population: 8\n  generations: 4",
     )  # fmt: skip
     found, results = best_of(text)
     assert 2 <= found["i"] <= 4 and results.strokes.travel == pytest.approx(0.08, rel=1e-9)
@@ -134,7 +134,7 @@ def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
     assert measure("moment", results) == pytest.approx(values[120], rel=1e-12)
 
 
-FEW = "vary: {l1: {from: 60, to: 100, step: 1}, l2: {from: 300, to: 400, step: 4}}\n  "
+FEW = "vary: {l1: {from: 61, to: 97, step: 6}, l2: {from: 300, to: 384, step: 28}}\n  "
 WITH = "\n  constraints: [{of: stroke, least: 40 deg}, {of: pressure, most: 45 deg}]"
 
 
@@ -236,7 +236,7 @@ def test_the_choice_is_not_settled_before_what_is_free_is_polished():
     edits = (("l1: 100, ", ""), ("l2: 350, ", ""))
     boxes = {}
     for values in ("340, 360, 370", "360, 370", "360, 360.5"):
-        found, results = best_of(text_of("crank-rocker", edits, varies.format(values) + "  generations: 60"))
+        found, results = best_of(text_of("crank-rocker", edits, varies.format(values) + "  generations: 20"))
         boxes[values] = measure("box", results)
         assert "370" not in values or found["l2"] == pytest.approx(0.37)
     assert boxes["340, 360, 370"] == pytest.approx(boxes["360, 370"], rel=1e-9)

@@ -48,7 +48,7 @@ def plainly(batch, q):
 
 
 @given(st.integers(0, 2**32 - 1), KINDS)
-@settings(max_examples=25)
+@settings(max_examples=12)
 def test_a_tape_plays_what_the_stages_do(seed, kinds):
     it = linkage(seed, kinds)
     batch = prepare(it)
@@ -63,7 +63,7 @@ def test_a_tape_plays_what_the_stages_do(seed, kinds):
 
 
 @given(st.integers(0, 2**32 - 1), KINDS)
-@settings(max_examples=10)
+@settings(max_examples=6)
 def test_variants_at_once_are_the_variants_one_by_one(seed, kinds):
     random = np.random.default_rng(seed)
     it = linkage(seed, kinds)

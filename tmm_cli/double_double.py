@@ -31,12 +31,13 @@ Pair = tuple[Any, Any]
 class DoubleDouble(NDArrayOperatorsMixin):
     """hi + lo, arrays of one shape, real or complex; lo is at most half a unit of the last place of hi."""
 
-    __slots__ = ("hi", "lo", "turn")
+    __slots__ = ("angle", "hi", "lo", "turn")
 
     def __init__(self, hi: Any, lo: Any = None) -> None:
         self.hi = np.asarray(hi)
         self.lo = np.zeros_like(self.hi) if lo is None else np.asarray(lo)
         self.turn: DoubleDouble | None = None  # e^(i x), once it was asked for
+        self.angle: DoubleDouble | None = None  # of a complex number, likewise
 
     @classmethod
     def decimal(cls, written: str) -> DoubleDouble:
@@ -92,6 +93,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
 
     def __setitem__(self, key: Any, value: Any) -> None:
         self.hi[key], self.lo[key] = _parts(value)
+        self.turn = self.angle = None
 
     def __len__(self) -> int:
         return len(self.hi)
@@ -270,10 +272,7 @@ def _divide(x: Any, y: Any) -> DoubleDouble:
         return _divide(_multiply(x, y.conjugate()), _square(y))
     first = x.hi / y.hi
     rest = _subtract(x, _multiply(y, first))
-    second = rest.hi / y.hi
-    rest = _subtract(rest, _multiply(y, second))
-    found = _add(DoubleDouble(*fast_two_sum(first, second)), rest.hi / y.hi)
-    return _finite(found, first)
+    return _finite(DoubleDouble(*fast_two_sum(first, rest.hi / y.hi)), first)
 
 
 def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
@@ -348,6 +347,12 @@ def _arctan2(y: Any, x: Any) -> DoubleDouble:
     turn, size = _turn(near), np.hypot(y.hi, x.hi)
     left = _subtract(_multiply(y, turn.real), _multiply(x, turn.imag)).hi
     return _add(near, left / np.where(size == 0, 1.0, size))
+
+
+def _angle(z: DoubleDouble) -> DoubleDouble:
+    if z.angle is None:
+        z.angle = _arctan2(z.imag, z.real)
+    return z.angle
 
 
 def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
@@ -444,7 +449,7 @@ UFUNCS |= {ufunc.__name__: _of_higher(ufunc) for ufunc in TELLING}
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: _where, np.sum: _sum, np.cumsum: _cumsum, np.interp: _interp,
     np.real: lambda x: x.real, np.imag: lambda x: x.imag,
-    np.angle: lambda z: _arctan2(z.imag, z.real), np.iscomplexobj: lambda x: x.dtype.kind == "c",
+    np.angle: _angle, np.iscomplexobj: lambda x: x.dtype.kind == "c",
     np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
     np.searchsorted: lambda a, v, **how: np.searchsorted(_parts(a)[0], _parts(v)[0], **how),
 }  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,8 +42,16 @@ def lengths(linkage: Linkage) -> tuple[Length, ...]:
 
 def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
     """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
-    more = length.along * by
-    return mapped(lambda path, value: value + more if path in length.paths else value, linkage)
+    return all_changed(linkage, [(length, by)])
+
+
+def all_changed(linkage: Linkage, changes: Iterable[tuple[Length, Any]]) -> Linkage:
+    """The same with several of its lengths longer, each by so much."""
+    more: dict[str, Any] = {}
+    for length, by in changes:
+        for path in length.paths:
+            more[path] = more.get(path, 0.0) + length.along * by
+    return mapped(lambda path, value: value + more[path] if path in more else value, linkage)
 
 
 def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:

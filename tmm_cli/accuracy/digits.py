@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.data import changed, lengths, widened
+from tmm_cli.accuracy.data import all_changed, lengths, widened
 from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
@@ -165,9 +165,9 @@ class _Judge:
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
         by = step * np.array([reach, *(sizes[length.link] for length in data)])
         there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
-        for k, length in enumerate(data, 1):
-            linkage = changed(linkage, length, np.where(number == k, by[k], 0.0))
-        other = at(self.results, linkage, q[there] + np.where(number == 0, by[0], 0.0), first, chosen[there])
+        changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
+        places = q[there] + np.where(number == 0, by[0], 0.0)
+        other = at(self.results, all_changed(linkage, changes), places, first, chosen[there])
         gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
         slopes = gaps / by[:, None]
         values = np.array([abs(length.value) for length in data])

@@ -18,6 +18,7 @@ MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 
 # k is refused by its task, which knows the bounds of it
 SIZED: Final = (LENGTH, SPEED, ANGULAR_SPEED)
 SHARES: Final = ("ratio", "frame_ratio", "rod_ratio", "pressure")
+PLACES: Final = ("e", "xA", "yA")
 PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
 
 
@@ -46,7 +47,7 @@ class Bounded(ValueReader):
         found = super().number(value, want, path)
         self.given[path] = found, want
         key = path[-1] if path else ""
-        sized = isinstance(key, str) and key != "e" and (want in SIZED or key in SHARES)
+        sized = isinstance(key, str) and key not in PLACES and (want in SIZED or key in SHARES)
         if not sized or _exempt(path) or found >= SMALLEST:
             return found
         low = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()

@@ -20,29 +20,37 @@ DOMAINS = {
     "log10(x)": "x more than 0", "ln(x)": "x more than 0", "sqrt(x)": "x of 0 or more", "x^1.5": "x of 0 or more",
     "1/x": "x on one side of 0",
 }  # fmt: skip
+MOST = 361  # pairs of angles
 LENGTHS = ("l1", "l2", "l3", "l4")
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
 
 class Shape(Block):
-    """A four-bar by 2 to 5 pairs of input and output angles, or by a function with precision points."""
+    """A four-bar by pairs of input and output angles, or by a function at some points."""
 
     task: Literal["four-bar-by-angles"]
     pairs: list[Vector] | None = Field(
-        default=None, min_length=2, max_length=5, description="[input, output] angles from AD, 2 to 5, in order"
+        default=None,
+        min_length=2,
+        max_length=MOST,
+        description="[input, output] angles from AD, in order; over 5: least squares",
     )
     l1: Value | None = Field(default=None, description="one length gives the size; l1 input, l2 coupler, l3 output")
     l2: Value | None = None
     l3: Value | None = None
-    l4: Value | None = Field(default=None, description="frame; with two pairs two lengths of l1, l3, l4 may be given")
-    phi0: Value | None = Field(default=None, description="zero of input angles, from AD; 0; 4 and 5 pairs find it")
-    psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 pairs find it")
+    l4: Value | None = Field(
+        default=None, description="frame; two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three"
+    )
+    phi0: Value | None = Field(default=None, description="zero of input angles, from AD; 0; 4 and more pairs find it")
+    psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 and more pairs find it")
     function: str | None = Field(default=None, max_length=40, description="y: " + ", ".join(FUNCTIONS))
     table: list[Vector] | None = Field(default=None, min_length=2, max_length=10_000, description="or rows [x, y]")
     x: Range | None = Field(default=None, description="[from, to], with a function")
     input: Range | None = Field(default=None, description="[from, to]: input angles for x")
     output: Range | None = Field(default=None, description="[from, to]: output angles for y")
-    points: int | None = Field(default=None, ge=2, le=5, description="precision points, with Chebyshev's spacing; 3")
+    points: int | None = Field(
+        default=None, ge=2, le=MOST, description="with Chebyshev's spacing; 3; over 5: least squares"
+    )
     choose: Literal["transmission", "crank", 1, 2, 3] = Field(
         default="transmission", description="of several solutions: best transmission, a crank if there is one, a number"
     )
@@ -74,32 +82,42 @@ def read(shape: Shape, values: ValueReader) -> Task:
         key: None if (value := getattr(shape, key)) is None else values.number(value, ANGLE, (key,))
         for key in ("phi0", "psi0")
     }
-    _zeros(zeros, count)
+    _zeros(zeros, count, lengths)
     phi, psi = zip(*pairs, strict=True)
     choose, keep = str(shape.choose), shape.defects == "keep"
     return Task(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
 
 
 def _lengths(lengths: dict[str, float], count: int) -> None:
-    two = count == 2 and len(lengths) == 2 and "l2" not in lengths
+    two = len(lengths) == 2 and "l2" not in lengths and (count == 2 or (count == 3 and "l4" in lengths))
+    other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
             "one length gives the size of the four-bar", found=", ".join(lengths) or "none",
-            allowed="one of l1, l2, l3, l4" + ("; or two of l1, l3, l4" if count == 2 else ""), key=True,
+            allowed="one of l1, l2, l3, l4" + other, key=True,
         )  # fmt: skip
 
 
-def _zeros(zeros: dict[str, Any], count: int) -> None:
-    """The zero angles that the count of pairs leaves to be found stay None, others are 0."""
+def _zeros(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None:
+    """The zero angles that are to be found stay None, others are 0: 4 pairs find one, more both that are not given."""
     given = [key for key, value in zeros.items() if value is not None]
-    if len(given) > 5 - max(count, 3):
+    if count == 3 and len(lengths) == 2:
+        found, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")
+        if found in given:
+            raise ProblemError(
+                f"three pairs and two lengths determine {found} too", path=(found,), found=", ".join(given),
+                allowed=other, key=True,
+            )  # fmt: skip
+        zeros[other] = zeros[other] or 0.0
+    elif count == 5 and len(given) == 1:
         raise ProblemError(
-            f"{count} pairs determine zero angles too", path=(given[-1],), found=", ".join(given),
-            allowed="phi0 or psi0" if count == 4 else "neither phi0 nor psi0", key=True,
+            "5 pairs determine zero angles too", path=(given[0],), found=given[0],
+            allowed="neither phi0 nor psi0; or both, for the least squares of errors", key=True,
         )  # fmt: skip
-    for key in ("psi0", "phi0")[: 5 - max(count, 3)]:
-        if zeros[key] is None and not (count == 4 and given):
-            zeros[key] = 0.0
+    elif count < 4:
+        zeros.update({key: value or 0.0 for key, value in zeros.items()})
+    elif count == 4 and not given:
+        zeros["psi0"] = 0.0
 
 
 def _function(shape: Shape, values: ValueReader) -> Function:

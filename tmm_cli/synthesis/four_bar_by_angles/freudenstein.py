@@ -201,11 +201,7 @@ def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
         one, other = phi + phi0, psi + psi0
         rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
         p, q, one, other = (numbers.astype(float) for numbers in (p, q, one, other))
-        turn = np.sin(one - other)
-        slopes = np.stack(
-            [np.cos(other), -np.cos(one), np.ones_like(one), q * np.sin(one) + turn, -p * np.sin(other) - turn], -1
-        )[..., columns]
-        step = (inverse(slopes) * rest.astype(float)[..., None, :]).sum(-1)
+        step = (inverse(slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(-1)
         step = np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
         values[:, columns] = values[:, columns] - step
     return values.hi.astype(EXACT) + values.lo
@@ -216,6 +212,27 @@ def _wide(numbers: Any) -> DoubleDouble:
     numbers = np.asarray(numbers, dtype=EXACT)
     near = numbers.astype(float)
     return DoubleDouble(near, (numbers - near).astype(float))
+
+
+def slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
+    """Of the equation over p, q, s, phi0, psi0 (last axis), angles with their zeros; those over psi are the last."""
+    turn = np.sin(phi - psi)
+    columns = np.cos(psi), -np.cos(phi), np.ones_like(phi), q * np.sin(phi) + turn, -p * np.sin(psi) - turn
+    return np.stack(columns, -1)
+
+
+def outputs(one: Bars, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
+    """Output angles (without psi0) of a four-bar at input angles phi; side: the sign of (BC x DC).
+
+    open_: what stands where it does not close; None: the angle where it is nearest to that.
+    """
+    l1, l2, l3 = (np.asarray(x, dtype=float) for x in (one.l1, one.l2, one.l3))
+    way = l1 * np.exp(1j * (float(one.phi0) + phi)) - 1
+    cosine = (l3 * l3 + np.abs(way) ** 2 - l2 * l2) / (2 * l3 * np.abs(way))
+    psi = np.angle(way) + side * np.arccos(np.clip(cosine, -1, 1))
+    gap = psi - float(one.psi0) - near
+    found = near + gap - 2 * np.pi * np.round(gap / (2 * np.pi))
+    return found if open_ is None else np.where(np.abs(cosine) <= 1, found, open_)
 
 
 def bars(values: Any, phi: Any, psi: Any) -> Bars:

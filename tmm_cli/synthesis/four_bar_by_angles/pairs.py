@@ -1,4 +1,4 @@
-"""Four-bars through 2 to 5 pairs of angles, what each is worth, and which of them is taken."""
+"""Four-bars by pairs of angles, what each is worth, and which of them is taken."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.roots import least
 from tmm_cli.synthesis.four_bar import FourBar, cosine, extreme_inputs, turning
-from tmm_cli.synthesis.four_bar_by_angles import freudenstein
+from tmm_cli.synthesis.four_bar_by_angles import freudenstein, least_squares
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import Function
 from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
@@ -24,7 +24,8 @@ SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 @dataclass(frozen=True)
 class Task:
-    """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs; zero angles, None: to find.
+    """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three;
+    zero angles, None: to find.
 
     choose: transmission, crank, or the number of a solution; keep: whether defects are put up with.
     """
@@ -47,6 +48,11 @@ class Task:
     def free(self) -> bool:
         """Whether two pairs and one length leave l1/l4 free."""
         return len(self.phi) == 2 and len(self.lengths) == 1
+
+    @property
+    def approximate(self) -> bool:
+        """Whether there are more pairs than a four-bar can pass."""
+        return len(self.phi) > 3 + (self.phi0 is None) + (self.psi0 is None)
 
 
 class Quality(NamedTuple):
@@ -74,7 +80,7 @@ def quality(found: Bars, task: Task) -> Quality:
         sharpest = np.take_along_axis(np.abs(cosines), k, axis=-1)[..., 0]
         b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
         sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
-        branch = np.any(sides != sides[..., :1], axis=-1)
+        branch = np.any(sides != sides[..., :1], axis=-1) & (not task.approximate)  # they are compared with one only
         turned = np.zeros(np.shape(branch), dtype=bool)
         for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
             if given is not None:
@@ -86,9 +92,18 @@ def quality(found: Bars, task: Task) -> Quality:
 
 
 def through(task: Task) -> Bars:
-    """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free."""
+    """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free, or of those
+    that pass no pairs exactly.
+    """
+    if len(task.phi) == 3 and len(task.lengths) == 2:
+        found = _of_circle(task)
+        return found.at(real(found))
     if len(task.phi) > 2 and (one := parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
         return one.at(None)
+    if task.approximate:
+        found, __ = least_squares.minima(task.phi, task.psi, task.phi0, task.psi0)
+        found = found.at(real(found))
+        return found.at(np.argsort(quality(found, task).defect != "", kind="stable")[:1])
     if task.free:
         found = _best_of_ratios(task)
     elif len(task.phi) == 2:
@@ -111,6 +126,22 @@ def _of_lengths(task: Task) -> Bars:
     if b == "l3":  # p = ratio q
         return _of_two(task, np.stack([one, -ratio * sense, zero], axis=-1), zero)
     return _of_two(task, np.stack([one, zero, zero] if a == "l1" else [zero, one, zero], axis=-1), ratio * sense)
+
+
+def _of_circle(task: Task) -> Bars:
+    """The four-bar through three pairs with l4 and l1 (or l3): B turned back about D by the output angles (C about A by
+    the input angles) has three places, and the centre of the circle through them is C (B) with its zero angle.
+    """
+    phi, psi = (np.asarray(x, EXACT) + (zero or 0.0) for x, zero in ((task.phi, task.phi0), (task.psi, task.psi0)))
+    by_input = "l1" in task.lengths
+    own, back, base = (phi, psi, -1.0) if by_input else (psi, phi, 1.0)
+    length = EXACT(task.lengths["l1" if by_input else "l3"]) / task.lengths["l4"]
+    places = (base + length * np.exp(1j * own)) * np.exp(-1j * back)
+    rows = np.stack([2 * places.real, 2 * places.imag, np.ones_like(phi)], axis=-1)
+    x, y, __ = freudenstein.solve_linear(rows, np.abs(places) ** 2)
+    found, zero, l2 = np.hypot(x, y), np.arctan2(y, x), np.abs(places[0] - x - 1j * y)
+    one = (length, l2, found, task.phi0, zero) if by_input else (found, l2, length, zero, task.psi0)
+    return Bars(*one).at(None)
 
 
 def _of_two(task: Task, known: Any, value: Any) -> Bars:

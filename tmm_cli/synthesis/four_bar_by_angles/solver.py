@@ -1,7 +1,8 @@
-"""Four-bar by 2 to 5 pairs of angles of its input AB and output DC, given or taken from a function.
+"""Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
 
 l1 = AB, l2 = BC, l3 = DC, l4 = AD; angles from AD, counterclockwise, without the zero angles phi0 and psi0. Of all real
 solutions those without defects are kept: all pairs on one assembly, no place between them where the input locks.
+More pairs than a four-bar can pass are met with the least squares of errors.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES
 from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, chosen, of_ratios, quality, real, through
 from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
-from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes
+from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes, off, reached
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
 from tmm_cli.vectors import settled
@@ -39,8 +40,12 @@ DEFECTS: Final = {
     "branch": _("branch: some pairs are on the other assembly"),
     "locks": _("order: the input locks on the way"),
 }
+MEAN: Final = _("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": _("none"), "branch": _("branch"), "locks": _("order")}
 NO_FOUR_BAR: Final = _("no four-bar passes through these pairs")
+NONE_NEAR: Final = _(
+    "no four-bar is the nearest to these pairs: errors get less as links grow, or as the input locks on the way"
+)
 EVERY_ONE_HAS: Final = {
     "branch": _("branch defect: every four-bar through these pairs has some of them on its other assembly"),
     "locks": _("order defect: the input of every four-bar through these pairs locks on the way"),
@@ -50,6 +55,7 @@ COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
     ("transmission", _("least transmission angle"), "angle"),
 )
+SHOWN: Final = 40  # pairs in a table
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
@@ -61,8 +67,12 @@ def solve(task: Task) -> Outcome:
     values, demands = _values(task, one, mark), _demands(task, one, mark)
     if not any_one:  # it has change points
         demands.append(Demand(_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
-    drawings: list[Any] = [construction(one, task.phi, task.psi, float(_size(task, one)))]
-    listings = []
+    drawings: list[Any] = []
+    if not task.approximate:
+        drawings.append(construction(one, task.phi, task.psi, float(_size(task, one))))
+    elif not task.function:
+        drawings.append(reached(one, task))
+    listings = [_pairs(task, one)] if task.approximate else []
     if found.size > 1:
         values.append(Value("", f"{at + 1} / {found.size}", "word", _("solution, of those below")))
         listings.append(_solutions(task, found, at))
@@ -91,6 +101,8 @@ def take(task: Task) -> tuple[Bars, int]:
     found = through(task)
     defects = quality(found, task).defect
     fair = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
+    if not fair and task.approximate:
+        raise Infeasible("output" if task.function else "pairs", NONE_NEAR, _("other angles, or phi0 and psi0"))
     if not fair:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
         raise Infeasible(key, NO_FOUR_BAR if not found.size else EVERY_ONE_HAS[" and ".join(sorted(set(defects)))])
@@ -126,7 +138,8 @@ def _size(task: Task, one: Bars) -> Any:
 def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
     size = _size(task, one)
     numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
-    angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + task.psi[0]}
+    first = task.psi[0] + (off(one, task)[0] if task.approximate else 0.0)
+    angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
     numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
     # more digits only where they are asked
     plain = float if isinstance(next(iter(task.lengths.values())), float) else np.longdouble
@@ -134,16 +147,32 @@ def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
         *(Value(key, plain(numbers[key]), kind, NAMES[key]) for key, kind in PARAMETERS.items()),
         Value("", mark.least, "angle", _("least transmission angle over the range")),
         Value("", DEFECTS[str(mark.defect)], "word", _("defects")),
+        *([Value("", _mean(one, task), "angle", MEAN)] if task.approximate else []),
     ]
 
 
 def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
-    demands = [
-        Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
-        for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
-    ]
+    if task.approximate:
+        mean = partial(_measured_mean, one, task)
+        demands = [Demand(MEAN, _mean(one, task), "angle", mean, asked=False, at=1.0)]
+    else:
+        demands = [
+            Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
+            for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
+        ]
     name, measure = _("least transmission angle over the range"), partial(_transmission, float(mark.worst))
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
+
+
+def _mean(one: Bars, task: Task) -> float:
+    return float(np.sqrt(np.mean(off(one, task) ** 2)))
+
+
+def _measured_mean(one: Bars, task: Task, results: Any) -> float:
+    phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
+    near = psi + off(one, task) + float(one.psi0)
+    there = four_bar.output_angles(results, phi + float(one.phi0), near) - float(one.psi0)
+    return float(np.sqrt(np.mean((there - psi) ** 2)))
 
 
 def _output_name(k: int) -> str:
@@ -174,7 +203,11 @@ def _largest(one: Bars, task: Task, results: Any) -> float:
 
 
 def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
-    if any_one:
+    if task.approximate and not any_one:
+        yield _(
+            "more pairs than a four-bar can pass: the sum of squares of the errors of the output angle is the least"
+        )
+    if any_one and len(task.lengths) == 1:
         yield _(
             "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its transmission "
             "angle is that of DC with AD; l1/l4 is free, 1/2 is taken"
@@ -209,6 +242,15 @@ def _solutions(task: Task, found: Bars, at: int) -> Listing:
     return Listing("solutions", _("Solutions; another is taken by choose: its number"), columns, tuple(rows))
 
 
+def _pairs(task: Task, one: Bars) -> Listing:
+    """Every pair, and by how much the output is off."""
+    columns = (("phi", _("input angle"), "angle"), ("psi", _("output angle, wanted"), "angle"),
+               ("reached", _("reached"), "angle"), ("error", _("error"), "angle"))  # fmt: skip
+    error = off(one, task)
+    rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
+    return Listing("pairs", _("Pairs, and by how much the output is off"), columns, tuple(rows), long=len(rows) > SHOWN)
+
+
 def _family(task: Task) -> Listing:
     """Four-bars through two pairs for the ratios l1/l4 that are compared."""
     columns = (("free", _("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", _("defects"), "word"))
@@ -240,7 +282,7 @@ def _given(task: Task) -> tuple[Value, ...]:
             Value("", phi0, "angle", _("input angle, from")), Value("", phi1, "angle", _("input angle, to")),
             Value("", psi0, "angle", _("output angle, from")), Value("", psi1, "angle", _("output angle, to")),
         ]  # fmt: skip
-    for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True)):
+    for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = _("input angle {number}").format(number=k + 1)
         values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]
     zeros = {"phi0": task.phi0, "psi0": task.psi0}

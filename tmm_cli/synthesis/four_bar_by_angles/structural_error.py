@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.errors import _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.construction import Diagram, Line
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs
 from tmm_cli.synthesis.four_bar_by_angles.function import Function
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task
 
@@ -37,23 +37,37 @@ def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, floa
     return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
 
 
-def outputs(one: Bars, phi: Any, near: Any, side: float) -> Any:
-    """Output angles (without psi0) at input angles phi; side: the sign of (BC x DC)."""
-    l1, l2, l3 = (np.asarray(x, dtype=float) for x in (one.l1, one.l2, one.l3))
-    b = l1 * np.exp(1j * (float(one.phi0) + phi))
-    way = b - 1
-    cosine = (l3 * l3 + np.abs(way) ** 2 - l2 * l2) / (2 * l3 * np.abs(way))
-    psi = np.angle(way) + side * np.arccos(np.clip(cosine, -1, 1))
-    gap = psi - float(one.psi0) - near
-    return near + gap - 2 * np.pi * np.round(gap / (2 * np.pi))
+def side_of(one: Bars, task: Task) -> float:
+    """The assembly of the pairs: the sign of (BC x DC)."""
+    phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
+    return min((1.0, -1.0), key=lambda side: float(np.sum((outputs(one, phi, psi, side) - psi) ** 2)))
+
+
+def off(one: Bars, task: Task) -> Any:
+    """Errors of the output angle (rad) at the pairs."""
+    phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
+    return outputs(one, phi, psi, side_of(one, task)) - psi
+
+
+def reached(one: Bars, task: Task) -> Diagram:
+    """Output angles over the input, and the pairs they are to be near."""
+    side, (start, end) = side_of(one, task), task.span
+    phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
+    psi = np.asarray(task.psi, dtype=float)
+    order = np.argsort(at_pairs)
+    lines = (
+        Line(_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
+        Line(_("wanted"), at_pairs, psi, dots=True),
+    )
+    return Diagram("pairs", _("Output angles at the pairs"), (_("input angle phi"), "angle"),
+                   (_("output angle psi"), "angle"), lines)  # fmt: skip
 
 
 def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
-    """The curve of structural error over the input angle, with the precision points, and its largest size."""
+    """The curve of structural error over the input angle, with the points of the task, and its largest size."""
     assert task.function
     function = task.function
-    first = np.array([task.phi[0]])
-    side = min((1.0, -1.0), key=lambda s: float(abs(outputs(one, first, task.psi[0], s) - task.psi[0])[0]))
+    side = side_of(one, task)
 
     def error(phi: Any) -> Any:
         wanted = function.wanted(phi)
@@ -63,9 +77,10 @@ def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
     phi = np.unique(
         np.concatenate((np.linspace(min(function.phi), max(function.phi), ERRORS), function.corners(), places))
     )
+    at_points = np.asarray(task.phi, dtype=float)
     lines = (
         Line(_("structural error of the output angle"), phi, error(phi)),
-        Line(_("precision points"), np.asarray(task.phi), np.zeros(len(task.phi)), dots=True),
+        Line(_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True),
     )
     axes = (_("input angle phi"), "angle"), (_("structural error of the output angle"), "angle")
     return Diagram("error", _("Structural error over the range"), *axes, lines), largest

@@ -35,8 +35,9 @@ FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
 class Task:
     """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
 
-    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level, near (a
-    place), l1, l2 or l4 (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
+    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level (as high as D), near (a
+    place), l1, l2, l4, xA or yA (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2;
+    0: any.
     """
 
     l3: Any
@@ -49,6 +50,8 @@ class Task:
     l2: Any = None
     l4: Any = None
     near: Any = None
+    xA: Any = None  # noqa: N815  as files call it
+    yA: Any = None  # noqa: N815
     sense: int = 0
 
     @property
@@ -151,23 +154,31 @@ def whole(task: Task, side: int, count: int = 121) -> Any:
     return np.unique(np.clip(np.concatenate((by_angle, np.exp(share * np.log(most)))), 1.0, most))
 
 
-def level_places(task: Task) -> list[Any]:
-    """Places w of the pivots A = D + t, t real, from which C1C2 is seen under theta.
+def line_places(task: Task) -> list[Any]:
+    """Places w of the pivots A = t + i height, t real, from which C1C2 is seen under theta; D is the origin.
 
-    With D in the origin, z = conj(C1 - t)(C2 - t): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line
-    through D cuts each of both circles twice. Whether a place is admissible is not asked here.
+    z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line cuts each of both circles
+    twice. An upright line, through xA, is such a line of the task turned to the left. Whether a place is admissible is
+    not asked here.
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
-    across, rise = 2 * l3 * np.cos(middle) * np.cos(half), 2 * l3 * np.cos(middle) * np.sin(half)
-    c1, c2 = (l3 * (np.cos(psi) + 1j * np.sin(psi)) for psi in (task.psi1, task.psi2))
+    way, height = (np.cos(middle) + 1j * np.sin(middle)) * (1j if task.choose == "xA" else 1), line(task)
+    both, apart = 2 * l3 * np.cos(half) * way, 2j * l3 * np.sin(half) * way  # C1 + C2, C2 - C1
+    real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # of z where t = 0
+    imag = l3 * l3 * np.sin(2 * half) + height * apart.real
     found = []
     for sign in (-1, 1):
-        a, b = sine, sign * cosine * rise - sine * across
-        c = l3 * l3 * (sine * np.cos(2 * half) - sign * cosine * np.sin(2 * half))
+        a, b, c = sine, sign * cosine * apart.imag - sine * both.real, sine * real - sign * cosine * imag
         inner = b * b - 4 * a * c
         if inner >= 0:
             larger = -(b + np.copysign(np.sqrt(inner), b)) / 2
             found += [larger / a] if a > 0 else []
             found += [c / larger] if larger != 0 else []
-    return [(np.abs(c1 - t) + np.abs(c2 - t)) / (2 * l3 * np.abs(np.sin(half))) for t in found]
+    ends = ((both + sign * apart) / 2 - 1j * height for sign in (-1, 1))
+    return list(sum(np.abs(end - np.array(found)) for end in ends) / (2 * l3 * np.abs(np.sin(half))))
+
+
+def line(task: Task) -> Any:
+    """The height of A, or its x, over that of D in the origin."""
+    return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

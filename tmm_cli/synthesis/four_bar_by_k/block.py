@@ -14,7 +14,8 @@ from tmm_cli.synthesis.blocks import Block
 from tmm_cli.synthesis.four_bar_by_k.arcs import Task
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
-WAYS = ("choose", "l1", "l2", "l4", "near")
+LENGTHS = ("l1", "l2", "l4", "xA", "yA")
+WAYS = ("choose", "l1", "l2", "l4", "near", "xA", "yA")
 
 
 class Shape(Block):
@@ -33,6 +34,8 @@ class Shape(Block):
     l2: Value | None = Field(default=None, description="or: the coupler BC")
     l4: Value | None = Field(default=None, description="or: the frame AD")
     near: Vector | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
+    xA: Value | None = Field(default=None, description="or: x of A")  # noqa: N815  as the parameter is called
+    yA: Value | None = Field(default=None, description="or: the height of A, its y")  # noqa: N815
     turns: Literal["ccw", "cw"] | None = Field(
         default=None, description="sense of the crank whose slow stroke leads from psi1 to psi2; any"
     )
@@ -45,7 +48,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
         raise ProblemError(
             "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of " + ", ".join(WAYS), key=True
         )
-    wants = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER, "l1": LENGTH, "l2": LENGTH, "l4": LENGTH}
+    wants = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER, **dict.fromkeys(LENGTHS, LENGTH)}
     found: dict[str, Any] = {
         key: values.number(getattr(shape, key), want, (key,))
         for key, want in wants.items() if getattr(shape, key) is not None

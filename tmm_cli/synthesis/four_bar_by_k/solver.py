@@ -18,7 +18,8 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
     arcs,
     at,
     bound,
-    level_places,
+    line,
+    line_places,
     places,
     whole,
     widest,
@@ -26,6 +27,7 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
 from tmm_cli.synthesis.four_bar_by_k.drawing import construction, diagrams, listing, side_name
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
 from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -34,14 +36,18 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "psi2": ("angle", _("rocker at C2 (crank in line with the coupler) psi2")),
     "k": ("number", _("k")),
     "l1": ("length", _("crank l1")), "l2": ("length", _("coupler l2")), "l4": ("length", _("frame l4")),
+    "xA": ("length", _("pivot A of the crank, x")), "yA": ("length", _("pivot A of the crank, y")),
 }  # fmt: skip
 NOT_THERE: Final = {  # by the choice
     "level": _("no pivot of the admissible arcs is as high as D"),
+    "xA": _("no pivot of the admissible arcs has this x"),
+    "yA": _("no pivot of the admissible arcs is at this height"),
     "l1": _("no pivot of the admissible arcs gives such a crank"),
     "l2": _("no pivot of the admissible arcs gives such a coupler"),
     "l4": _("no pivot of the admissible arcs is at this distance from D"),
     "near": _("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
 }
+ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 
 
@@ -75,7 +81,8 @@ EQUATIONS: Final[Mapping[str, Callable[[Found, Task], Any]]] = {
     "l1": lambda found, task: found.l1 - task.l1,
     "l2": lambda found, task: found.l2 - task.l2,
     "l4": lambda found, task: found.l4 - task.l4,
-    "level": lambda found, task: np.imag(found.a - task.support),
+    **dict.fromkeys(("level", "yA"), lambda found, task: np.imag(found.a - task.support) - line(task)),
+    "xA": lambda found, task: np.real(found.a - task.support) - line(task),
     "best": _rise,
     "near": lambda found, task: np.real(np.conj(found.a - task.near) * found.slope),
 }
@@ -83,9 +90,9 @@ EQUATIONS: Final[Mapping[str, Callable[[Found, Task], Any]]] = {
 
 def _crossings(task: Task, side: int, function: Any) -> list[Any]:
     """Where a function of what is found vanishes along an arc."""
-    if task.choose == "level":
-        fair = [w for w in level_places(task) if 1 < w < bound(task, side)]
-        return [w for w in fair if abs((f := at(task, w, side)).a.imag) < SAME * (f.l2 + task.l3)]
+    if task.choose in ON_LINE:
+        fair = [w for w in line_places(task) if 1 < w < bound(task, side)]
+        return [w for w in fair if abs(function(f := at(task, w, side), task)) < SAME * (f.l2 + task.l3)]
     w = places(task, side)
     values = function(at(task, w, side), task)
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
@@ -110,8 +117,12 @@ def choose(task: Task) -> Found:
     It is looked for with D in the origin: a support that is far away takes no digits.
     """
     _refuse_numbers(task)
-    near = None if task.near is None else task.near - task.support
-    centred = replace(task, support=0 * task.support, near=near)
+    beside = {
+        key: getattr(task, key) - place
+        for key, place in (("near", task.support), ("xA", np.real(task.support)), ("yA", np.imag(task.support)))
+        if getattr(task, key) is not None
+    }
+    centred = replace(task, support=0 * task.support, **beside)
     if task.choose in LEAST:
         found = [(_best(centred, side, task.choose), side) for side in arcs(centred)]
     else:
@@ -124,7 +135,7 @@ def choose(task: Task) -> Found:
     if task.choose == "near" and w in places(centred, side)[[0, -1]]:
         raise Infeasible("near", NOT_THERE["near"])
     f = at(centred, w, side)
-    return replace(f, a=task.support + f.a)
+    return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
 
 
 def refuse(task: Task) -> None:
@@ -182,6 +193,8 @@ def _given(task: Task) -> tuple[Value, ...]:
         "l2": _("by the length of the coupler"),
         "l4": _("by the length of the frame"),
         "near": _("nearest to a given place"),
+        "xA": _("by its x"),
+        "yA": _("by its height"),
     }[task.choose]
     given = [Value(n, getattr(task, n), *what) for n, what in QUANTITIES.items() if getattr(task, n) is not None]
     return *given, Value("", choice, "word", _("choice of A"))
@@ -194,8 +207,8 @@ def _found(task: Task, f: Found) -> tuple[Value, ...]:
         Value("l1", f.l1, *QUANTITIES["l1"]),
         Value("l2", f.l2, *QUANTITIES["l2"]),
         Value("l4", f.l4, *QUANTITIES["l4"]),
-        Value("xA", np.real(f.a), "length", _("pivot A of the crank, x")),
-        Value("yA", np.imag(f.a), "length", _("pivot A of the crank, y")),
+        Value("xA", np.real(f.a), *QUANTITIES["xA"]),
+        Value("yA", np.imag(f.a), *QUANTITIES["yA"]),
         Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", _("crank at C2, in line with the coupler")),
         Value("", task.theta, "angle", _("theta = C1AC2")),
         Value("", f.pressure, "angle", _("largest pressure angle")),

@@ -73,10 +73,10 @@ class Box(Peak):
 
     def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
         """Sums of one peak of each side, in all ways: the largest is the sum of the largest ones."""
+        runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
-        for (side, k), __, read in parts:
-            axis, sign = SIDES[side]
-            sides[side].append(peak(sign * read(f"{CLOSELY}{axis}{k}")))
+        for ((side, __), *__), top in zip(parts, peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):
+            sides[side].append(top)
         return np.stack([np.sum(some, axis=0) for some in product(*sides)], axis=1)
 
 

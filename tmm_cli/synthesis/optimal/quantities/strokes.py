@@ -84,7 +84,8 @@ class Stroke(OfStrokes):
         runs = runs_of(parts, over)
         if over.closed and len(parts) > FOUR:
             return strokes_of(runs).T
-        tops, lows = ([peak(side * run) for run in runs] for side in (1, -1))
+        whole = np.vstack(runs)
+        tops, lows = (peak(side * whole).reshape(len(runs), -1) for side in (1, -1))
         travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
         return travel[:, None]
 
