@@ -72,7 +72,11 @@ class Right:
 
 def predicted(family: Family, asked: Sequence[Asked], mistakes: Sequence[Mistake] = ()) -> Vector:
     """What would have been written down with these mistakes in, (students, asked)."""
-    solution = solve(family, mistakes)
+    return written_down(solve(family, mistakes), asked, mistakes)
+
+
+def written_down(solution: Solution, asked: Sequence[Asked], mistakes: Sequence[Mistake] = ()) -> Vector:
+    """What is written down of a solution, (students, asked), with mistakes in the writing."""
     return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
 
 

@@ -251,9 +251,13 @@ class Newton(Kernel):
     ) -> tuple[Accel, ...]:
         """Accelerations of its links, likewise; rates holds those of its own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
-        bend = _stacked([bend for c in self.constraints for bend in c.velocity_terms(everything, rates)]) * self._scale
+        bend = _stacked(self.velocity_terms(everything, rates)) * self._scale
         found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
         return tuple(Accel(a, e) for a, e in self._by_link(found, det))
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
+        """Second derivative of each row when no link accelerates."""
+        return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
     def _by_link(self, found: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
         """The unknowns with their dimensions, of each link; nan where det is."""

@@ -25,6 +25,7 @@ class Mistake:
 
     name: ClassVar[str]
     sentence: ClassVar[str]
+    solves: ClassVar[bool] = True  # whether the stages must run again; else it changes what is written down alone
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

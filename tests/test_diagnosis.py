@@ -1,0 +1,75 @@
+"""What went wrong: a sheet with a mistake in is explained by that mistake, and right sheets accuse nobody."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from test_commands import SHAPER
+
+from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.mistakes import cases
+from tmm_cli.grading.sheet import Written, predicted, right
+from tmm_cli.grading.task import read_task
+from tmm_cli.problem.reader import read_text
+from tmm_cli.quantities import ANGULAR_SPEED, LENGTH
+from tmm_cli.variants.family import families
+
+ASKED = """
+variants: {OA: {from: 90, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}
+grading:
+  answers:
+    - {of: omega of 3, at: 4}
+    - {of: v of E, at: [3, 7]}
+    - {of: epsilon of 3, at: 4}
+    - {of: a of E, at: [3, 7]}
+    - {of: U of 5, at: 7}
+    - {of: R_34, at: 7}
+    - {of: R_03, at: 7}
+    - {of: M_b, at: [3, 7]}
+"""
+STUDENTS = 100
+DRAWING = 0.01  # of the largest value: how far off careful drawings are
+
+
+@cache
+def group():
+    task = read_task(read_text(SHAPER.read_text(encoding="utf-8") + ASKED, "task.yaml"))
+    random = np.random.default_rng(5)
+    columns = np.stack([random.uniform(0.09, 0.12, STUDENTS), random.uniform(7, 10, STUDENTS)], axis=1)
+    family = next(families(lambda x: task.make(("OA", "n1"), (LENGTH, ANGULAR_SPEED), x), columns))[1]
+    return family, right(family, task.asked)
+
+
+def drawn(values):
+    """Answers off drawings of these values."""
+    known = group()[1]
+    random = np.random.default_rng(1)
+    vectors = np.array([asked.quantity.vector for asked in known.asked])
+    errors = random.uniform(-DRAWING, DRAWING, values.shape) + 1j * vectors * random.uniform(
+        -DRAWING, DRAWING, values.shape
+    )
+    return Written(values + errors * np.maximum(known.scale, np.abs(values)), np.zeros(values.shape, bool))
+
+
+def test_right_answers_off_a_drawing_accuse_nobody():
+    family, known = group()
+    assert not diagnose(family, known, drawn(known.value))
+
+
+def test_what_one_mistake_makes_of_a_sheet_is_explained_by_it():
+    """At least 95 of 100 sheets, and at most one of 100 by another one."""
+    family, known = group()
+    every, random = cases(family), np.random.default_rng(2)
+    values = np.stack([predicted(family, known.asked, [case]) for case in every])
+    with np.errstate(all="ignore"):
+        moved = np.max(np.abs(values - known.value) / known.scale, axis=2)
+    moves = np.isfinite(moved) & (moved > 4 * DRAWING * 5 / 3)
+    made = [int(random.choice(np.flatnonzero(moves[:, n]))) for n in range(STUDENTS)]
+    found = diagnose(family, known, drawn(values[made, np.arange(STUDENTS)]))
+    rightly = wrongly = 0
+    for n, case in enumerate(made):
+        named = {type(one) for claim in found.get(n, []) for one in claim.alternatives}
+        rightly += type(every[case]) in named
+        wrongly += bool(named) and type(every[case]) not in named
+    assert rightly >= 0.95 * STUDENTS and wrongly <= 0.01 * STUDENTS

@@ -1,0 +1,35 @@
+"""Inertia forces drawn along the accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.kinematics.motion import Motion
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class InertiaReversed(Mistake):
+    """Forces, couples, or both."""
+
+    parts: tuple[str, ...] = ()
+
+    name = _("inertia not reversed")
+    sentence = _("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(parts) for parts in (("force",), ("moment",), ("force", "moment")))
+
+    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+        return tuple(
+            replace(load, **{part: -getattr(load, part) for part in self.parts}) if load.kind == "inertia" else load
+            for load in loads
+        )

@@ -1,0 +1,38 @@
+"""A group drawn in its other assembly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.groups.base import Closed
+
+if TYPE_CHECKING:
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class Mirror(Mistake):
+    """The group of these links lies on the other side."""
+
+    links: str = ""
+
+    name = _("mirror assembly")
+    sentence = _("This belongs to another assembly: links {links} were drawn on the other side.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        for kernel in family.kernels:
+            if isinstance(kernel, Closed) and kernel.assemblies == 2:
+                yield cls(", ".join(kernel.group.links))
+
+    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
+        return tuple(
+            replace(kernel, sign=-kernel.sign)
+            if isinstance(kernel, Closed) and ", ".join(kernel.group.links) == self.links else kernel
+            for kernel in kernels
+        )  # fmt: skip

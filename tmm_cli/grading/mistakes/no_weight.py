@@ -1,0 +1,44 @@
+"""Weights left out, or masses put in for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.kinematics.motion import Motion
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class NoWeight(Mistake):
+    """Of one link, or of all. mass: the weight is the number of kilograms."""
+
+    link: str = ""
+    mass: bool = False
+
+    name = _("weight forgotten")
+    sentence = _("A weight G = m g was left out, or the mass was put in for it.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if np.all(family.linkage.gravity == 0):
+            return
+        links = family.linkage.links
+        own = [name for name in family.linkage.moving if np.any(links[name].mass != 0)]
+        yield from (cls(name) for name in own)
+        yield from (cls("", mass) for mass in (False, True))
+
+    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+        share = 1 / np.abs(family.linkage.gravity) if self.mass else 0.0
+        return tuple(
+            replace(load, force=load.force * share) if load.kind == "weight" and self.link in ("", load.link) else load
+            for load in loads
+        )

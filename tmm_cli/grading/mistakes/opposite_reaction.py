@@ -1,0 +1,26 @@
+"""R_ik written down for R_ki."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.quantities.base import Quantity
+    from tmm_cli.grading.solution import Solution
+    from tmm_cli.vectors import Real
+
+
+@dataclass(frozen=True)
+class OppositeReaction(Mistake):
+    """Reactions with the opposite direction."""
+
+    name = _("R_ik for R_ki")
+    sentence = _("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
+    solves = False
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return -values if quantity.name.startswith("R_") else values

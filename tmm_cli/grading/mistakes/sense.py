@@ -1,0 +1,32 @@
+"""The crank turned the wrong way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class Sense(Mistake):
+    """In the same positions, or with the positions counted the wrong way too."""
+
+    counted: bool = False
+
+    name = _("sense of rotation")
+    sentence = _("This belongs to a crank that turns the other way.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(False), cls(True))
+
+    def family(self, family: Family) -> Family:
+        driver = family.linkage.driver
+        linkage = replace(family.linkage, driver=replace(driver, sense=-driver.sense))
+        return family.changed(linkage, 2 * family.q[:, :1] - family.q if self.counted else None)

@@ -1,0 +1,62 @@
+"""The tangential part of a link's acceleration left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.accelerations import Wrapped
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.groups.state import Accel
+
+if TYPE_CHECKING:
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.groups.state import Accels, Drives, Placement, Poses, Rates
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class Tangential(Mistake):
+    """Of a link that turns about an outer hinge of its group."""
+
+    link: str = ""
+
+    name = _("tangential part left out")
+    sentence = _("The tangential part epsilon r of the acceleration of link {link} was left out.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        for kernel in family.kernels:
+            for pair in kernel.group.outer:
+                if pair.kind == "R":
+                    yield cls(kernel.group.own(pair))
+
+    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
+        return tuple(self._around(kernel, family) if self.link in kernel.group.links else kernel for kernel in kernels)
+
+    def _around(self, kernel: Kernel, family: Family) -> Kernel:
+        pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
+        linkage, other = family.linkage, pair.other(self.link)
+        there, here = linkage.local(other, pair.point), linkage.local(self.link, pair.point)
+        return NotTurningFaster(kernel.group, kernel.size, kernel, self.link, other, there, here)
+
+
+@dataclass(frozen=True)
+class NotTurningFaster(Wrapped):
+    """A group one of whose links has no angular acceleration."""
+
+    link: str
+    known: str
+    there: complex
+    here: complex
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        found = dict(zip(self.group.links, self.right.accelerations(at, poses, rates, accels, drives), strict=True))
+        hinge = accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
+        w, arm = rates[self.link].w, self.here * poses[self.link].z
+        found[self.link] = Accel.through(hinge, w * 0, w, arm)
+        return tuple(found.values())

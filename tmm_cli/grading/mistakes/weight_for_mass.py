@@ -1,0 +1,34 @@
+"""The weight put in where the mass is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.kinematics.motion import Motion
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class WeightForMass(Mistake):
+    """Inertia forces are g times too large."""
+
+    name = _("weight for mass")
+    sentence = _("The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if np.any(family.linkage.gravity != 0):
+            yield cls()
+
+    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+        g = np.abs(family.linkage.gravity)
+        return tuple(replace(load, force=load.force * g) if load.kind == "inertia" else load for load in loads)

@@ -1,0 +1,34 @@
+"""The resistance acting in the wrong stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+from tmm_cli.errors import _
+from tmm_cli.grading.mistakes.base import Mistake
+
+if TYPE_CHECKING:
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class WrongStroke(Mistake):
+    """both: it acts always; else in the idle stroke alone."""
+
+    both: bool = False
+
+    name = _("load in the wrong stroke")
+    sentence = _("The useful resistance acts in the working stroke only; here it acts in the idle one.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if family.strokes is not None and any(load.working_stroke_only for load in family.linkage.loads):
+            yield from (cls(False), cls(True))
+
+    def family(self, family: Family) -> Family:
+        strokes = family.strokes
+        assert strokes is not None
+        own = tuple(replace(s, working=self.both or not s.working) for s in strokes.strokes)
+        return replace(family, strokes=replace(strokes, strokes=own))
