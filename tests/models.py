@@ -40,12 +40,6 @@ def linkage_of(name: str) -> Linkage:
     return load(PROBLEMS / f"{name}.yaml").linkage
 
 
-def bank() -> list[tuple[str, Linkage]]:
-    """All planar linkages of the bank by name."""
-    paths = [path for path in sorted(PROBLEMS.glob("*.yaml")) if "spatial:" not in path.read_text(encoding="utf-8")]
-    return [(path.stem, load(path).linkage) for path in paths]
-
-
 def reference(name: str) -> dict[str, Any]:
     """A reference linkage: model and 50-digit answers (tests/data/reference, from an independent method)."""
     found: dict[str, Any] = json.loads((DATA / "reference" / f"{name}.json").read_text(encoding="utf-8"))

@@ -83,7 +83,7 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
         assert count.velocities == count.accelerations == 0
 
 
-@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
+@pytest.mark.parametrize("path", PROBLEMS[1::3], ids=IDS[1::3])
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(path):
     problem, whole = read(path), moved(path)
     for link in problem.linkage.moving:
@@ -140,7 +140,7 @@ def test_only_positions_asked_for_are_solved():
     assert (one.accelerations, all_of_them.accelerations) == (groups, groups * (others + 1))
 
 
-@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
+@pytest.mark.parametrize("path", PROBLEMS[::3], ids=IDS[::3])
 def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(path):
     problem = read(path)
     if any(kernel.followed for kernel in moved(path).kernels):
@@ -304,10 +304,10 @@ def test_the_files_of_an_earlier_run_are_read_from_the_end_of_its_record(tmp_pat
     assert listed(tmp_path) == set()
 
 
-def test_a_run_of_9_000_positions_needs_less_than_150_MB(tmp_path):
-    """Of which some 60 are there for 12 already: so 36 000 need less than 400."""
-    text = SHAPER.read_text(encoding="utf-8").replace("count: 12", "count: 9000")
-    assert "count: 9000" in text
+def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):
+    """Of which some 60 are there for 12 already: so 36 000 need less than 420."""
+    text = SHAPER.read_text(encoding="utf-8").replace("count: 12", "count: 3000")
+    assert "count: 3000" in text
     (tmp_path / "long.yaml").write_text(text, encoding="utf-8")
     code = (
         "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\nexcept SystemExit:\n"
@@ -318,9 +318,9 @@ def test_a_run_of_9_000_positions_needs_less_than_150_MB(tmp_path):
         [sys.executable, "-c", code, "run", str(tmp_path / "long.yaml"), "--no-drawings", "-o", str(tmp_path / "out")],
         capture_output=True, text=True, cwd=ROOT,
     )  # fmt: skip
-    assert float(done.stderr.strip().splitlines()[-1]) < 150
+    assert float(done.stderr.strip().splitlines()[-1]) < 90
     with (tmp_path / "out" / "long" / "cycle.csv").open(encoding="utf-8") as stream:
-        assert sum(1 for _ in stream) == 9_001
+        assert sum(1 for _ in stream) == 3_001
 
 
 def test_a_diagram_of_many_positions_marks_no_more_than_can_be_told_apart():

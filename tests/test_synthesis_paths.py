@@ -13,6 +13,7 @@ from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.least_squares import descend
 from tmm_cli.synthesis.optimal.many_starts import residuals
+from tmm_cli.synthesis.optimal.settling import Settling
 from tmm_cli.synthesis.optimal.solver import best
 from tmm_cli.synthesis.reading import build, task_of
 
@@ -38,7 +39,17 @@ def test_seeds_agree_in_ten_digits_of_the_objective_and_in_the_lengths(found):
     one, two = found
     assert one.agree and two.agree and one.missed == two.missed == 0
     assert one.values[0] == pytest.approx(two.values[0], rel=1e-10)
-    np.testing.assert_allclose(one.numbers, two.numbers, rtol=1e-6)
+    np.testing.assert_allclose(one.x, two.x, atol=1e-6)
+    assert 1000 * one.values[0] <= BY_NAME[SEMICIRCLE].printed
+
+
+def test_where_a_coupler_point_and_the_frame_are_follows_linearly():
+    search = prepared(SEMICIRCLE)
+    settle = Settling(search)
+    assert [search.task.parameters[k].name for k in settle.linear] == ["along", "aside", "x0", "y0"]
+    x = np.random.default_rng(3).random((500, len(search.low)))
+    x = x[search.evaluate(x)[1] == 0]
+    assert np.all(search.evaluate(settle(x))[0] <= search.evaluate(x)[0])
 
 
 def test_the_answer_says_when_independent_starts_do_not_agree(monkeypatch):

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from models import bank, linkage_of
+from models import linkage_of
 from random_linkages import TYPES, linkage
+from test_commands import PROBLEMS, problem
 
 import tmm_cli
 from tmm_cli import load, solve
@@ -136,9 +137,10 @@ def test_groups_found_by_iteration_are_solved_one_by_one():
     assert batch(q)["T.1"].shape == (2, 3)
 
 
-def test_every_class_ii_problem_of_the_bank():
+def test_class_ii_problems_of_the_bank():
     taped = 0
-    for name, it in bank():
+    for file in PROBLEMS[1::2]:
+        name, it = file.stem, problem(file).linkage
         if any(
             not isinstance(group.type, str) or group.drivers or len(group.links) > 2 for group in analyse(it).groups
         ):
@@ -151,7 +153,7 @@ def test_every_class_ii_problem_of_the_bank():
         assert bool(np.all(batch.sound(q)["moving"])), name
         found = batch(q)
         agree({n: found[n] for n in found}, plainly(batch, q))
-    assert taped >= 15
+    assert taped >= 8
 
 
 def test_linkages_of_different_kinds_are_not_put_together():
@@ -179,11 +181,11 @@ def test_a_table_is_read_on_tape():
 
 
 def test_the_library_prepares_problem_files():
-    problem = load("problems/shaper.yaml")
-    results = solve(problem)
-    found = tmm_cli.prepare(problem)(results.motion.q)
+    shaper = load("problems/shaper.yaml")
+    results = solve(shaper)
+    found = tmm_cli.prepare(shaper)(results.motion.q)
     assert np.allclose(found["T.1"], results.reactions.balance.moment, rtol=1e-12, atol=1e-12 * 400)
-    several = tmm_cli.prepare([problem, problem])(results.motion.q)
+    several = tmm_cli.prepare([shaper, shaper])(results.motion.q)
     assert several["T.1"].shape == (2, 12)
 
 

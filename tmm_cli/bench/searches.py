@@ -28,6 +28,7 @@ GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itse
 PER_SECOND = 100_000.0  # candidates, at the size that the search uses
 NEAR = 1e-3  # of the best known
 NEAR_PATH, SECONDS = 1e-2, 20.0  # of the least known path; the processor's time for it
+MET = 1e-6  # of a distance printed, or mm: it is met
 REDUCED_PATHS = ("arc of 5 points, timed", "semicircle of 6 points, timed")  # which take little
 SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
 
@@ -77,7 +78,8 @@ class Found:
 @dataclass(frozen=True)
 class PathFound:
     """What a seed led to on a published path problem: root mean square distance (mm), how far it is above the least
-    known (a share; where that is zero, of the points' spread), whether independent starts agree, processor's time (s).
+    known (a share; where that is zero, of the points' spread), whether independent starts agree, processor's time (s),
+    the distance of the best linkage printed.
     """
 
     problem: str
@@ -87,6 +89,7 @@ class PathFound:
     off: float
     agree: bool
     seconds: float
+    printed: float | None = None
 
     @property
     def near(self) -> bool:
@@ -127,6 +130,9 @@ class Searches(Measured):
         near, longest = sum(path.near for path in own), max(path.seconds for path in own)
         if near < len(own) - len(own) // SEEDS:
             return f"{name}: {near} of {len(own)} seeds within {100 * NEAR_PATH:g} % of the least known"
+        above = sum(p.printed is not None and p.distance > p.printed * (1 + MET) + MET for p in own)
+        if above:
+            return f"{name}: {above} of {len(own)} seeds above the best linkage printed"
         if longest > SECONDS * slack(self.reduced):
             return f"{name}: {longest:.0f} s of the processor, target {SECONDS:g}"
         return ""
@@ -160,9 +166,11 @@ class Searches(Measured):
         )  # fmt: skip
         paths = words(
             "paths", _("Published path problems of four-bar linkages, least squares"),
-            (_("problem"), _("parameters"), _("seed"), _("distance, mm"), _("above the least known, %"),
+            (_("problem"), _("parameters"), _("seed"), _("distance, mm"), _("best printed, mm"),
+             _("above the least known, %"),
              _("starts agree"), _("s")),
-            [(p.problem, str(p.parameters), str(p.seed), f"{p.distance:.10g}", f"{100 * p.off:.2g}",
+            [(p.problem, str(p.parameters), str(p.seed), f"{p.distance:.10g}",
+              "" if p.printed is None else f"{p.printed:.5g}", f"{100 * p.off:.2g}",
               _("yes") if p.agree else _("no"), f"{p.seconds:.1f}") for p in self.paths],
         )  # fmt: skip
         return rates, found, paths
@@ -220,7 +228,7 @@ def path_found(problem: PathProblem, seed: int) -> PathFound:
     one = best(search)
     distance, spread = 1000 * one.values[0], 1000 * float(np.std(np.array(search.task.objective.wanted)))
     off = distance / problem.least - 1 if problem.least else distance / spread
-    return PathFound(problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start)
+    return PathFound(problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start, problem.printed)
 
 
 def rate(name: str, reduced: bool) -> list[SearchRate]:

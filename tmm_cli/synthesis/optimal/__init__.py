@@ -7,7 +7,8 @@
     evolution.py    differential evolution finds where the best one lies; choices.py: where some values only may be
     exact.py        quantities of one candidate from windows about their peaks (peaks.py), and the polish on them
                     (polish.py: sequential quadratic programming)
-    many_starts.py  beside it, for least squares: tournaments of random starts (least_squares.py: Levenberg-Marquardt)
+    many_starts.py  beside it, for least squares: tournaments of random starts (settling.py: what is linear is found by
+                    itself; least_squares.py: Levenberg-Marquardt)
     solver.py       all of it, in this order
     outcome.py      what is told of the best one; drawings.py: how it is drawn
 

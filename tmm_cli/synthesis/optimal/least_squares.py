@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -66,13 +67,13 @@ def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real)
     """Where steps lead, one of each damping, and then the same with what residuals bend along it."""
     straight, bent = [], []
     for damping in dampings.T:
-        step = _step(rows, slopes, x, damping)
+        step = step_of(rows, slopes, x, damping)
         ahead = evaluate(x + AHEAD * step, 1).off
         bend = ((ahead - rows.off) / AHEAD - np.einsum("srn,sn->sr", slopes.off, step)) / AHEAD
         known = np.all(np.isfinite(bend), axis=1, keepdims=True)
         off = rows.off + np.where(known, bend, 0.0)
         straight.append(np.clip(x + step, 0, 1))
-        bent.append(np.clip(x + _step(Rows(off, rows.least), slopes, x, damping), 0, 1))
+        bent.append(np.clip(x + step_of(Rows(off, rows.least), slopes, x, damping), 0, 1))
     return [*straight, *bent]
 
 
@@ -92,14 +93,14 @@ def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
     return Rows(*values), Rows(*slopes)
 
 
-def _step(rows: Rows, slopes: Rows, x: Real, damping: Real) -> Real:
-    """The step of each start, (s, n)."""
+def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
+    """The step of each start, (s, n), within bounds 0..1."""
     s, n = x.shape
     square = slopes.off.transpose(0, 2, 1) @ slopes.off
     steep = np.einsum("sii->si", square)
     square = (
         square
-        + np.eye(n) * (damping[:, None] * (steep + 1e-6 * np.sum(steep, axis=1, keepdims=True)))[:, None]
+        + np.eye(n) * (np.reshape(damping, (-1, 1)) * (steep + 1e-6 * np.sum(steep, axis=1, keepdims=True)))[:, None]
         + 1e-30 * np.eye(n)
     )
     down = -np.einsum("srn,sr->sn", slopes.off, rows.off)

@@ -1,7 +1,8 @@
 """Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
 
-Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts make few
-steps, those with the least squares go on. The search ends where several of the last ended at the same least.
+Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts, settled
+(settling.py), make few steps, and those with the least squares go on. The search ends where several of the last ended
+at the same least.
 """
 
 from __future__ import annotations
@@ -11,17 +12,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.synthesis.optimal.candidates import Candidates, reader
+from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
 from tmm_cli.synthesis.optimal.least_squares import WEIGHT, Evaluate, Rows, descend
 from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
+from tmm_cli.synthesis.optimal.settling import Settling
 from tmm_cli.vectors import Real
 
-SAMPLES = 4000  # of a round, of which the best and those that evolved start
-TOURNAMENT = ((96, 8), (32, 20), (16, 60), (8, 150))  # so many of them, and their steps
+SAMPLES = 20_000  # of a round, of which the best and those that evolved start
+TOURNAMENT = ((200, 6), (64, 15), (24, 40), (8, 100))  # so many of them, and their steps
 ROUNDS, AGREED = 4, 6  # at most; starts that end at the same least
 SAME = 1e-3  # of an objective: the same least
 ZERO = 1e-7  # of the size of what is wanted: it is met
-CLOSER, LAST = 360, 200  # places and steps of the winners
+CLOSER, LAST = 360, 100  # places and steps of the winners
 WINNERS = 4
 BLOCK = 400  # variants at once
 
@@ -50,14 +52,15 @@ def fits(candidates: Candidates) -> bool:
 def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
     """Where the search from many starts ends; evolved: starts of the first round beside the random ones."""
     chance = np.random.default_rng(candidates.task.seed)
-    evaluate = residuals(candidates)
+    evaluate, settle = residuals(candidates), Settling(candidates)
     won: list[tuple[float, Real]] = []
     stopped, progress = False, candidates.task.progress
     try:
         for k in range(ROUNDS):
             progress(k, ROUNDS)
-            x = np.vstack([*(evolved if k == 0 else ()), chance.random((SAMPLES, len(candidates.low)))])
-            won += _round(candidates, evaluate, x)
+            x = _drawn(candidates, chance)
+            x = np.vstack([*(evolved if k == 0 else ()), x[candidates.evaluate(x)[1] < LOST]])
+            won += _round(candidates, evaluate, settle, x)
             if _reached(won) >= AGREED:
                 break
     except KeyboardInterrupt:
@@ -72,12 +75,28 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
     return Found([x for __, x in last], _reached([*last, *won[WINNERS:]]), stopped)
 
 
-def _round(candidates: Candidates, evaluate: Evaluate, x: Real) -> list[tuple[float, Real]]:
+def _drawn(candidates: Candidates, chance: np.random.Generator) -> Real:
+    """Starts at random; every second one by the ratios of its numbers, as bounds far apart leave the size open."""
+    x = chance.random((SAMPLES, len(candidates.low)))
+    ratio = candidates.low > 0
+    low, high = candidates.low[ratio], candidates.high[ratio]
+    x[::2, ratio] = (low * (high / low) ** x[::2, ratio] - low) / (high - low)
+    return x
+
+
+def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real) -> list[tuple[float, Real]]:
     """The sums of squares to which a tournament leads, and where."""
+
+    def settled(x: Real) -> Real:
+        """Those that it makes better: it knows no constraints."""
+        ends = settle(x)
+        return np.where((evaluate(ends, 1).cost() < evaluate(x, 1).cost())[:, None], ends, x)
+
+    x = settled(x)
     f, violation = candidates.evaluate(x)
     x = x[np.lexsort((f, violation))]
     for count, steps in TOURNAMENT:
-        last = _sorted(*descend(evaluate, x[:count], steps))
+        last = _sorted(*descend(evaluate, settled(x[:count]), steps))
         x = np.array([own for __, own in last])
     return last
 

@@ -21,7 +21,7 @@ from tmm_cli.synthesis.record import Infeasible, Outcome
 from tmm_cli.vectors import Real
 
 PARAMETERS: Final[dict[str, str]] = {}
-SHORTER = 5  # times, where starts beside it lead farther
+SHORTER = 20  # times, where starts beside it lead farther
 STARTS = 3  # of the polish: the best that differ; one where candidates are moved one by one
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different

@@ -42,6 +42,10 @@ class Deviation(Goal):
     def residuals(self, read: Read, over: Over, each: int) -> Real:
         """What is least in squares, (variants, residuals); of sets of so many variants the first one leads."""
 
+    @abstractmethod
+    def curve(self, read: Read) -> Any:
+        """What is compared with what is wanted, (variants, places): real, or x + iy."""
+
     @property
     def spread(self) -> float:
         """What residuals are measured against."""
@@ -94,6 +98,9 @@ class Law(Deviation):
     def residuals(self, read: Read, over: Over, each: int) -> Real:
         return self.deviations(read, over)
 
+    def curve(self, read: Read) -> Any:
+        return read("run")
+
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         run = output_place(motion_at(results, np.array(self.places)), self.name)
         over = Over(results.linkage, results.linkage.output_swings(self.name))
@@ -125,6 +132,9 @@ class Path(Deviation):
             return np.hstack([x - np.real(self.wanted), y - np.imag(self.wanted)])
         place = (x + 1j * y).reshape(len(x) // each, each, -1)
         return _across(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
+
+    def curve(self, read: Read) -> Any:
+        return read("px") + 1j * read("py")
 
     def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
         place = read("px")[0] + 1j * read("py")[0]
