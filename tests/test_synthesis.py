@@ -92,7 +92,7 @@ NO_MECHANISM = {
     "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
     "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
     "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2":
-        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 0.001 to 1e+09 mm",
+        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less",
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]":
         "near[0]: this is too large for a mechanism\n  found:   1e12",
     "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too large",
