@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 
 import numpy as np
@@ -152,7 +153,9 @@ def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_const
     assert names == drawings | tables | {"synthesis.json"}
     result = json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))
     assert result["met"] is True and set(result["parameters"]) == {"OA", "AB", "e"}
-    assert max(m["difference"] for m in result["measured"]) < MET
+    assert 0 < max(m["difference"] for m in result["measured"]) < MET
+    with (folder / "synthesis-measured.csv").open(encoding="utf-8") as measured:
+        assert {row["relative difference"] for row in csv.DictReader(measured)} == {"0"}, "rounding is no difference"
 
 
 def test_a_mechanism_that_does_something_else_fails(tmp_path):
