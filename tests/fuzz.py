@@ -17,7 +17,7 @@ import traceback
 import types
 import warnings
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, field
@@ -26,6 +26,7 @@ from itertools import count
 from pathlib import Path
 from random import Random
 from typing import Any, Literal, Union, get_args, get_origin
+from zlib import crc32
 
 import numpy as np
 from pydantic import BaseModel
@@ -251,10 +252,13 @@ def _spots(data: Any, kind: Any) -> Iterator[Spot]:
 
 
 def small(data: dict[str, Any]) -> dict[str, Any]:
-    """The same with few positions: more of them take longer and show no more."""
+    """The same with few positions and a short search: more of them take longer and show no more."""
     positions = data.get("positions")
     if isinstance(positions, dict) and isinstance(positions.get("count"), int):
         positions["count"] = min(positions["count"], POSITIONS)
+    task = data.get("synthesis")
+    if isinstance(task, dict) and task.get("task") == "optimal":
+        task |= {"population": 8, "generations": 3, "positions": 24}
     return data
 
 
@@ -317,8 +321,7 @@ def _ended(text: str, solving: bool) -> tuple[str, str]:
             return "loaded", ""
         problem = problem_of(tree)
         if "synthesis" in tree.data and tree.data["synthesis"]["task"] == "optimal":
-            task_of(tree)  # to search takes longer than all else, and has tests of its own
-            solving = False
+            task_of(tree)  # which a file with a search does not need before it is solved
         if not solving:
             return "loaded", ""
         odd = unsound(solve(problem))
@@ -342,8 +345,14 @@ def cases(random: Random) -> Iterator[tuple[str, bool]]:
             yield json.dumps(small(data), ensure_ascii=False), solving
 
 
-def fuzz(seed: int, loads: int | None = None, until: float | None = None) -> tuple[Counter[str], dict[str, str]]:
-    """How files ended, and faults with the first file that shows each; so many loads, or until a time."""
+def fuzz(
+    seed: int, loads: int | None = None, until: float | None = None,
+    found: Callable[[str, str], None] = lambda wrong, text: None,
+) -> tuple[Counter[str], dict[str, str]]:  # fmt: skip
+    """How files ended, and faults with the first file that shows each; so many loads, or until a time.
+
+    found: told of each fault as it is met.
+    """
     random = Random(seed)
     ended: Counter[str] = Counter()
     faults: dict[str, str] = {}
@@ -352,8 +361,9 @@ def fuzz(seed: int, loads: int | None = None, until: float | None = None) -> tup
             break
         wrong, how = fault(text, solving)
         ended.update([how, "solves" if solving else "loads"])
-        if wrong:
-            faults.setdefault(wrong, text)
+        if wrong and wrong not in faults:
+            faults[wrong] = text
+            found(wrong, text)
     return ended, faults
 
 
@@ -363,12 +373,14 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for the files that show a fault")
     given = parser.parse_args()
-    ended, faults = fuzz(given.seed, until=time.monotonic() + 60 * given.minutes)
-    for number, (wrong, text) in enumerate(faults.items()):
-        print(f"{wrong}\n  {text[:2000]}\n")
+
+    def keep(wrong: str, text: str) -> None:
+        print(f"{wrong}\n  {text[:2000]}\n", flush=True)
         if given.keep:
             given.keep.mkdir(parents=True, exist_ok=True)
-            (given.keep / f"{given.seed}-{number}.yaml").write_text(text, encoding="utf-8")
+            (given.keep / f"{given.seed}-{crc32(wrong.encode()):08x}.yaml").write_text(text, encoding="utf-8")
+
+    ended, faults = fuzz(given.seed, until=time.monotonic() + 60 * given.minutes, found=keep)
     print(", ".join(f"{how}: {count}" for how, count in sorted(ended.items())))
     return 1 if faults else 0
 

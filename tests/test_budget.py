@@ -22,17 +22,17 @@ def points(number):
         (
             {LOAD: loads(200), "count: 12": "count: 20000"},
             "positions.count: too many positions for so many links, points and loads found: 20000 positions; 5 links, "
-            "8 points, 200 loads allowed: at most 6129",
+            "8 points, 200 loads allowed: at most 6089",
         ),
         (
             {"count: 12": "count: 100000"},
             "positions.count: too many positions for so many links, points and loads found: 100000 positions; 5 links, "
-            "8 points, 1 loads allowed: at most 74280",
+            "8 points, 1 loads allowed: at most 74240",
         ),
         (
             {"points: [C, D], length: CD": points(5000)},
             "links: this linkage is too large found: 5 links, 5008 points, 1 loads "
-            "allowed: 6 a link, 1 a point, 2 a load: at most 4160 in all",
+            "allowed: 6 a link, 1 a point, 2 a load: at most 3942 in all",
         ),
     ],
 )
@@ -49,24 +49,30 @@ def test_what_would_take_too_long_is_refused_with_what_may_be_asked(changes, tol
         assert told in " ".join(done.stderr.split()), done.stderr
 
 
-def test_a_linkage_with_many_points_is_computed_but_neither_drawn_nor_judged(tmp_path):
+def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
     file = tmp_path / "much.yaml"
-    file.write_text(SHAPER.replace("points: [C, D], length: CD", points(300)), encoding="utf-8")
-    told = tmm("run", file, cwd=tmp_path).stderr
-    assert "positions.detail: these are too many drawings for so many links and points" in told
-    assert "allowed: --no-drawings" in told
-    told = tmm("run", file, "--no-drawings", "--digits", cwd=tmp_path).stderr
-    assert "--digits: the linkage is too large for its digits to be judged" in told
-    assert not (tmp_path / "outputs").exists()
+    file.write_text(SHAPER.replace("points: [C, D], length: CD", points(500)), encoding="utf-8")
     assert tmm("run", file, "--no-drawings", cwd=tmp_path).returncode == 0
+    monkeypatch.setattr("tmm_cli.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
+    for command, told in {
+        ("run",): "positions.detail: these are too many drawings for so many links, points and positions "
+        "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
+        ("structure", "--drawings"): "allowed: without drawings",
+        **{(name, "--digits"): "--digits: too many positions and too large a linkage for all digits to be judged "
+           "found: 12 positions; 5 links, 508 points, 1 loads allowed: at most 2 positions, or without --digits"
+           for name in ("run", "kinematics", "forces")},
+    }.items():  # fmt: skip
+        done = tmm(command[0], file, *command[1:], "-o", tmp_path / "refused", cwd=tmp_path)
+        assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr
+    assert not (tmp_path / "refused").exists()
 
 
-def test_every_problem_of_the_bank_may_be_drawn_in_all_its_positions_and_judged(tmp_path):
+def test_every_problem_of_the_bank_may_be_drawn_in_twelve_positions_and_judged():
     """And none is near the budget: a course project never meets it."""
     from tmm_cli import load
-    from tmm_cli.problem.budget import BUDGET, DRAWN, JUDGED, SEARCHED, parts
+    from tmm_cli.problem.budget import refuse_options
 
-    for name in ("shaper", "press-class-iii", "engine-four", "positioner"):
-        problem = load(str(ROOT / "problems" / f"{name}.yaml"))
-        size = parts(problem.linkage)
-        assert 12 * size < DRAWN and 2 * size < JUDGED and size * (SEARCHED + 3600) < BUDGET
+    for name in ("shaper", "press-class-iii", "engine-four", "positioner", "excavator"):
+        linkage = load(str(ROOT / "problems" / f"{name}.yaml")).linkage
+        refuse_options(linkage, 12, digits=True, detail=12)
+        refuse_options(linkage, 3600, digits=False, detail=12)

@@ -4,7 +4,10 @@ import json
 import math
 
 import pytest
-from test_commands import process, tmm
+from test_commands import ROOT, process, tmm
+
+from tmm_cli import load, solve
+from tmm_cli.results.reports import tables
 
 MECHANISM = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -104,3 +107,11 @@ def test_nearness_to_a_change_point_is_found_between_the_positions(tmp_path):
     assert near["holds"] is False
     assert near["value"] < 0.02
     assert math.cos(near["at"]) == pytest.approx(-1, abs=1e-6)
+
+
+def test_a_place_that_is_zero_but_for_rounding_is_told_as_zero():
+    results = solve(load(str(ROOT / "problems" / "crank-rocker.yaml")))
+    assert 0 < results.pressure[0].place < 1e-12, "rad"
+    table = next(table for table in tables(results) if table.name == "checks")
+    places = dict(zip(table.columns[0].values, table.columns[4].values, strict=True))
+    assert places["pressure angle"] == "0 deg"

@@ -12,7 +12,7 @@ from tmm_cli import load, solve
 from tmm_cli.draw import files, sheets
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.labels import Ground, Label, extent
-from tmm_cli.draw.mechanism import all_positions, detailed
+from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.plans import motion_plans
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.problem.build import build
@@ -52,11 +52,31 @@ def test_labels_do_not_cover_each_other_or_lines():
             assert abs(place.real - other.real) > 0.9 * width or abs(place.imag - other.imag) > 0.9 * height
 
 
+@pytest.mark.parametrize(
+    ("centre", "labels"),
+    [
+        ("{on: CD, at: 0.5}", {"S3", "T"}),
+        ("{on: CD, at: 0.4}", {"T, S3"}),
+        ("T", {"T, S3"}),
+    ],
+)
+@pytest.mark.parametrize("name", ["T", "S3"])
+def test_a_centre_of_mass_that_is_a_point_or_has_the_name_of_one_is_labelled_once(centre, labels, name):
+    problem = shaper(
+        ("points: [C, D], length: CD", f"points: [C, D], length: CD, also: {{{name}: [260, 0]}}"),
+        ("inertia: 1.1, centre: {on: CD, at: 0.5}", f"inertia: 1.1, centre: {centre.replace('T', name)}"),
+    )
+    ((__, sheet),) = position(detailed(solve(problem))[0])
+    texts = [text.get_text() for text in sheet.axes[0].texts]
+    found = [text for text in texts if {"S3", "T"} & set(text.split(", "))]
+    assert sorted(found) == (["S3"] if name == "S3" else sorted(labels))
+
+
 @pytest.mark.parametrize("unit", ["um", "mm", "km"])
 def test_any_size_is_drawn(unit):
     results = solve(shaper(("length: mm", f"length: {unit}")))
     ram = plain(dict(all_positions(results))["mechanism"])
-    assert {"O", "A", "C", "D", "E"} <= ram  # every named point
+    assert {"O", "A, S2", "C", "D", "E"} <= ram  # every named point, a centre of mass in one of them with it
     assert any(text.startswith("μ_l = ") for text in ram)
     (here,) = detailed(results)
     assert {"p", "p′"} & plain(dict(motion_plans(here))["velocity-03"])
@@ -88,7 +108,8 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
 def test_every_point_of_a_moving_link_is_named(name):
     results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "kinematics")
     moving = {point for link in results.linkage.moving for point in results.linkage.links[link].points}
-    assert moving <= plain(dict(all_positions(results))["mechanism"])
+    labels = plain(dict(all_positions(results))["mechanism"])
+    assert moving <= {name for label in labels for name in label.split(", ")}  # with a centre of mass that lies there
 
 
 def test_every_sheet_is_written_in_every_format():

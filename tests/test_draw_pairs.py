@@ -291,8 +291,8 @@ def test_the_lever_of_several_drivers_says_what_its_sum_is_of():
     figure = drawn("two cranks")["lever-02"]
     told = " ".join(t.get_text() for t in figure.axes[0].texts)
     balance = {b.driver.link: b.moment[2] for b in solved("two cranks").reactions.balances}
-    assert f"Mb₁ = {balance['1']:.6g} N·m" in told and "Mb₁ -2·Mb₄" in told
-    assert f"= {balance['1'] - 2 * balance['4']:.6g} N·m" in told
+    assert f"Mb₁ = {balance['1']:.6g} N*m" in told and "Mb₁ -2·Mb₄" in told
+    assert f"= {balance['1'] - 2 * balance['4']:.6g} N*m" in told
 
 
 def test_in_a_cycle_of_several_turns_positions_of_one_place_share_a_label():

@@ -77,7 +77,7 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("1/2 mm", LENGTH, "a length is wanted here"
          "\n  found:   '1/2 mm', a quantity in m^-1 (0.5 mm^-1)" + LENGTHS),
         ("pi*m", LENGTH, "a length is wanted here"
-         "\n  found:   'pi*m', a quantity in kg·rad (3960 kg·deg)" + LENGTHS),
+         "\n  found:   'pi*m', a quantity in kg*rad (3960 kg*deg)" + LENGTHS),
         ("CD + n1", LENGTH, "a length and an angular speed cannot be added or compared"
          "\n  found:   'CD + n1'" + ARITHMETIC),
         ("CD/CD + 5 mm", LENGTH, "a number and a length cannot be added or compared"

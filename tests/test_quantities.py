@@ -1,5 +1,6 @@
 """Every quantity stands once: tables, result.json, its schema, bounds of rounding and `prepare` read the same list."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -7,9 +8,15 @@ import pytest
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
+from tmm_cli.draw.mechanism import detailed
+from tmm_cli.draw.plans import lever, motion_plans
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
 from tmm_cli.results.as_json import schema, to_json
+from tmm_cli.results.digits import accuracy
 from tmm_cli.results.reports import tables
+from tmm_cli.results.terminal import cells
 
 PROBLEMS = Path(__file__).parent.parent / "problems"
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
@@ -60,3 +67,50 @@ def test_bounds_and_prepare_read_the_same_values(shaper):
             value = np.asarray(batch[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{kind}"])
             part = {"x": value.real, "y": value.imag, "": value}[component]
             np.testing.assert_allclose(part, bounded[kind, name, component], rtol=0, atol=1e-9 * np.max(np.abs(value)))
+
+
+BALANCED = """tmm: 1
+gravity: 0
+points: {O: [0, 0]}
+guides: {x: {through: [0, 0], angle: 0}, y: {through: [0, 0], angle: 90}}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: [A, B], length: 200}
+  3: {points: [B], slides: {on: x}}
+  4: {points: [A, K], length: 100}
+  5: {points: [K], slides: {on: y}}
+driver: {link: 1, speed: 10 rad/s}
+sketch: {at: 30, B: [250, 0], K: [0, 120]}
+loads:
+  F: {on: 3, force: [-1000.1, 0]}
+  F1: {on: 3, force: [300.3, 0]}
+  F2: {on: 3, force: [699.8, 0]}
+  Q: {on: 5, force: [0, -500]}
+"""
+
+
+def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
+    """Three forces that balance each other leave the rod AB and its slider without any; the rod AK bears Q."""
+    results = solve(build(read_text(BALANCED, "balanced.yaml")))
+    reactions, table = to_json(results)["forces"]["reactions"], {t.name: t for t in tables(results)}["reactions"]
+    assert 0 < max(np.abs(results.reactions.of("B").force)) < 1e-12
+    for pair in ("B", "x"):
+        assert reactions[pair]["angle"] == [None] * 12
+    assert reactions["x"]["arm"] == [None] * 12
+    np.testing.assert_allclose(reactions["K"]["angle"][1:3], np.angle(results.reactions.of("K").force[1:3]), rtol=0)
+    (told,) = accuracy(results).with_bounds([table])
+    angles = next(column for column in told.columns if column.header == "angle")
+    shown = dict(zip(told.columns[2].values, cells(angles, results.problem.units, range(told.rows)), strict=True))
+    assert shown["B"] == shown["x"] == "-" and float(shown["K"])
+
+
+def test_units_are_written_one_way_in_tables_in_the_schema_and_on_drawings(shaper):
+    told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
+    described = json.dumps(schema(), ensure_ascii=False)
+    position = detailed(shaper)[0]
+    notes = [text.get_text() for draw in (motion_plans, lever) for __, sheet in draw(position)
+             for text in sheet.axes[0].texts]  # fmt: skip
+    assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("m/s^2/mm") for note in notes)
+    assert any(note.endswith(" N*m") for note in notes)
+    for other in ("m/s2", "m/s²", "N·m", "N m"):
+        assert not [text for text in (*told, described, *notes) if other in text], other

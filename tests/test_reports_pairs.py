@@ -7,6 +7,9 @@ import pytest
 from higher import PROBLEMS
 from test_draw_pairs import solved
 
+from tmm_cli import solve
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
 from tmm_cli.results.explain import explain
 from tmm_cli.results.reports import tables
 
@@ -115,3 +118,35 @@ def test_a_sketch_at_the_end_of_a_stroke_hides_no_stroke():
     """Sketched at its outer dead centre, the crank-slider has its seam at the inner one."""
     strokes = solved("friction").strokes
     assert strokes.travel == pytest.approx(0.16) and len(strokes.strokes) == 2
+
+
+def test_speeds_of_toothed_wheels_stand_in_turns_a_minute_too():
+    found, units = table("link-motion", "gear"), solved("gear").problem.units
+    omega, n = (next(c for c in found.columns if c.header == header) for header in ("omega", "n"))
+    assert n.heading(units) == "n, rpm" and found.columns.index(n) == found.columns.index(omega) + 1
+    np.testing.assert_allclose(n.numbers(units), omega.array * 30 / np.pi, rtol=1e-15)
+    assert "n" not in [column.header for column in table("link-motion", "two cranks").columns]
+
+
+def test_what_is_positive_does_not_depend_on_how_the_driver_turns_and_stands_below_the_tables():
+    """A crank bears the same weight at its end however it turns: M_b is the same, its power is not."""
+    text = """tmm: 1
+gravity: 0
+points: {O: [0, 0]}
+links:
+  1: {points: [O, A], length: 60}
+driver: {link: 1, speed: 10 rad/s, turns: WAY}
+sketch: {at: 0}
+masses: {1: {mass: 1 kg, centre: A}}
+loads: {F: {on: 1, at: A, force: [0, -100]}}
+positions: {at: [0]}
+"""
+    ccw, cw = (solve(build(read_text(text.replace("WAY", way), "x.yaml"))) for way in ("ccw", "cw"))
+    assert ccw.reactions.balance.moment[0] == pytest.approx(6) == cw.reactions.balance.moment[0]
+    assert ccw.lever.balancing[0] == pytest.approx(6) == cw.lever.balancing[0]
+    assert (ccw.energy.drivers[0], cw.energy.drivers[0]) == (pytest.approx(60), pytest.approx(-60))
+    assert (ccw.motion.link("1").omega[0], cw.motion.link("1").omega[0]) == (10, -10)
+    told = {table.name: " ".join(table.notes) for table in tables(cw)}
+    for name in ("cycle", "balance", "link-motion"):
+        assert "positive counterclockwise, however the driver turns: a negative M_b drives it clockwise" in told[name]
+    assert "Powers are positive that speed the mechanism up" in told["energy"] and "positive that" in told["lever"]

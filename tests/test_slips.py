@@ -183,6 +183,8 @@ def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
          "\n  found:   1e-200\n  allowed: 1e-17 mm or more"),
         ("1 rad/s", "1e160 rpm", "x.yaml:7:26: driver.speed: this is too large for a mechanism"
          "\n  found:   '1e160 rpm'\n  allowed: 1e+20 rad/s or less"),
+        ("at: 60", "at: 6e19", "x.yaml:8:14: sketch.at: this is too large for a mechanism"
+         "\n  found:   6e19\n  allowed: 5.72958e+07 deg or less"),
     ],
 )  # fmt: skip
 def test_sizes_that_no_mechanism_has(old: str, new: str, message: str) -> None:

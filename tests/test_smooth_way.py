@@ -71,7 +71,7 @@ def test_an_antiparallelogram_stays_one_too():
 def test_the_warning_says_what_is_done_and_how_to_ask_for_the_other():
     said = list(warnings(solved(PARALLELOGRAM)))
     assert said[0] == (
-        "change point of II(2,3) inside the cycle at 0 deg (margin 0.0e+00): there the group may go over into another "
+        "change point of II(2,3) inside the cycle at 0 deg (margin 0): there the group may go over into another "
         "assembly; the results go smoothly through, as a machine that runs does (the other: `change points: keep side`)"
     )
 

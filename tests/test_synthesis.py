@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 
 import numpy as np
@@ -91,7 +92,7 @@ NO_MECHANISM = {
     "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
     "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
     "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2":
-        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 0.001 to 1e+09 mm",
+        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less",
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]":
         "near[0]: this is too large for a mechanism\n  found:   1e12",
     "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too large",
@@ -152,7 +153,9 @@ def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_const
     assert names == drawings | tables | {"synthesis.json"}
     result = json.loads((folder / "synthesis.json").read_text(encoding="utf-8"))
     assert result["met"] is True and set(result["parameters"]) == {"OA", "AB", "e"}
-    assert max(m["difference"] for m in result["measured"]) < MET
+    assert 0 < max(m["difference"] for m in result["measured"]) < MET
+    with (folder / "synthesis-measured.csv").open(encoding="utf-8") as measured:
+        assert {row["relative difference"] for row in csv.DictReader(measured)} == {"0"}, "rounding is no difference"
 
 
 def test_a_mechanism_that_does_something_else_fails(tmp_path):

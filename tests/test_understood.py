@@ -32,7 +32,7 @@ def test_units_driver_sizes_and_gravity_are_said_before_the_tables():
     assert done.stderr.splitlines() == [
         "shaper: bare numbers: mm, deg, kg, N, N*m, kg*m^2; a bare speed: rad/s or m/s",
         "shaper: driver: link 1, 8.59 rad/s = 82 rpm, counterclockwise",
-        "shaper: sizes: from 110 mm (OA) to 650 mm (CD); gravity 9.81 m/s2 downwards",
+        "shaper: sizes: from 110 mm (OA) to 650 mm (CD); gravity 9.81 m/s^2 downwards",
     ]
 
 

@@ -121,8 +121,8 @@ KINDS: Final[Mapping[str, Kind]] = {
 
 
 def product_text(powers: Mapping[str, int]) -> str:
-    """`m^2·s^-1` from names and powers."""
-    return "·".join(name if power == 1 else f"{name}^{power}" for name, power in powers.items() if power)
+    """`m^2*s^-1` from names and powers."""
+    return "*".join(name if power == 1 else f"{name}^{power}" for name, power in powers.items() if power)
 
 
 NamedValues = tuple[str, Any, Dimension]  # header, one value a position (None: the thing has none), dimension
@@ -191,7 +191,7 @@ PER_UNIT: Final = "SI, per unit of the driver's motion"
 POINT: Final = (
     Quantity("x", "place", "m", LENGTH, (_("x"), _("y")), vector=True, leading=True),
     Quantity("v", "velocity", "m/s", SPEED, (_("vx"), _("vy"), _("v")), vector=True, leading=True),
-    Quantity("a", "acceleration", "m/s2", ACCELERATION, (_("ax"), _("ay"), _("a")), vector=True, leading=True),
+    Quantity("a", "acceleration", "m/s^2", ACCELERATION, (_("ax"), _("ay"), _("a")), vector=True, leading=True),
     Quantity("first", "derivative of its place by the driver's", PER_UNIT, NUMBER,
              (_("dx/dq, SI"), _("dy/dq, SI")), vector=True),
     Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("d2x/dq2, SI"), _("d2y/dq2, SI")), vector=True),
@@ -200,7 +200,7 @@ POINT: Final = (
 LINK: Final = (
     Quantity("angle", "of its x axis", "rad", ANGLE, (_("angle"),), leading=True),
     Quantity("omega", "angular speed", "rad/s", ANGULAR_SPEED, (_("omega"),), leading=True),
-    Quantity("epsilon", "angular acceleration", "rad/s2", ANGULAR_ACCELERATION, (_("epsilon"),), leading=True),
+    Quantity("epsilon", "angular acceleration", "rad/s^2", ANGULAR_ACCELERATION, (_("epsilon"),), leading=True),
     Quantity("first", "d angle / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
     Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
 )
@@ -208,8 +208,8 @@ LINK: Final = (
 SLIDE: Final = (
     Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (_("s"),)),
     Quantity("v", "relative velocity", "m/s", SPEED, (_("v relative"),)),
-    Quantity("a", "relative acceleration", "m/s2", ACCELERATION, (_("a relative"),)),
-    Quantity("coriolis", "Coriolis acceleration", "m/s2", ACCELERATION,
+    Quantity("a", "relative acceleration", "m/s^2", ACCELERATION, (_("a relative"),)),
+    Quantity("coriolis", "Coriolis acceleration", "m/s^2", ACCELERATION,
              (_("Coriolis x"), _("Coriolis y"), _("Coriolis")), vector=True),
     Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
     Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
@@ -219,13 +219,13 @@ REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (_("F"),), r
 REACTION: Final = (
     Quantity("force", "on link `on`", "N", FORCE, (_("Fx"), _("Fy")), vector=True, leading=True, symbol="R"),
     REACTION_SIZE,
-    Quantity("angle", "of the force", "rad", ANGLE, (_("angle"),), read=lambda r: np.angle(r.force)),
+    Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (_("angle"),)),
     Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
     Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (_("R tangential"),), vector=True,
              goes_with="normal"),
     Quantity("normal", "part along it", "N", FORCE, (_("R normal"),), vector=True, goes_with="tangential"),
     Quantity("signed", "guides: force along the guide's left normal", "N", FORCE, goes_with="couple"),
-    Quantity("couple", "guides: couple, reduced to the running point", "N m", MOMENT, (_("couple"),), leading=True,
+    Quantity("couple", "guides: couple, reduced to the running point", "N*m", MOMENT, (_("couple"),), leading=True,
              symbol="M", goes_with="couple"),
     Quantity("arm", "guides: where the force acts, along the guide from the running point", "m", LENGTH,
              (_("acts at"),), goes_with="couple"),
@@ -233,17 +233,17 @@ REACTION: Final = (
 
 LOAD: Final = (
     Quantity("force", "force", "N", FORCE, (_("Fx"), _("Fy"), _("F")), vector=True),
-    Quantity("moment", "couple", "N m", MOMENT, (_("M"),)),
+    Quantity("moment", "couple", "N*m", MOMENT, (_("M"),)),
 )
 
 BALANCE: Final = (
-    Quantity("moment", "null for a driven slider", "N m", MOMENT, (_("M_b"),)),
+    Quantity("moment", "null for a driven slider", "N*m", MOMENT, (_("M_b"),)),
     Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (_("F_b"),)),
     Quantity("vector", "the force", "N", FORCE, vector=True),
     Quantity("at", "where it acts", "m", LENGTH, vector=True),
 )
 BALANCING: Final = Quantity(
-    "balancing", "what works with the driver's place: moment or force", "N m or N", MOMENT, (_("M_b"),),
+    "balancing", "what works with the driver's place: moment or force", "N*m or N", MOMENT, (_("M_b"),),
     of_slider=(_("F_b"), FORCE), leading=True, symbol="T", read=lambda balance: balance.generalized,
 )  # fmt: skip
 
@@ -252,18 +252,18 @@ LEVER_FORCE: Final = (
     Quantity("arm", "about the pole", "m per rad", LENGTH, (_("arm"),), of_slider=(_("arm"), NUMBER)),
 )
 LEVER_COUPLE: Final = (
-    Quantity("size", "couple", "N m", MOMENT, (_("couple"),)),
+    Quantity("size", "couple", "N*m", MOMENT, (_("couple"),)),
     Quantity("arm", "omega / omega_1", "", NUMBER, (_("omega / omega_1"),)),
 )
-LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N m or N", MOMENT, (_("moment"),),
+LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N*m or N", MOMENT, (_("moment"),),
                                of_slider=(_("moment"), FORCE))  # fmt: skip
 
 ENERGY: Final = (
-    Quantity("inertia", "reduced moment of inertia, or mass", "kg m2 or kg", INERTIA, (_("J reduced"),),
+    Quantity("inertia", "reduced moment of inertia, or mass", "kg*m^2 or kg", INERTIA, (_("J reduced"),),
              of_slider=(_("m reduced"), MASS)),
     Quantity("slope", "its derivative by the driver", "SI", NUMBER, (_("dJ/dphi, SI"),),
              of_slider=(_("dm/ds, SI"), NUMBER)),
-    Quantity("moment", "reduced moment of all loads but inertia, or force", "N m or N", MOMENT, (_("M reduced"),),
+    Quantity("moment", "reduced moment of all loads but inertia, or force", "N*m or N", MOMENT, (_("M reduced"),),
              of_slider=(_("F reduced"), FORCE)),
     Quantity("kinetic", "kinetic energy", "J", NUMBER, (_("kinetic energy, J"),)),
     Quantity("rate", "its rate", "W", NUMBER, (_("its rate, W"),)),

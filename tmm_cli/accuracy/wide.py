@@ -25,9 +25,7 @@ FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far b
 AROUND = 65  # places over the driver's way that tell how large a function is
 SMOOTH = 1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
 NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
-FINE = (
-    1e-10  # of the largest value: with more noise in float64 a position near a dead one would blur all that was found
-)
+FINE = 1e-10  # of the largest value: more noise in float64, near a dead position, would blur all that was found
 LEAST = 1e-12  # of the way: ends of groups that were followed there
 GUESS = 1e-9  # of the way: dead positions where a margin is least
 

@@ -21,6 +21,6 @@ def forces(
         from tmm_cli.cli.opening import opened
         from tmm_cli.cli.reporting import report
 
-        return report(solve(opened(file, settings), "forces", position), names, as_json, out, digits)
+        return report(solve(opened(file, settings, position, digits), "forces", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

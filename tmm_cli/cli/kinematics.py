@@ -41,7 +41,9 @@ def kinematics(
 
         if assemblies:
             return _list_assemblies(file, as_json, out, position, settings)
-        return report(solve(opened(file, settings), "kinematics", position, asked), names, as_json, out, digits)
+        return report(
+            solve(opened(file, settings, position, digits), "kinematics", position, asked), names, as_json, out, digits
+        )
 
     each(files, work, as_json=as_json, out=out)
 

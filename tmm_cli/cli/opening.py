@@ -7,17 +7,39 @@ from collections.abc import Sequence
 from tmm_cli import problem_of
 from tmm_cli.cli.common import say
 from tmm_cli.errors import _
+from tmm_cli.problem.budget import refuse_options
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.understood import bare_units, doubts, understood
 
 
-def opened(file: str, settings: Sequence[str] | None = None) -> Problem | TaskProblem:
-    """The problem of a file with other parameters; says what was understood. Raises ProblemError."""
+def opened(
+    file: str, settings: Sequence[str] | None = None, positions: Sequence[int] | None = None, digits: bool = False
+) -> Problem | TaskProblem:
+    """The problem of a file with other parameters; says what was understood.
+
+    positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
+    """
     problem = problem_of(with_settings(read_file(file), settings or ()))
     introduce(problem)
+    if digits:
+        afford(problem.whole, positions, digits=True)
     return problem
+
+
+def afford(
+    problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: Sequence[int] | None = None
+) -> None:
+    """Refuse more work than the budget holds, before it starts. detail: positions that are drawn
+    in detail; None where nothing is drawn. Raises ProblemError."""
+    request = problem.request
+    count = len(positions or request.places) or request.count
+    try:
+        refuse_options(problem.linkage, count, digits=digits, detail=None if detail is None else len(detail))
+    except ProblemError as error:
+        raise error.located(problem.file) from None
 
 
 def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:

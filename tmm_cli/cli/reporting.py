@@ -11,9 +11,8 @@ from tmm_cli import count, problem_of, redrive, solve, structure_of
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
-from tmm_cli.cli.opening import introduce
+from tmm_cli.cli.opening import afford, introduce
 from tmm_cli.errors import _
-from tmm_cli.problem.budget import refuse_digits
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.settings import with_settings
@@ -40,11 +39,13 @@ def computed(
     drafted: bool = False,
     silent: bool = False,
     settings: Sequence[str] | None = None,
+    digits: bool = False,
+    drawings: bool = False,
 ) -> Results | ChainResults:
     """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
 
     drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
-    settings: other values of parameters.
+    settings: other values of parameters; digits, drawings: what will be asked of the results.
     """
     tree = with_settings(read_file(file), settings or ())
     if is_chain(tree):
@@ -56,6 +57,10 @@ def computed(
         problem = redrive(problem, driver)
     if not silent:
         introduce(problem, drafted=drafted)
+    if digits or drawings:
+        whole = problem.whole
+        shown = () if stage == "structure" else positions if positions and len(positions) == 1 else whole.request.detail
+        afford(whole, positions, digits=digits, detail=shown if drawings else None)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
@@ -65,8 +70,6 @@ def bounds_of(results: Results | ChainResults, digits: bool) -> AccuracyReport |
         return None
     from tmm_cli.results.digits import accuracy  # the structure does not need it
 
-    if digits:
-        refuse_digits(results.linkage)
     return accuracy(results, digits)
 
 

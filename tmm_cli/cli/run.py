@@ -31,7 +31,7 @@ def run(
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
-        results = computed(file, "forces", position, settings=settings)
+        results = computed(file, "forces", position, settings=settings, digits=digits, drawings=drawings)
         pictures: Iterable[tuple[str, bytes]] | None = None
         if drawings and not isinstance(results, ChainResults):
             from tmm_cli.draw import files as drawn

@@ -33,7 +33,7 @@ def structure(
         from tmm_cli.analysis.spatial_chain import ChainResults
         from tmm_cli.cli.reporting import computed, report, write_pictures
 
-        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=settings)
+        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=settings, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out)
         from tmm_cli.draw import files as drawn

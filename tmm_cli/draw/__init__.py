@@ -13,7 +13,6 @@ from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.plans import forces, lever, motion_plans
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
-from tmm_cli.problem.budget import refuse_drawings
 
 
 def sheets(results: Results) -> Drawn:
@@ -34,6 +33,5 @@ def sheets(results: Results) -> Drawn:
 
 
 def files(results: Results, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format; say: where a note on them goes. Raises ProblemError."""
-    refuse_drawings(results.linkage, results.problem.request)
+    """Every sheet in every format; say: where a note on them goes."""
     return every_format(sheets(results), say)

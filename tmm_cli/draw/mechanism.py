@@ -62,20 +62,27 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
     linkage = scene.linkage
     moving = linkage.moving_points
     drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
-    for name in dict.fromkeys(p for link in linkage.moving for p in linkage.links[link].points):
-        at = sheet.on(scene.point(name))
-        if sum(name in link.points for link in linkage.links.values()) == 1:
-            sheet.circle(at, 0.6, face=DARK)
-        sheet.label(name + mark if name in moving else name, at, 10, far=bool(mark) and name in moving)
+    names = {p: [p + mark if p in moving else p] for link in linkage.moving for p in linkage.links[link].points}
     for link in linkage.moving:
-        own = linkage.links[link]
+        own, centre = linkage.links[link], f"S{link}"
         if np.any(own.mass != 0):
             at = sheet.on(scene.place(link, complex(own.centre)))
-            if all(abs(at - sheet.on(scene.point(p))) > MEASURED.hinge for p in own.points):
+            point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
+            if point is None:
                 sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
                 sheet.circle(at, 0.25, face=DARK, z=6.3)
                 belongs(sheet, scene, link, at)
-            sheet.label(f"S{link}", at, 8, "#6b5310")
+            if centre in names:
+                continue
+            if point is None:
+                sheet.label(centre, at, 8, "#6b5310")
+            else:
+                names[point].append(centre)
+    for name, called in names.items():
+        at = sheet.on(scene.point(name))
+        if sum(name in link.points for link in linkage.links.values()) == 1:
+            sheet.circle(at, 0.6, face=DARK)
+        sheet.label(", ".join(called), at, 10, far=bool(mark) and name in moving)
     for link, form in drawn.forms.items():
         sheet.label(link, form.middle, 10, NAMES, "italic")
     return drawn

@@ -23,7 +23,7 @@ def motion_plans(here: Position) -> Iterable[tuple[str, Figure]]:
     """Velocity plan and acceleration plan of a position, with the parts of each link."""
     for name, plan_of, title, pole, symbol, unit in (
         ("velocity", velocity_plan, _("Velocity plan. {caption}"), "p", "v", "m/s/mm"),
-        ("acceleration", acceleration_plan, _("Acceleration plan. {caption}"), POLE, "a", "m/s²/mm"),
+        ("acceleration", acceleration_plan, _("Acceleration plan. {caption}"), POLE, "a", "m/s^2/mm"),
     ):
         plan = plan_of(here.motion, here.k)
         sheet = here.sheet(title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
@@ -115,7 +115,7 @@ def lever(here: Position) -> Iterable[tuple[str, Figure]]:
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:
-            sheet.note(f"{name}: {moment:.4g} N·m")
+            sheet.note(f"{name}: {moment:.4g} N*m")
     for line in _balancing(here, plan.balancing):
         sheet.note(line)
     yield here.stem("lever"), sheet.finish()
@@ -127,7 +127,7 @@ def _balancing(here: Position, value: float) -> Iterable[str]:
     assert reactions is not None
     crank = here.results.linkage.driver.kind == "turn"
     if len(reactions.balances) == 1:
-        yield (_("Mb = {value} N·m") if crank else _("Fb = {value} N")).format(value=f"{value:.6g}")
+        yield (_("Mb = {value} N*m") if crank else _("Fb = {value} N")).format(value=f"{value:.6g}")
         return
     names = []
     for balance in reactions.balances:
@@ -136,8 +136,8 @@ def _balancing(here: Position, value: float) -> Iterable[str]:
         name = balance_name(balance.driver.link, True, turns=turns)
         names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
         yield _("{name} = {value} {unit} (force plan)").format(
-            name=name, value=f"{float(balance.generalized[k]):.6g}", unit="N·m" if turns else "N"
+            name=name, value=f"{float(balance.generalized[k]):.6g}", unit="N*m" if turns else "N"
         )
     yield _("lever: {names} = {value} {unit}").format(
-        names=" ".join(names), value=f"{value:.6g}", unit="N·m" if crank else "N"
+        names=" ".join(names), value=f"{value:.6g}", unit="N*m" if crank else "N"
     )

@@ -19,8 +19,9 @@ from tmm_cli.vectors import Real, Vector, dot
 
 @dataclass(frozen=True)
 class Item:
-    """A force or couple on the lever. arm: of the force about the pole (m per unit of the driver's motion), or the
-    ratio omega_link / omega_driver for a couple; moment = size * arm (N m, or N for a cylinder)."""
+    """A force or couple on the lever. arm: of the force about the pole (m per unit of the driver's motion; nan where
+    there is no force), or the ratio omega_link / omega_driver for a couple; moment = size * arm (N m, or N for a
+    cylinder)."""
 
     name: str
     link: str
@@ -52,7 +53,7 @@ def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
             size = np.abs(load.force)
             moment = dot(load.force, end)
             with np.errstate(invalid="ignore", divide="ignore"):
-                arm = np.where(size > 0, moment / size, 0.0)
+                arm = np.where(size > 0, moment / size, np.nan)
             items.append(Item(load.name, load.link, size, arm, moment, end, load.force))
         if load.has_moment:
             ratio = motion.link(load.link).first

@@ -6,8 +6,8 @@ section 2.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
@@ -17,7 +17,7 @@ from tmm_cli.groups.state import PairReaction, Wrench
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Driver, Linkage
 from tmm_cli.structure.assur import Group, Pair, Structure
-from tmm_cli.tolerances import INFINITELY_FAR
+from tmm_cli.tolerances import INFINITELY_FAR, NO_FORCE
 from tmm_cli.vectors import Real, Vector, cross, dot, unit
 
 
@@ -27,7 +27,8 @@ class Reaction:
 
     arm: where a guide's force really acts, along the guide from the running point (m; infinite for a pure couple).
     signed: a guide's force, positive to the left of the guide. tangential, normal: parts of an outer hinge's force.
-    back: the couple on `by` where it is not the opposite (a swinging follower of a cam given by its law).
+    back: the couple on `by` where it is not the opposite (a swinging follower of a cam given by its law). angle: of the
+    force (rad), in `Reactions.directed` alone.
     """
 
     pair: Pair
@@ -41,6 +42,7 @@ class Reaction:
     signed: Real | None = None
     arm: Real | None = None
     back: Real | None = None
+    angle: Real | None = None
 
     def onto(self, link: str) -> Vector:
         """The force on one of the two links, N."""
@@ -108,6 +110,15 @@ class Reactions:
     def all(self) -> tuple[Reaction, ...]:
         """Every pair's reaction, the drivers' first, then groups in solving order."""
         return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
+
+    @property
+    def directed(self) -> Iterator[Reaction]:
+        """The same with the angles of their forces; one that is zero to rounding has neither angle nor arm (nan)."""
+        largest = reduce(np.maximum, [np.abs(r.force) for r in self.all])
+        for r in self.all:
+            there = np.abs(r.force) > NO_FORCE * largest
+            arm = None if r.arm is None else np.where(there, r.arm, np.nan)
+            yield replace(r, angle=np.where(there, np.angle(r.force), np.nan), arm=arm)
 
     def of(self, name: str) -> Reaction:
         """The reaction in a pair, by the pair's name."""

@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import NO_GAIN, NO_PRESSURE
+from tmm_cli.tolerances import DEAD, NO_PRESSURE
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -35,8 +35,8 @@ class Pressure:
     """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
 
     pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
-    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest. angles: at the positions of a
-    motion.
+    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest (infinite in a dead position).
+    angles: at the positions of a motion.
     """
 
     group: str
@@ -55,7 +55,7 @@ class Pressure:
 
     @property
     def gain(self) -> float:
-        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - NO_GAIN else float("inf")
+        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - DEAD else float("inf")
 
     @property
     def holds(self) -> bool:

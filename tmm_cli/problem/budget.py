@@ -6,12 +6,14 @@ from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.problem.errors import ProblemError
 
-BUDGET = 3_000_000  # parts times positions; a million of them takes some 10 s and 200 MB
+BUDGET = 3_000_000  # parts at positions, each up to 20 us and 160 B: 40 parts at 74 280 took 44 s and 536 MB
 SEARCHED = 720  # positions more: the range, the strokes and the trajectories are found on a grid of their own
+EACH = 8  # positions more for each link: what is searched for in each group computes all links before it
 LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their measured times and tables
-DRAWN = 2_000  # parts times positions in detail, and SHEETS more for the rest: each of 40 parts takes a second
-JUDGED = 250  # parts: every number is judged against every datum, so this grows with the square
-SHEETS = 6
+SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
+SHEETS = 6  # that are drawn beside those in detail
+JUDGED = 0.4  # positions that a part counts for in each that is judged: against all data, so it grows with the square
+FIRST, LONG = 20, 720  # positions more that are judged for what was searched for; the most that are
 
 
 def parts(linkage: Linkage) -> int:
@@ -23,12 +25,12 @@ def parts(linkage: Linkage) -> int:
 def refuse_work(linkage: Linkage, request: Request) -> None:
     """Refuse what no stage could do within the budget. Raises ProblemError, not yet located."""
     size, count = parts(linkage), len(request.places) or request.count
-    most = BUDGET // size - SEARCHED
+    most = BUDGET // size - _searched(linkage)
     if most < 1:
+        whole = BUDGET // (_searched(linkage) + 1)
         raise ProblemError(
             _("this linkage is too large"), path=("links",), found=_told(linkage),
-            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=BUDGET // (SEARCHED + 1)),
-            key=True,
+            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole), key=True,
         )  # fmt: skip
     if count > most:
         raise ProblemError(
@@ -38,27 +40,37 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
         )  # fmt: skip
 
 
-def refuse_digits(linkage: Linkage) -> None:
-    """Refuse to judge every number of a large linkage. Raises ProblemError."""
-    if parts(linkage) > JUDGED:
+def refuse_options(linkage: Linkage, count: int, *, digits: bool, detail: int | None) -> None:
+    """Refuse what the options of a command add to the work at so many positions, before it starts.
+
+    detail: positions that are drawn in detail; None where nothing is drawn. Raises ProblemError, not yet located.
+    """
+    size = parts(linkage)
+    left = BUDGET / size - _searched(linkage) - count
+    if digits:
+        each = JUDGED * size
+        left -= each * (FIRST + min(count, LONG))
+        if left < 0:
+            few = (left + count + each * min(count, LONG)) / (1 + each)
+            most = int(few if few < LONG else left + count)
+            raise ProblemError(
+                _("too many positions and too large a linkage for all digits to be judged"), path=("--digits",),
+                found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
+                allowed=_("without --digits") if most < 1
+                else _("at most {most} positions, or without --digits").format(most=most),
+            )  # fmt: skip
+    if detail is not None and SHEET * (SHEETS + detail) > left:
+        most = int(left // SHEET) - SHEETS
         raise ProblemError(
-            _("the linkage is too large for its digits to be judged"), path=("--digits",), found=_told(linkage),
-            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=JUDGED),
+            _("these are too many drawings for so many links, points and positions"), path=("positions", "detail"),
+            found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_told(linkage)),
+            allowed=_("without drawings") if most < 0
+            else _("at most {most} in detail, or without drawings").format(most=most),
         )  # fmt: skip
 
 
-def refuse_drawings(linkage: Linkage, request: Request) -> None:
-    """Refuse to draw too much. Raises ProblemError."""
-    most = DRAWN // parts(linkage) - SHEETS
-    if len(request.detail) > most or most < 0:
-        raise ProblemError(
-            _("these are too many drawings for so many links and points"), path=("positions", "detail"),
-            found=_("{count} positions in detail; {linkage}").format(
-                count=len(request.detail), linkage=_told(linkage)
-            ),
-            allowed="--no-drawings" if most < 0
-            else _("at most {most} in detail, or --no-drawings").format(most=most),
-        )  # fmt: skip
+def _searched(linkage: Linkage) -> int:
+    return SEARCHED + EACH * len(linkage.moving)
 
 
 def _told(linkage: Linkage) -> str:

@@ -16,10 +16,11 @@ from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
-from tmm_cli.quantities import LENGTH, NUMBER, Dimension
+from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
+MOST_ANGLE = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
@@ -35,15 +36,24 @@ class ValueReader:
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI that a mechanism can have."""
         with under(*path):
-            number = evaluate(value, self.parameters, self.units, want)
-            if not -LARGEST <= number <= LARGEST:
-                most = f"{self.units.from_si(LARGEST, want):.6g} {self.units.symbol(want)}".rstrip()
+            number = self.found(value, want, path)
+            limit = self.most(want, path)
+            if not -limit <= number <= limit:
+                most = f"{self.units.from_si(limit, want):.6g} {self.units.symbol(want)}".rstrip()
                 raise ProblemError(
                     _("this is too large for a mechanism"),
                     found=quote(value),
                     allowed=_("{most} or less").format(most=most),
                 )
             return number
+
+    def found(self, value: Any, want: Dimension, path: Path) -> float:
+        """A value in SI, whatever its size."""
+        return evaluate(value, self.parameters, self.units, want)
+
+    def most(self, want: Dimension, path: Path) -> float:
+        """The largest size (SI) that is accepted there."""
+        return MOST_ANGLE if want == ANGLE else LARGEST
 
     def bare(self, value: Any) -> bool:
         """Whether a value has no unit of its own."""

@@ -12,8 +12,8 @@ from tmm_cli.quantities import FORCE, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
 
-HUGE = 1e300  # a bound of what is not known at all
-RATIOS = {  # columns that are something over a force: the less of it there is the less they are known
+HUGE = 1e300  # a bound of what is zero as far as is known
+RATIOS = {  # columns that are something over a force: the less of it there is the less they are known, of zero nothing
     ("reactions", _("angle")): _("F"),
     ("reactions", _("acts at")): _("F"),
     ("lever", _("arm")): _("force"),
@@ -35,7 +35,8 @@ def by_margins(
     over = RATIOS.get((table.name, column.header))
     if over is not None:
         force = np.abs(next(other.array for other in table.columns if other.header == over))
-        bound = np.where(force > 0, bound * (sizes[FORCE] / np.where(force > 0, force, 1.0)), HUGE)
+        known = force > np.repeat(relative, table.rows // len(relative)) * sizes[FORCE]
+        return np.where(known, bound * (sizes[FORCE] / np.where(known, force, 1.0)), np.inf)
     return np.asarray(np.minimum(bound, HUGE))
 
 

@@ -152,8 +152,8 @@ def accuracy(results: Results, full: bool = False) -> AccuracyReport:
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
             digits = judged(there, cells, mu=mu, blur=away)
     for key, bound in digits.bound.items():
-        if is_angle(key):  # no direction is farther from another one than half a turn
-            digits.bound[key] = np.minimum(bound, np.pi)
+        if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
+            digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)
     return AccuracyReport(results, share, sizes(results), found, chosen, there, digits, full)
 
 
@@ -223,5 +223,5 @@ def beside(table: Table) -> Table:
         columns.append(column)
         if column.bound is not None and (k > 1 or table.columns[0].header != _("position")):
             for part, header in PARTS.items():
-                columns.append(Column(header, getattr(column, part), column.dimension, digits=2))
+                columns.append(Column(header, getattr(column, part), column.dimension, digits=2, unit=column.unit))
     return replace(table, columns=tuple(columns))

@@ -89,7 +89,7 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     else:
         text = _("link {link}, {speed} clockwise")
     yield _("driver"), text.format(link=driver.link, speed=_speed(driver))
-    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s2"
+    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s^2"
     yield _("positions"), _positions(problem, measure)
     sketch = linkage.sketch
     places = [show(problem, sketch.at, measure)]
@@ -149,7 +149,7 @@ def _speed(driver: Driver) -> str:
     """A driver's speed, and its acceleration where it has one."""
     turns = driver.kind == "turn"
     rate = f"{driver.rate:.6g} {'rad/s' if turns else 'm/s'}"
-    return rate + (f", {driver.acceleration:.6g} {'rad/s2' if turns else 'm/s2'}" if driver.acceleration else "")
+    return rate + (f", {driver.acceleration:.6g} {'rad/s^2' if turns else 'm/s^2'}" if driver.acceleration else "")
 
 
 def _further(problem: Problem) -> Iterable[Table]:

@@ -35,7 +35,7 @@ DRIVER = record(
     Field("kind", TEXT, "turn or slide", "linkage.driver.kind"),
     Field("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
     Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", "linkage.driver.rate"),
-    Field("acceleration", NUMBER, "rad/s2 or m/s2, in its sense", "linkage.driver.acceleration"),
+    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, in its sense", "linkage.driver.acceleration"),
     Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
     Field("range", list_of(NUMBER), "from, to: places of the driver",
           lambda r: (r.driver_range.start, r.driver_range.end)),
@@ -170,7 +170,7 @@ DRIVER_BALANCE = record(
 FORCES = record(
     "force plan",
     Field("loads", list_of(APPLIED), "everything applied", "reactions.applied"),
-    Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.all}),
+    Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.directed}),
     Field("compound_hinges", map_of(map_of(VECTOR)), "force of the pin on each link, by link, N", _pins),
     Field("balancing", DRIVER_BALANCE, "what balances the first driver", "reactions.balance"),
     Field("drivers", map_of(DRIVER_BALANCE), "what balances each driver, by its link",
@@ -182,13 +182,13 @@ LEVER_ITEM = record(
     Field("name", TEXT, "name"),
     Field("link", TEXT, "link"),
     Field("kind", TEXT, "force or couple", lambda item: "force" if item.end is not None else "couple"),
-    Field("size", SERIES, "N or N m"),
+    Field("size", SERIES, "N or N*m"),
     Field("arm", SERIES, "m per rad; for a couple omega / omega_1"),
     *fields_of((LEVER_MOMENT,)),
 )
 LEVER = record(
     "the Zhukovsky lever",
-    Field("balancing", SERIES, "moment, N m, or force of a driven slider, N", "lever.balancing"),
+    Field("balancing", SERIES, "moment, N*m, or force of a driven slider, N", "lever.balancing"),
     Field("difference", SERIES, "from the force plan, relative to the largest in the cycle", "lever.difference"),
     Field("limit", NUMBER, "allowed difference", "problem.lever_limit"),
     Field("holds", FLAG, "below the limit at every position", "lever_holds"),

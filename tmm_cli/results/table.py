@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.double_double import array
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import Unit, UnitSystem, parse_unit
 from tmm_cli.quantities import NUMBER, Dimension
 
 
@@ -18,7 +18,7 @@ class Column:
     """A column: header, values in SI (None or nan where there is none) and what they measure; words have none.
 
     bound: how far each value may be from the truth by rounding; lengths, paper: its change when every length changes by
-    0.1 %, by 0.5 mm on paper (SI; None where they were not asked for).
+    0.1 %, by 0.5 mm on paper (SI; None where they were not asked for). unit: its own, where it is not the file's.
     """
 
     header: str
@@ -28,12 +28,18 @@ class Column:
     bound: Any = None
     lengths: Any = None
     paper: Any = None
+    unit: str = ""
 
     def heading(self, units: UnitSystem) -> str:
         """The header with the unit."""
         if self.dimension is None or self.dimension == NUMBER:
             return self.header
-        return f"{self.header}, {units.symbol(self.dimension)}"
+        return f"{self.header}, {self.unit or units.symbol(self.dimension)}"
+
+    def shown_in(self, units: UnitSystem) -> Unit:
+        """The unit of its numbers on paper."""
+        assert self.dimension is not None
+        return parse_unit(self.unit) if self.unit else units.unit(self.dimension)
 
     @property
     def array(self) -> Any:
@@ -43,14 +49,13 @@ class Column:
 
     def numbers(self, units: UnitSystem) -> Any:
         """Its values in the units of the file, nan where there is none."""
-        assert self.dimension is not None
-        return units.unit(self.dimension).from_si(self.array.astype(float))
+        return self.shown_in(units).from_si(self.array.astype(float))
 
     def true_figures(self, units: UnitSystem) -> Any:
         """How many figures of each number are true, -1 where that is not known; None where it was not judged."""
         if self.dimension is None or self.bound is None:
             return None
-        numbers, bound = self.numbers(units), np.asarray(self.bound) * units.unit(self.dimension).from_si(1.0)
+        numbers, bound = self.numbers(units), np.asarray(self.bound) * self.shown_in(units).from_si(1.0)
         known = np.isfinite(numbers) & np.isfinite(bound)
         return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
 

@@ -61,8 +61,8 @@ def gravity(pull: complex) -> str:
     if not pull:
         return _("no gravity")
     if pull.real == 0 > pull.imag:
-        return _("gravity {size} m/s2 downwards").format(size=f"{-pull.imag:.6g}")
-    return _("gravity [{x}, {y}] m/s2").format(x=f"{pull.real:.6g}", y=f"{pull.imag:.6g}")
+        return _("gravity {size} m/s^2 downwards").format(size=f"{-pull.imag:.6g}")
+    return _("gravity [{x}, {y}] m/s^2").format(x=f"{pull.real:.6g}", y=f"{pull.imag:.6g}")
 
 
 def doubts(problem: Problem) -> Iterable[str]:

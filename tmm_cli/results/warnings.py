@@ -116,7 +116,7 @@ def _dead(results: Results) -> Iterable[str]:
                 "keep to the side of the sketch"
             )
         )
-        yield text.format(place=_place(results, dead.place), group=dead.group, margin=f"{dead.margin:.1e}")
+        yield text.format(place=_place(results, dead.place), group=dead.group, margin=f"{dead.margin:.2g}")
 
 
 def _unreached(results: Results, motion: Motion) -> Iterable[str]:

@@ -16,7 +16,8 @@ from tmm_cli.synthesis.record import SMALLEST
 MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
 # what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
 # k is refused by its task, which knows the bounds of it
-SIZES: Final = {NUMBER: ("ratio", "frame_ratio", "rod_ratio"), ANGLE: ("pressure",)}
+SIZED: Final = (LENGTH, SPEED, ANGULAR_SPEED)
+SHARES: Final = ("ratio", "frame_ratio", "rod_ratio", "pressure")
 PLACES: Final = ("e", "xA", "yA")
 PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
 
@@ -34,21 +35,28 @@ class Bounded(ValueReader):
         self.others = others or {}
         self.given: dict[Path, tuple[float, Dimension]] = {}
 
+    def found(self, value: Any, want: Dimension, path: Path) -> float:
+        return self.others[path] if path in self.others else super().found(value, want, path)
+
+    def most(self, want: Dimension, path: Path) -> float:
+        limit = super().most(want, path)
+        return limit if _exempt(path) else MOST.get(want, limit)
+
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI. Raises ProblemError where no mechanism has it."""
-        found = self.others[path] if path in self.others else super().number(value, want, path)
+        found = super().number(value, want, path)
         self.given[path] = found, want
-        most, key = MOST.get(want), path[-1] if path else ""
-        if most is None or key == "k" or (path and path[0] in PLAIN):
+        key = path[-1] if path else ""
+        sized = isinstance(key, str) and key not in PLACES and (want in SIZED or key in SHARES)
+        if not sized or _exempt(path) or found >= SMALLEST:
             return found
-        sized = isinstance(key, str) and key not in PLACES and (want not in SIZES or key in SIZES[want])
-        if (SMALLEST if sized else -most) <= found <= most:
-            return found
-        low, high = (f"{self.units.from_si(bound, want):.6g}" for bound in (SMALLEST, most))
-        symbol = self.units.symbol(want)
+        low = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
         raise ProblemError(
-            _("this is too large for a mechanism") if abs(found) > most
-            else _("this is too small for a mechanism"), path=path,
+            _("this is too small for a mechanism"), path=path,
             found=quote(value) if isinstance(value, str) else str(value),
-            allowed=f"{low} to {high} {symbol}".rstrip() if sized else f"{high} {symbol}".rstrip() + " or less",
+            allowed=_("{least} or more").format(least=low),
         )  # fmt: skip
+
+
+def _exempt(path: Path) -> bool:
+    return bool(path) and (path[-1] == "k" or path[0] in PLAIN)

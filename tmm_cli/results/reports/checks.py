@@ -9,6 +9,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.table import Table, table_of_words, with_unit
+from tmm_cli.tolerances import SAME_PLACE
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -25,7 +26,8 @@ def tables(results: Results) -> Iterable[Table]:
 def _place(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
-    return with_unit(results.problem.units, check.at, place_dimension(results.linkage.driver.kind))
+    at = check.at if abs(check.at) > SAME_PLACE else 0.0
+    return with_unit(results.problem.units, at, place_dimension(results.linkage.driver.kind))
 
 
 def _said(check: Check, results: Results) -> tuple[str, str, str, str]:

@@ -10,7 +10,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_run
-from tmm_cli.linkage import Driver
+from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.quantities import FORCE, LINK, MOMENT, NUMBER, SLIDE, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real, pi
@@ -23,6 +23,19 @@ OF_OUTPUT = {
     "omega": _("omega of {link}"),
     "epsilon": _("epsilon of {link}"),
 }
+
+
+def signs(linkage: Linkage) -> str:
+    """What is positive, in a sentence for below a table."""
+    if linkage.driver.kind == "slide":
+        return _(
+            "A driven slider's place, speed and F_b are positive along its guide, however it moves; angles and moments "
+            "counterclockwise."
+        )
+    return _(
+        "Angles, angular speeds and moments are positive counterclockwise, however the driver turns: a negative M_b "
+        "drives it clockwise."
+    )
 
 
 def driver_columns(results: Results) -> list[Column]:
@@ -56,7 +69,7 @@ def tables(results: Results) -> Iterable[Table]:
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
         columns.append(Column(_("state"), states(results)))
-    yield Table("cycle", _("Cycle"), tuple(columns))
+    yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage),))
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:

@@ -24,7 +24,11 @@ def tables(results: Results) -> Iterable[Table]:
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
         Column(_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
     ]
-    yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table))
+    note = _(
+        "Powers are positive that speed the mechanism up. What is reduced to the driver is by its place, which grows "
+        "counterclockwise, or along the guide, however it moves."
+    )
+    yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table), notes=(note,))
     if results.friction is not None:
         yield _friction(results)
 

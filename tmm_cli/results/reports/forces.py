@@ -8,7 +8,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.quantities import FORCE, LOAD, MOMENT, REACTION, columns
-from tmm_cli.results.reports.cycle import driver_columns
+from tmm_cli.results.reports.cycle import driver_columns, signs
 from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Column, Table
 
@@ -27,7 +27,7 @@ def tables(results: Results) -> Iterable[Table]:
         _("name"): [label(r.by, r.on) for r in reactions.all],
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
-    values = [columns(REACTION, reaction) for reaction in reactions.all]
+    values = [columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
     pins = reactions.pins(results.linkage)
     if pins:
@@ -67,4 +67,4 @@ def _balances(results: Results) -> Table:
             name = label(frame.by, frame.on)
             found.append(Column(_("{name} x").format(name=name), frame.force.real, FORCE))
             found.append(Column(_("{name} y").format(name=name), frame.force.imag, FORCE))
-    return Table("balance", _("Driving link"), tuple(found))
+    return Table("balance", _("Driving link"), tuple(found), notes=(signs(results.linkage),))

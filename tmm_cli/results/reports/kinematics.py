@@ -13,6 +13,7 @@ from tmm_cli.analysis.selection import moving_centres, moving_points
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Turning
 from tmm_cli.quantities import LINK, POINT, SLIDE, columns
+from tmm_cli.results.reports.cycle import signs
 from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import pi
@@ -32,12 +33,20 @@ def tables(results: Results) -> Iterable[Table]:
     links = chosen_links(linkage, of)
     if links:
         values = [columns(LINK, _half_turned(motion.link(name))) for name in links]
-        yield long_table(results, "link-motion", _("Motion of links"), {_("link"): links}, values)
+        table = long_table(results, "link-motion", _("Motion of links"), {_("link"): links}, values, signs(linkage))
+        yield _with_turns(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
     slides = () if of else linkage.slides
     if slides:
         values = [columns(SLIDE, motion.slide(slide)) for slide in slides]
         title = _("Sliding pairs: motion of the runner along the guide")
         yield long_table(results, "slides", title, {_("pair"): [slide.name for slide in slides]}, values)
+
+
+def _with_turns(table: Table) -> Table:
+    """With angular speeds in turns a minute beside them, as speeds of wheels are given."""
+    k = next(k for k, column in enumerate(table.columns) if column.header == _("omega"))
+    turns = replace(table.columns[k], header=_("n"), unit="rpm")
+    return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 
 
 def _half_turned(turning: Turning) -> Turning:

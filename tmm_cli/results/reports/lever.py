@@ -20,7 +20,10 @@ def tables(results: Results) -> Iterable[Table]:
         return
     slider = results.linkage.driver.kind == "slide"
     words = {_("name"): [i.name for i in lever.items], _("link"): [i.link for i in lever.items]}
-    note = _("Arms are those of the lever drawn for a crank that turns with 1 rad/s, 1 m for 1 m/s.")
+    note = _(
+        "Arms are those of the lever drawn for a crank that turns counterclockwise with 1 rad/s, 1 m for 1 m/s; "
+        "moments are positive that drive it so."
+    )
     items = [_columns(item, slider) for item in lever.items]
     yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
 

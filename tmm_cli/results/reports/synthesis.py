@@ -20,6 +20,7 @@ from tmm_cli.synthesis.check import MeasuredDemand, measured_on
 from tmm_cli.synthesis.record import Kind, Listing, Value
 
 NUMERIC = (*KINDS, "share")
+ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
 DIGITS = 10  # on a terminal; files have 15
 # columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
 # what has no header is in result.json only
@@ -121,7 +122,7 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
         elif kind == "by":
             values = [_("asked") if value else _("foretold") for value in values]
         elif kind == "share":
-            values = [f"{value:.2g}" for value in values]
+            values = [f"{0.0 if abs(value) < ROUNDING else value:.2g}" for value in values]
         else:
             values = ["" if v is None else v for v in values]
         columns += [Column(header, values, dimension)] if header else []
