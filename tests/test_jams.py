@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from functools import cache
 
 import blocks
 import numpy as np
@@ -22,6 +23,7 @@ from tmm_cli.results.as_json import to_json
 from tmm_cli.results.warnings import warnings as words
 
 
+@cache
 def solved(text):
     return solve(build(read_text(text, "x.yaml")))
 

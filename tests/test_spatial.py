@@ -254,11 +254,11 @@ def lower_only(file):
     return not re.search(r"^(gears|racks|cams):", file.read_text(encoding="utf-8"), re.MULTILINE)
 
 
-@pytest.mark.parametrize("file", filter(lower_only, PROBLEMS), ids=lambda p: p.stem)
+@pytest.mark.parametrize("file", list(filter(lower_only, PROBLEMS)), ids=lambda p: p.stem)
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(file):
     results = moved(file)
     linkage, structure, motion = results.linkage, results.structure, results.motion
-    if not structure.sound:
+    if not analyse(linkage).sound:
         pytest.skip("some constraints are passive in the plane")
     found = space(linkage, structure)
     kinds = proposal(found)

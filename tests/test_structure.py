@@ -195,7 +195,7 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
     """At the end of a stroke both balancing moments may be nothing but rounding."""
     from tmm_cli.results.warnings import warnings
 
-    for file in PROBLEMS[::4]:
+    for file in PROBLEMS[1::4]:
         alone = solve(problem(file), positions=[0])
         assert alone.lever_holds, file.stem
         assert not any("drives" in w for w in warnings(alone)), file.stem

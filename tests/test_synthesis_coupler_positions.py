@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -36,6 +37,7 @@ MET = 1e-12
 COUNT = 250
 
 
+@cache
 def problem(block):
     return build(read_text(f"tmm: 1\nsynthesis: {{task: coupler-positions, {block}}}\n{LINKAGE}", "x.yaml"))
 

@@ -12,6 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
+from tmm_cli.errors import _
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.scale_inverted import ScaleInverted
@@ -37,6 +38,19 @@ class Claim:
 
     alternatives: tuple[Mistake, ...]
     answers: tuple[int, ...]
+
+    @property
+    def told(self) -> str:
+        """For the student."""
+        sentences = list(dict.fromkeys(case.told for case in self.alternatives))
+        if len(sentences) == 1:
+            return sentences[0]
+        return _("One of these, which look alike here: {sentences}").format(sentences=" ".join(sentences))
+
+    @property
+    def called(self) -> str:
+        """For the statistics of the group."""
+        return " / ".join(sorted({case.called for case in self.alternatives}))
 
 
 def diagnose(family: Family, right: Right, written: Written) -> dict[int, list[Claim]]:

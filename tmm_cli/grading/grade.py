@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tmm_cli.errors import LinkageError, _
+from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.following import following
 from tmm_cli.grading.readings import readings
-from tmm_cli.grading.record import Mark, StudentMarks, Submission, VariantTable
+from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.sheet import Right, Written, right
 from tmm_cli.grading.task import Task
 from tmm_cli.problem.errors import ProblemError
@@ -65,18 +67,27 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
     wanted = right(family, task.asked)
     written, how, refused = read(task, wanted, submissions)
     error = wanted.error(written)
-    holds = error <= wanted.allowed
+    claims = diagnose(family, wanted, written)
+    follows = following(family, wanted, written, claims)
     found = []
     for n, submission in enumerate(submissions):
         marks = []
         for k, asked in enumerate(task.asked):
             there, given = bool(written.there[n, k]), submission.answers.get(asked.key)
-            told = (refused[n, k],) if (n, k) in refused else ()
+            state: State = "missing"
+            if there or (n, k) in refused:
+                state = "right" if error[n, k] <= wanted.allowed[n, k] else "follows" if (n, k) in follows else "wrong"
+            named = [claim for claim in claims.get(n, ()) if k in claim.answers]
+            reasons = [refused[n, k]] if (n, k) in refused else [claim.told for claim in named]
+            if state == "follows":
+                sources = ", ".join(task.asked[j].name for j in follows[n, k])
+                reasons = [_("It is right given your own {sources}.").format(sources=sources)]
             marks.append(Mark(
-                asked.key, "right" if holds[n, k] else "wrong" if there or told else "missing",
-                asked.points if holds[n, k] else 0.0, asked.points, complex(written.value[n, k]) if there else None,
-                complex(wanted.value[n, k]), float(error[n, k]) if there else 0.0, float(wanted.allowed[n, k]),
-                how.get((n, k), ""), told, text=given.text if given else "",
+                asked.key, state, asked.points if state in ("right", "follows") else 0.0, asked.points,
+                complex(written.value[n, k]) if there else None, complex(wanted.value[n, k]),
+                bool(written.size[n, k]), float(wanted.scale[n, k]), float(error[n, k]) if there else 0.0,
+                float(wanted.allowed[n, k]), how.get((n, k), ""), tuple(reasons),
+                tuple(claim.called for claim in named), given.text if given else "",
             ))  # fmt: skip
         found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
     return found

@@ -50,8 +50,9 @@ State = Literal["missing", "right", "follows", "wrong"]
 class Mark:
     """An answer judged.
 
-    value, right: SI, in the form of the quantity; error, allowed: shares of the largest value. reading: how the unit
-    was taken where it was not written. reasons: sentences for the student. mistakes: their names, for the group.
+    value, right: SI, in the form of the quantity; size: the value is that of a vector without its direction. scale:
+    the largest value in the cycle, of which error and allowed are shares. reading: the unit in which it was taken where
+    none was written. reasons: sentences for the student. mistakes: their names, for the group.
     """
 
     key: Key
@@ -60,6 +61,8 @@ class Mark:
     of: float
     value: complex | None = None
     right: complex = 0.0
+    size: bool = False
+    scale: float = 1.0
     error: float = 0.0
     allowed: float = 0.0
     reading: str = ""

@@ -24,7 +24,8 @@ class Quantity:
     read: its values in SI, (variants, positions), complex where it is a vector; (variants, 1) where it belongs to the
     mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size in the cycle, its range
     there (of a place), a full turn (of an angle, which is taken modulo 360 degrees), or nothing (it is exact, as a
-    class is). thing: the link, point or pair that it is of.
+    class is). thing: the link, point or pair that it is of; on: the
+    link on which a reaction acts.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Quantity:
     whole: bool = False
     against: Literal["largest", "range", "turn", "exact"] = "largest"
     thing: str = ""
+    on: str = ""
 
     @property
     def order(self) -> int:

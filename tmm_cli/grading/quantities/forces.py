@@ -35,7 +35,7 @@ def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         for by, on in ((one, other), (other, one)):
             both = f"{by}{on}" if len(by) == len(on) == 1 else f"{by},{on}"
             called = f"R_{both}" if alone else f"R_{both} in {name}"
-            put(Quantity(called, "forces", FORCE, partial(_reaction, name, on), True, thing=name))
+            put(Quantity(called, "forces", FORCE, partial(_reaction, name, on), True, thing=name, on=on))
     for driver in linkage.drivers:
         own = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
         if driver.kind == "turn":

@@ -1,0 +1,102 @@
+"""Whole sheets: an early mistake costs once, copies are seen, right answers earn all their points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from test_commands import SHAPER
+from test_diagnosis import ASKED, group
+
+from tmm_cli.grading.copies import with_copies
+from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.following import following
+from tmm_cli.grading.grade import grade
+from tmm_cli.grading.own_answers import own_answer
+from tmm_cli.grading.record import Given, Submission, VariantTable
+from tmm_cli.grading.sheet import Written, predicted
+from tmm_cli.grading.solution import solve
+from tmm_cli.grading.task import read_task
+from tmm_cli.problem.reader import read_text
+
+TASK = read_task(read_text(SHAPER.read_text(encoding="utf-8") + ASKED, "task.yaml"))
+NAMES = [f"student {n}" for n in range(8)]
+TABLE = VariantTable(("OA", "n1"), {n: (f"{95 + 3 * k} mm", f"{70 + 4 * k} rpm") for k, n in enumerate(NAMES)})
+UNITS = {
+    "omega": "rad/s",
+    "epsilon": "rad/s^2",
+    "v": "m/s",
+    "a": "m/s^2",
+    "U": "N",
+    "M_b": "N*m",
+    "R_34": "N",
+    "R_03": "N",
+}
+
+
+def sheet(values):
+    """Answers in SI as a student writes them."""
+    found = {}
+    for asked, value in zip(TASK.asked, values, strict=True):
+        unit = UNITS.get(asked.quantity.name.split(" of ")[0], "N")
+        two = asked.quantity.vector
+        found[asked.key] = Given(value.real, value.imag if two else 0.0, "components" if two else "number", unit)
+    return found
+
+
+def rights(students=NAMES):
+    empty = [Submission(name) for name in students]
+    return np.array([[mark.right for mark in marks.marks] for marks in grade(TASK, TABLE, empty)])
+
+
+def states(marks):
+    return {f"{mark.key[0]} at {mark.key[1]}": mark.state for mark in marks.marks}
+
+
+def test_right_answers_earn_all_points():
+    found = list(grade(TASK, TABLE, [Submission(n, sheet(row)) for n, row in zip(NAMES, rights(), strict=True)]))
+    assert [marks.points for marks in found] == [11.0] * len(NAMES)
+    assert not any(mark.reasons for marks in found for mark in marks.marks)
+
+
+@pytest.mark.parametrize("wrong, follow", [
+    ("a of E at 7", ["U of 5 at 7", "R_34 at 7", "R_03 at 7"]),
+    ("U of 5 at 7", ["R_34 at 7", "R_03 at 7"]),
+    ("R_34 at 7", ["R_03 at 7"]),
+])  # fmt: skip
+def test_an_early_mistake_costs_its_own_points_only(wrong, follow):
+    family, known = group()
+    k = next(k for k, asked in enumerate(known.asked) if asked.name == wrong)
+    value = known.value[:, k][:, None] + 0.4 * known.scale[:, k][:, None]
+    own = own_answer(known.asked[k].quantity, value, solve(family).motion, known.value[:, k][:, None])
+    values = predicted(family, known.asked, [own])
+    same = [j for j, asked in enumerate(known.asked) if asked.position == known.asked[k].position and j >= k]
+    mixed = known.value.copy()
+    mixed[:, same] = values[:, same]
+    mixed[:, k] = value[:, 0]
+    written = Written(mixed, np.zeros(mixed.shape, bool))
+    found = following(family, known, written, diagnose(family, known, written))
+    failed = known.error(written) > known.allowed
+    for n in range(len(family)):
+        lost = [known.asked[j].name for j in np.flatnonzero(failed[n]) if (n, int(j)) not in found]
+        assert lost == [wrong]
+    assert {known.asked[j].name for _, j in found} >= set(follow)
+
+
+def test_an_answer_that_follows_says_from_what():
+    row = rights()[0]
+    names = [asked.name for asked in TASK.asked]
+    mass, motion = 52.0, names.index("a of E at 7")
+    row[motion] *= 1.5
+    row[names.index("U of 5 at 7")] = -mass * row[motion]
+    (marks,) = grade(TASK, TABLE, [Submission(NAMES[0], sheet(row))])
+    assert states(marks)["a of E at 7"] == "wrong" and states(marks)["U of 5 at 7"] == "follows"
+    told = next(mark.reasons for mark in marks.marks if mark.key == ("U of 5", 7))
+    assert told == ("It is right given your own a of E at 7.",)
+
+
+def test_the_sheet_of_another_variant_is_named_to_the_teacher():
+    rows = rights()
+    rows[3] = rows[5]
+    found = with_copies(list(grade(TASK, TABLE, [Submission(n, sheet(r)) for n, r in zip(NAMES, rows, strict=True)])))
+    assert [marks.copied for marks in found] == ["", "", "", NAMES[5], "", "", "", ""]
+    assert not any("student 5" in reason for mark in found[3].marks for reason in mark.reasons)

@@ -1,0 +1,206 @@
+"""A student's own answer in the place of the right one: what later answers should have been, given it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_cli.grading.mistakes.accelerations import Wrapped
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.grading.mistakes.coriolis import Coriolis
+from tmm_cli.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Poses, Rate, Rates, Wrench
+from tmm_cli.vectors import Real, Vector, cross, square
+
+if TYPE_CHECKING:
+    from tmm_cli.forces.applied import Applied
+    from tmm_cli.grading.quantities.base import Quantity
+    from tmm_cli.groups.base import Kernel
+    from tmm_cli.kinematics.motion import Motion
+    from tmm_cli.linkage import Linkage
+    from tmm_cli.variants.family import Family
+
+
+@dataclass(frozen=True)
+class OwnMotion(Mistake):
+    """Velocity or acceleration of a point, or omega or epsilon of a link, as the student has it.
+
+    given: (students, 1), SI. rate, gain: speed and acceleration of the driver, as groups know transfer functions only.
+    """
+
+    point: str
+    link: str
+    given: Vector
+    order: int
+    rate: Real
+    gain: Real
+
+    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
+        return tuple(
+            OwnGroup(kernel.group, kernel.size, kernel, self, family.linkage) if self._moves(kernel, family) else kernel
+            for kernel in kernels
+        )  # fmt: skip
+
+    def _moves(self, kernel: Kernel, family: Family) -> bool:
+        links = family.linkage.links
+        return any(name == self.link or self.point in links[name].points for name in kernel.group.links)
+
+
+@dataclass(frozen=True)
+class OwnGroup(Wrapped):
+    """A group whose links move as the student's answer says; points that are known keep their motion."""
+
+    own: OwnMotion
+    linkage: Linkage
+
+    def _hinge(self, link: str) -> tuple[str, complex, complex] | None:
+        """The outer hinge of a link: the known link, and its place on both."""
+        for pair in self.group.outer:
+            if pair.kind == "R" and self.group.own(pair) == link:
+                other = pair.other(link)
+                return other, self.linkage.local(other, pair.point), self.linkage.local(link, pair.point)
+        return None
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        found = super().rates(at, poses, rates, drives)
+        if self.own.order != 1:
+            return found
+        value = self.own.given / self.own.rate
+        return tuple(self._rate(*of, poses, rates, value) for of in zip(self.group.links, found, strict=True))
+
+    def _rate(self, link: str, right: Rate, poses: Poses, rates: Rates, value: Vector) -> Rate:
+        z, hinge, points = poses[link].z, self._hinge(link), self.linkage.links[link].points
+        if link == self.own.link and not self.own.point:
+            if hinge is None:
+                return replace(right, w=np.real(value))
+            known, there, here = hinge
+            return Rate.through(rates[known].at(there * poses[known].z), np.real(value), here * z)
+        if self.own.point not in points and not (link == self.own.link and self.own.point):
+            return right
+        place = self._place(link) * z
+        if hinge is None or np.all(place == hinge[2] * z):
+            return Rate.through(value, right.w, place)
+        known, there, here = hinge
+        arm = place - here * z
+        w = cross(arm, value - rates[known].at(there * poses[known].z)) / square(arm)
+        return Rate.through(value, w, place)
+
+    def _place(self, link: str) -> complex:
+        own = self.linkage.links[link]
+        return own.points.get(self.own.point, own.centre)
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        found = super().accelerations(at, poses, rates, accels, drives)
+        if self.own.order != 2:
+            return found
+        return tuple(self._accel(*of, poses, rates, accels) for of in zip(self.group.links, found, strict=True))
+
+    def _accel(self, link: str, right: Accel, poses: Poses, rates: Rates, accels: Accels) -> Accel:
+        z, w, hinge = poses[link].z, rates[link].w, self._hinge(link)
+        own, points = self.own, self.linkage.links[link].points
+        if link == own.link and not own.point:
+            e = np.real(own.given - w * own.gain) / own.rate**2
+            if hinge is None:
+                return replace(right, e=e)
+            known, there, here = hinge
+            return Accel.through(accels[known].at(there * poses[known].z, rates[known].w), e, w, here * z)
+        if own.point not in points and link != own.link:
+            return right
+        place = self._place(link) * z
+        value = (own.given - rates[link].at(place) * own.gain) / own.rate**2
+        if hinge is None or np.all(place == hinge[2] * z):
+            return Accel.through(value, right.e, w, place)
+        known, there, here = hinge
+        arm = place - here * z
+        e = cross(arm, value - accels[known].at(there * poses[known].z, rates[known].w)) / square(arm)
+        return Accel.through(value, e, w, place)
+
+
+@dataclass(frozen=True)
+class OwnSpeed(Mistake):
+    """The speed of the crank as the student has it, rad/s."""
+
+    given: Vector
+
+    def family(self, family: Family) -> Family:
+        driver = family.linkage.driver
+        rate: Any = np.abs(np.real(self.given))
+        return family.changed(replace(family.linkage, driver=replace(driver, rate=rate)))
+
+
+@dataclass(frozen=True)
+class OwnInertia(Mistake):
+    """An inertia force or couple as the student has it."""
+
+    link: str
+    part: str
+    given: Vector
+
+    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+        value = self.given if self.part == "force" else np.real(self.given)
+        return tuple(
+            replace(load, **{self.part: value + 0 * getattr(load, self.part)})
+            if load.kind == "inertia" and load.link == self.link else load for load in loads
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class OwnReaction(Mistake):
+    """A reaction as the student has it, on one of the pair's links."""
+
+    pair: str
+    on: str
+    given: Vector
+
+    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
+        return tuple(
+            OwnReactions(kernel.group, kernel.size, kernel, self)
+            if any(pair.name == self.pair for pair in (*kernel.group.outer, *kernel.group.inner)) else kernel
+            for kernel in kernels
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class OwnReactions(Wrapped):
+    """A group one of whose reactions is the student's."""
+
+    own: OwnReaction
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        found = super().reactions(at, poses, applied)
+        outer, inner = list(found.outer), list(found.inner)
+        for of, pairs, on in ((outer, self.group.outer, self.group.own), (inner, self.group.inner, self.inner_on)):
+            for k, pair in enumerate(pairs):
+                if pair.name == self.own.pair:
+                    force = self.own.given + 0 * of[k].force
+                    of[k] = replace(of[k], force=force if on(pair) == self.own.on else -force)
+        return replace(found, outer=tuple(outer), inner=tuple(inner))
+
+
+def own_answer(quantity: Quantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
+    """A quantity with the students' values, (students, 1), in its place; None where nothing later hangs on it.
+
+    right: what is right for them; motion: theirs.
+    """
+    kind, linkage = quantity.name.partition(" of ")[0], motion.linkage
+    thing = quantity.thing
+    if kind in ("v", "a") and quantity.vector:
+        point = thing if any(thing in linkage.links[name].points for name in linkage.moving) else ""
+        link = "" if point else thing.removeprefix("S")
+        return OwnMotion(point or thing, link, value, 1 if kind == "v" else 2, motion.rate, motion.acceleration)
+    if kind == "omega" and thing == linkage.driver.link:
+        return OwnSpeed(value)
+    if kind in ("omega", "epsilon"):
+        return OwnMotion("", thing, value, 1 if kind == "omega" else 2, motion.rate, motion.acceleration)
+    if kind == "Coriolis":
+        runner, _on, carrier = quantity.name.removeprefix("Coriolis of ").partition(" on ")
+        share: Any = np.real(value / np.where(right == 0, 1, right))
+        return Coriolis(runner, carrier, share)
+    if kind in ("U", "M"):
+        return OwnInertia(thing, "force" if kind == "U" else "moment", value)
+    if quantity.on:
+        return OwnReaction(thing, quantity.on, value)
+    return None
