@@ -66,30 +66,40 @@ def _choices(task: Task, blocks: Blocks) -> tuple[Choice, ...]:
     ranges = blocks.variants
     if not ranges:
         raise ProblemError(
-            _("nothing is free"), path=("variants",), allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary"),
+            _("nothing is free"), path=("variants",),
+            allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
         )  # fmt: skip
-    with under("variants"):
-        dimensions = task.dimensions(tuple(ranges))
     found = []
-    for (name, own), dimension in zip(ranges.items(), dimensions, strict=True):
+    for name, own in ranges.items():
         with under("variants", name):
+            (dimension,) = task.dimensions((name,))
             values = (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
-            read = [task.value(str(value)) for value in values]
+            texts = _with_units([str(value) for value in values])
+            read = [task.value(text) for text in texts]
             said = next((v.dimension for v in read if v.dimension), dimension)
-            if isinstance(own, Chosen) and own.among:
-                texts = tuple(dict.fromkeys(str(value) for value in values))
-            else:
-                texts = _steps(task, values, [task.number(value, said) for value in read], said)
-            found.append(Choice(name, texts, said))
+            if not (isinstance(own, Chosen) and own.among):
+                texts = _steps(task, values, [task.number(value, said) for value in read], said, texts[0])
+            found.append(Choice(name, tuple(dict.fromkeys(texts)), said))
     return tuple(found)
 
 
-def _steps(task: Task, values: Sequence[Any], sizes: Sequence[float], dimension: Dimension | None) -> tuple[str, ...]:
+def _with_units(texts: Sequence[str]) -> list[str]:
+    """Numbers without a unit get that of the first one that has any."""
+    parts = [NUMBER.fullmatch(text) for text in texts]
+    unit = next((part[2] for part in parts if part and part[2]), "")
+    return [
+        f"{text} {unit}" if unit and part and not part[2] else text for text, part in zip(texts, parts, strict=True)
+    ]
+
+
+def _steps(
+    task: Task, values: Sequence[Any], sizes: Sequence[float], dimension: Dimension | None, first: str
+) -> list[str]:
     """From low to high, in the unit in which the first was written."""
     low, high = sizes[:2]
     if not low < high:
         raise ProblemError(_("the lower bound comes first"), found=two(*values[:2]), allowed=_("[low, high]"))
-    written = NUMBER.fullmatch(str(values[0]))
+    written = NUMBER.fullmatch(first)
     unit = written[2] if written else task.units.symbol(dimension) if dimension else ""
     scale = task.number(task.value(f"1 {unit}"), dimension)
     step = sizes[2] if len(sizes) > 2 else 10 ** math.floor(math.log10((high - low) / scale / STEPS)) * scale
@@ -99,7 +109,7 @@ def _steps(task: Task, values: Sequence[Any], sizes: Sequence[float], dimension:
             _("1 to {most} steps must lie between the bounds").format(most=MOST - 1), path=("step",),
             found=quote(values[2]), allowed=_("another step; or bounds without steps, [low, high]"),
         )  # fmt: skip
-    return tuple(f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1))
+    return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 
 
 def numbers(task: Task, choice: Choice) -> Real:

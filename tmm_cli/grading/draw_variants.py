@@ -30,9 +30,10 @@ from tmm_cli.variants.family import Family, families, together
 from tmm_cli.variants.variant import Variant
 from tmm_cli.vectors import Real, Vector
 
-CHUNK = 500  # candidates at once: all their numbers stay near the processor
-TRIED = 6_000  # candidates of a pool
+CHUNK = 2_000  # candidates at once
+TRIED = 20_000  # candidates of a pool at most
 SLOWLY = 300  # likewise, where each is moved alone
+ENOUGH = 2_000  # sound candidates of a pool
 POOL = 1_000  # variants of a pool at most
 POOLS = 20  # after so many the rest of the students have none
 CLOSE = 3.0  # times what is allowed anyway: an answer on which drawing errors act more can hardly be judged
@@ -131,9 +132,13 @@ class Variety:
             yield self._pool(picks)
 
     def _pool(self, picks: Real) -> Iterator[Real]:
-        parts = [self.judged(picks[first : first + CHUNK]) for first in range(0, len(picks), CHUNK)]
-        self.tried += len(picks)
-        self.thrown.update(why for part in parts for why in part.why.tolist() if why)
+        parts: list[Judged] = []
+        for first in range(0, len(picks), CHUNK):
+            parts.append(self.judged(picks[first : first + CHUNK]))
+            self.thrown.update(why for why in parts[-1].why.tolist() if why)
+            self.tried += len(parts[-1].why)
+            if sum(len(part.rows) for part in parts) >= ENOUGH:
+                break
         rows = np.concatenate([part.rows + CHUNK * n for n, part in enumerate(parts)])
         values, allowed = (np.concatenate([getattr(p, name) for p in parts]) for name in ("values", "allowed"))
         return (picks[rows[row]] for row in _spread(values, allowed, self.thrown))
@@ -190,7 +195,7 @@ def _well_conditioned(found: Right) -> Real:
     """Which variants ask mostly what drawing errors act on little."""
     tolerance = np.array([one.tolerance for one in found.asked])
     exact = np.array([one.quantity.against == "exact" for one in found.asked])
-    return np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY
+    return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)
 
 
 def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int]:

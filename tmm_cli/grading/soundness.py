@@ -52,7 +52,8 @@ class Faults:
                 *self._pressures(states),
             ]
         holds, sentences = zip(*found, strict=True)
-        return np.select([~np.broadcast_to(one, len(q)) for one in holds], sentences, "").astype(object)
+        wrong = [~np.broadcast_to(one, len(q)) for one in holds]
+        return np.asarray(np.select(wrong, sentences, "").astype(object))
 
     def _pressures(self, states: LinkStates) -> Iterator[tuple[Real, str]]:
         for kernel, at in zip(states.kernels, states.placements, strict=True):
