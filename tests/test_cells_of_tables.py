@@ -1,0 +1,105 @@
+"""Tables as other programs write them, and files that only look like tables."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+
+import pytest
+import xlsxwriter
+
+from tmm_cli.grading.cells import rows_of
+from tmm_cli.problem.errors import ProblemError
+
+ROWS = [["студент", "OA, mm"], ["Ана", "80,5"]]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        'студент,"OA, mm"\r\nАна,"80,5"\r\n'.encode(),
+        "студент;OA, mm\nАна;80,5\n\n".encode(),
+        "\ufeffстудент;OA, mm\r\n;\r\nАна;80,5".encode(),
+        "студент;OA, mm\nАна;80,5\n".encode("cp1251"),
+        "студент\tOA, mm\nАна\t80,5\n".encode("utf-16"),
+        'sep=;\nстудент;"OA, mm"\nАна; 80,5\n'.encode(),
+    ],
+)
+def test_csv_of_all_kinds_is_one_table(data, tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_bytes(data)
+    assert rows_of(path) == ROWS
+
+
+def test_a_single_column_keeps_its_decimal_commas(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("OA\n80,5\n")
+    assert rows_of(path) == [["OA"], ["80,5"]]
+
+
+def book(path, cells):
+    with xlsxwriter.Workbook(path) as written:
+        sheet = written.add_worksheet()
+        for place, value, *kept in cells:
+            sheet.write(place, value, None, *kept)
+    return path
+
+
+def test_an_xlsx_gives_numbers_texts_and_values_of_formulas(tmp_path):
+    path = book(tmp_path / "t.xlsx", [("A1", "OA"), ("B1", "n1"), ("A2", 80.5), ("B2", "=2*A2", 161), ("A4", 7)])
+    assert rows_of(path) == [["OA", "n1"], ["80.5", "161"], ["7", ""]]
+
+
+def packed(path, parts):
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as into:
+        for name, content in parts.items():
+            into.writestr(name, content)
+    return path
+
+
+def refusal(path):
+    with pytest.raises(ProblemError) as caught:
+        rows_of(path)
+    return str(caught.value).removeprefix(f"{path}: ")
+
+
+def test_what_only_looks_like_a_table_is_refused(tmp_path):
+    bomb = packed(tmp_path / "bomb.xlsx", {"xl/sharedStrings.xml": b"0" * 30_000_000})
+    assert refusal(bomb) == "far more is packed in it than in a table\n  allowed: a smaller file"
+    far = book(tmp_path / "far.xlsx", [("A1", 1), ("XFD1048576", 1)])
+    assert refusal(far) == "a cell is too far out\n  found:   'XFD1048576'\n  allowed: 10000 rows, 500 columns"
+    copies = book(tmp_path / "c.xlsx", [(f"A{n + 1}", "x" * 32_000) for n in range(9000)])
+    assert refusal(copies).startswith("far more is packed in it")
+    macros = packed(tmp_path / "macros.xlsx", {"xl/vbaProject.bin": b""})
+    assert refusal(macros) == "it has macros: save it as .xlsx without them"
+    linked = packed(tmp_path / "linked.xlsx", {"xl/externalLinks/externalLink1.xml": b""})
+    assert refusal(linked) == "it takes values from other files: put the values themselves in"
+    empty = packed(tmp_path / "empty.xlsx", {"a.txt": b""})
+    assert refusal(empty).startswith("this is no sound XLSX: ")
+    (tmp_path / "cut.xlsx").write_bytes(far.read_bytes()[:900])
+    assert refusal(tmp_path / "cut.xlsx").startswith("this is no sound XLSX: ")
+
+
+def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
+    stream = io.BytesIO()
+    packed(stream, {"xl/workbook.xml": b"0" * 1_000_000})
+    lying = tmp_path / "lying.xlsx"
+    lying.write_bytes(stream.getvalue().replace((1_000_000).to_bytes(4, "little"), (10).to_bytes(4, "little")))
+    assert refusal(lying).startswith("this is no sound XLSX: ")
+
+
+def test_files_that_are_no_tables_are_refused(tmp_path):
+    (tmp_path / "own.csv").write_text("a\n")
+    (tmp_path / "link.csv").symlink_to(tmp_path / "own.csv")
+    assert refusal(tmp_path / "link.csv") == "this is no file of its own but a link, a folder or a device"
+    assert refusal(tmp_path / "none.csv") == "no such file"
+    (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\x00\x00")
+    assert refusal(tmp_path / "old.xls") == "this is no text\n  allowed: a table as CSV or XLSX"
+    (tmp_path / "large.csv").write_text("1" * 2_000_001)
+    assert refusal(tmp_path / "large.csv") == "the file is too large\n  found:   2000001\n  allowed: at most 2000000"
+    (tmp_path / "rows.csv").write_text("1\n" * 10_001)
+    assert refusal(tmp_path / "rows.csv") == "there are too many rows\n  allowed: at most 10000"
+    (tmp_path / "wide.csv").write_text("1," * 501)
+    assert refusal(tmp_path / "wide.csv") == "there are too many columns\n  found:   502\n  allowed: at most 500"
+    (tmp_path / "cell.csv").write_text('"' + "1\n" * 4000)
+    assert refusal(tmp_path / "cell.csv") == "a cell is too long\n  found:   7999\n  allowed: at most 5000"

@@ -1,0 +1,175 @@
+"""Tables of other programs as rows of texts: CSV as people save it, and XLSX. Nothing of them is trusted or run."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import os
+import re
+import stat
+import zipfile
+from datetime import date, datetime, time, timedelta
+from pathlib import Path
+from typing import Any
+
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, quote
+
+LARGEST = 2_000_000  # bytes of a file
+MOST_ROWS = 10_000
+MOST_COLUMNS = 500
+LONGEST = 5_000  # characters of a cell
+UNPACKED = 10  # times as large may be what is packed in an XLSX
+COPIED = 100  # times as large its texts may be when every cell has the longest of them
+PARTS = 1_000  # in an XLSX
+
+PLACE = re.compile(rb"""\br\s*=\s*["']\s*([A-Za-z]*)(\d+)\s*["']""")
+TEXT = re.compile(rb"</(?:[\w.-]+:)?si\s*>")
+CELL = re.compile(rb"<(?:[\w.-]+:)?c[\s/>]")
+REFUSED = {  # parts of an XLSX
+    "vbaproject": _("it has macros: save it as .xlsx without them"),
+    "externallink": _("it takes values from other files: put the values themselves in"),
+}
+
+
+def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> list[list[str]]:
+    """Rows of a CSV file or of the first sheet of an XLSX, empty ones left out; of formulas their last values.
+
+    largest: bytes; most: rows. CSV: semicolons, tabs or commas; UTF-8, UTF-16 with its mark, or cp1251. Raises
+    ProblemError.
+    """
+    file = os.fspath(path)
+    try:
+        data = _bytes(file, largest)
+        rows = _of_xlsx(data, largest, most) if data.startswith(b"PK\x03\x04") else _of_csv(data, most)
+        found = [[cell.strip() for cell in row] for row in rows]
+        long = next((cell for row in found for cell in row if len(cell) > LONGEST), None)
+        if long is not None:
+            raise _too_much(_("a cell is too long"), len(long), LONGEST)
+        return [row for row in found if any(row)]
+    except ProblemError as error:
+        raise error.located(file) from None
+
+
+def _bytes(file: str, largest: int) -> bytes:
+    try:
+        found = os.lstat(file)
+        if not stat.S_ISREG(found.st_mode):
+            raise ProblemError(_("this is no file of its own but a link, a folder or a device"))
+        if found.st_size > largest:
+            raise _too_much(_("the file is too large"), found.st_size, largest)
+        with open(file, "rb") as stream:
+            return stream.read(largest + 1)
+    except FileNotFoundError:
+        raise ProblemError(_("no such file")) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason)) from None
+
+
+def _too_much(message: str, found: int, allowed: int) -> ProblemError:
+    return ProblemError(message, found=f"{found}", allowed=_("at most {most}").format(most=allowed))
+
+
+def _of_csv(data: bytes, most: int) -> list[list[str]]:
+    text = _decoded(data)
+    if "\0" in text:
+        raise ProblemError(_("this is no text"), allowed=_("a table as CSV or XLSX"))
+    told = re.match(r"sep=(.)\r?\n", text)  # as Excel begins some
+    body = text[told.end() :] if told else text
+    head = re.sub(r'"[^"]*"', "", body.lstrip().partition("\n")[0])
+    between = told[1] if told else max(";\t,", key=lambda sign: (sign in head, head.count(sign)))
+    found: list[list[str]] = []
+    try:
+        for row in csv.reader(io.StringIO(body, newline=""), delimiter=between, skipinitialspace=True):
+            if len(row) > MOST_COLUMNS:
+                raise _too_much(_("there are too many columns"), len(row), MOST_COLUMNS)
+            if len(found) == most:
+                raise ProblemError(_("there are too many rows"), allowed=_("at most {most}").format(most=most))
+            if row:
+                found.append(row)
+    except csv.Error as error:
+        raise ProblemError(_("this is no CSV: {reason}").format(reason=error)) from None
+    return found
+
+
+def _decoded(data: bytes) -> str:
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", errors="replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1251", errors="replace")
+
+
+def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
+    _inspect(data, largest, most)
+    try:
+        from python_calamine import CalamineError, CalamineWorkbook
+    except ImportError:
+        raise ProblemError(
+            _("XLSX is read by python-calamine, which is not installed"),
+            allowed=_("CSV; or: pip install 'tmm-cli[excel]'"),
+        ) from None
+    try:
+        with CalamineWorkbook.from_filelike(io.BytesIO(data)) as book:
+            sheet = book.get_sheet_by_index(0)
+            return [[_text(cell) for cell in row] for row in sheet.to_python()]
+    except (CalamineError, OSError, ValueError, IndexError) as error:
+        raise _damaged(error) from None
+
+
+def _damaged(error: Exception) -> ProblemError:
+    return ProblemError(_("this is no sound XLSX: {reason}").format(reason=error))
+
+
+def _inspect(data: bytes, largest: int, most: int) -> None:
+    """Refuse what would fill the memory when it is unpacked, or is more than a table. Raises ProblemError."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as packed:
+            parts = packed.infolist()
+            if len(parts) > PARTS or sum(part.file_size for part in parts) > UNPACKED * largest:
+                raise ProblemError(_("far more is packed in it than in a table"), allowed=_("a smaller file"))
+            for part in parts:
+                for name, why in REFUSED.items():
+                    if name in part.filename.casefold():
+                        raise ProblemError(why)
+            cells, longest = 0, 0
+            for part in parts:
+                content = packed.read(part)  # with its checksum: its size is what it says
+                if b"sheetData" in content:
+                    _refuse_far(content, most)
+                cells += len(CELL.findall(content))
+                if b"sst" in content:
+                    longest = max(longest, *map(len, TEXT.split(content)))
+            if cells * longest > COPIED * largest:
+                raise ProblemError(_("far more is packed in it than in a table"), allowed=_("shorter texts in cells"))
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError, EOFError, OSError) as error:
+        raise _damaged(error) from None
+    except Exception as error:
+        if isinstance(error, ProblemError) or type(error).__module__ not in ("zlib", "_lzma"):
+            raise
+        raise _damaged(error) from None
+
+
+def _refuse_far(content: bytes, most: int) -> None:
+    """A cell far out makes a table of all the empty ones before it. Raises ProblemError."""
+    for letters, digits in set(PLACE.findall(content)):
+        column = 0
+        for letter in letters[:8].upper():
+            column = column * 26 + letter - 64
+        if len(digits) > 8 or int(digits) > most or column > MOST_COLUMNS:
+            raise ProblemError(
+                _("a cell is too far out"), found=quote((letters + digits).decode()),
+                allowed=_("{rows} rows, {columns} columns").format(rows=most, columns=MOST_COLUMNS),
+            )  # fmt: skip
+
+
+def _text(cell: Any) -> str:
+    """As a spreadsheet shows it: numbers with 15 figures."""
+    if isinstance(cell, bool | str):
+        return str(cell)
+    if isinstance(cell, datetime | date | time):
+        return cell.isoformat()
+    return str(cell) if isinstance(cell, timedelta) else f"{cell:.15g}"
