@@ -53,7 +53,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
 
 
 def _begin() -> None:
-    """Ctrl-C reaches all processes of a terminal: the first one tells the others. What has no value is told in words."""
+    """Ctrl-C reaches all processes: the first one tells the others. What has no value is told in words."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RuntimeWarning)
 
