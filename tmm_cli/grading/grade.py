@@ -9,6 +9,7 @@ import numpy as np
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
+from tmm_cli.grading.mistakes.other_zero import OtherZero
 from tmm_cli.grading.readings import readings
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.sheet import Right, Written, right
@@ -36,7 +37,9 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
         if isinstance(family, LinkageError):
             found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
         else:
-            found |= dict(zip(own, _marks(task, family, [submissions[n] for n in own]), strict=True))
+            for part, begun in _begun(task, family, [submissions[n] for n in own]):
+                there = [own[row] for row in part]
+                found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
     for n, submission in enumerate(submissions):
         yield found.get(n) or ungraded(task, submission, _("there is no variant of this student"))
 
@@ -61,6 +64,26 @@ def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
     """Of a student of whom nothing can be judged."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
+
+
+def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Iterator[tuple[Real, Family]]:
+    """The students who count the positions from where the task does, and those who do from the other extreme position.
+
+    The latter only where the task allows it; each by what makes more of the answers right.
+    """
+    rows, strokes = np.arange(len(submissions)), family.strokes
+    if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
+        yield rows, family
+        return
+    both = (family, OtherZero(True).family(family))
+    holds = []
+    for one in both:
+        wanted = right(one, task.asked)
+        holds.append(np.sum(wanted.error(read(task, wanted, submissions)[0]) <= wanted.allowed, axis=1))
+    other = holds[1] > holds[0]
+    for one, part in zip(both, (rows[~other], rows[other]), strict=True):
+        if part.size:
+            yield part, one.take(part)
 
 
 def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:

@@ -23,6 +23,7 @@ from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import NUMBER, Dimension
+from tmm_cli.synthesis.reading import TaskFile
 from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.variant import Variant
@@ -140,6 +141,9 @@ class Task:
     def _parameters(
         self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
     ) -> dict[str, PhysicalValue]:
+        """All parameters; of a file with a task of synthesis those that do not rest on what it finds."""
+        if "synthesis" in self.tree.data:
+            return {**TaskFile(self.tree).early, **given}
         raw = self._shape.parameters
         rest = {name: value for name, value in raw.items() if name not in given}
         return {**given, **parameters(rest, units or self.units, given)}

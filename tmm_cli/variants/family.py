@@ -77,7 +77,7 @@ def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | Linkage
     """
     rows = np.arange(len(columns))
     together = _together(make, columns) if len(columns) > 1 else None
-    if together is not None:
+    if together is not None and np.any(together.sound):
         yield rows[together.sound], together.take(rows[together.sound])
         rows = rows[~together.sound]
     for row in rows:
@@ -136,6 +136,8 @@ def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple
     curve = OutputCurve(linkage, towards(kernels, [link]), link)
     forward = np.broadcast_to(output_slope(whole, link), q.shape) >= 0
     turns_back = forward[:, :-1] != forward[:, 1:]
+    if not np.any(turns_back):  # it turns on and on
+        return Strokes(link, curve.kind, (), ""), sound
     sound = sound & (np.sum(turns_back, axis=1) == 2)
     if not np.any(sound):
         return None, sound
@@ -188,7 +190,7 @@ def _places(request: Request, strokes: Strokes | None, sense: int, count: int) -
         return np.concatenate([place * ones for place in request.places], axis=1)
     start: Any = request.start
     if isinstance(start, str):
-        if strokes is None:
+        if strokes is None or not strokes.strokes:
             return None
         start = strokes.strokes[0].start
     places: Real = start * ones + sense * 2 * np.pi * np.arange(request.count) / request.count
