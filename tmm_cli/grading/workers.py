@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
+from importlib import import_module
 from multiprocessing import get_context
 from typing import Any
 
@@ -65,7 +66,7 @@ def cluster(address: str) -> Way:
 
 def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
     try:
-        import distributed
+        distributed: Any = import_module("distributed")  # typed in part alone
     except ImportError:
         raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
     try:
