@@ -10,11 +10,10 @@ from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
 from tmm_cli.grading.mistakes.other_zero import OtherZero
-from tmm_cli.grading.readings import readings
+from tmm_cli.grading.readings import read
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
-from tmm_cli.grading.sheet import Right, Written, right
+from tmm_cli.grading.sheet import right
 from tmm_cli.grading.task import Task
-from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import Dimension
 from tmm_cli.variants.family import Family, families
 from tmm_cli.vectors import Real
@@ -79,7 +78,7 @@ def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Ite
     holds = []
     for one in both:
         wanted = right(one, task.asked)
-        holds.append(np.sum(wanted.error(read(task, wanted, submissions)[0]) <= wanted.allowed, axis=1))
+        holds.append(np.sum(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed, axis=1))
     other = holds[1] > holds[0]
     for one, part in zip(both, (rows[~other], rows[other]), strict=True):
         if part.size:
@@ -89,7 +88,7 @@ def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Ite
 def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Of the students of one family."""
     wanted = right(family, task.asked)
-    written, how, refused = read(task, wanted, submissions)
+    written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
     claims = diagnose(family, wanted, written)
     follows = following(family, wanted, written, claims)
@@ -115,31 +114,3 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
             ))  # fmt: skip
         found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
     return found
-
-
-def read(
-    task: Task, wanted: Right, submissions: Sequence[Submission]
-) -> tuple[Written, dict[tuple[int, int], str], dict[tuple[int, int], str]]:
-    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
-    shape = len(submissions), len(task.asked)
-    value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
-    how: dict[tuple[int, int], str] = {}
-    refused: dict[tuple[int, int], str] = {}
-    for n, submission in enumerate(submissions):
-        for k, asked in enumerate(task.asked):
-            given = submission.answers.get(asked.key)
-            if given is None:
-                continue
-            try:
-                meant = readings(given, asked.quantity, task.units)
-            except ProblemError as error:
-                refused[n, k] = str(error)
-                continue
-            size[n, k] = asked.quantity.vector and given.form in ("number", "size")
-            unit = next(iter(meant))
-            if len(meant) > 1:
-                one = wanted.cell(n, k)
-                unit = min(meant, key=lambda name: one(meant[name], bool(size[n, k])))
-                how[n, k] = unit
-            value[n, k] = meant[unit]
-    return Written(value, size), how, refused
