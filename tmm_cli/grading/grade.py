@@ -35,13 +35,13 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
     for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         own = [known[row] for row in rows]
         if isinstance(family, LinkageError):
-            found |= {n: _none(task, submissions[n], str(family)) for n in own}
+            found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
         else:
             for part, begun in _begun(task, family, [submissions[n] for n in own]):
                 there = [own[row] for row in part]
                 found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
     for n, submission in enumerate(submissions):
-        yield found.get(n) or _none(task, submission, _("there is no variant of this student"))
+        yield found.get(n) or ungraded(task, submission, _("there is no variant of this student"))
 
 
 def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
@@ -60,7 +60,8 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
     return dimensions, columns
 
 
-def _none(task: Task, submission: Submission, why: str) -> StudentMarks:
+def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
+    """Of a student of whom nothing can be judged."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
