@@ -59,7 +59,7 @@ class Right:
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
         gap = np.where(written.size, sizes, gap)
         turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "turn"]
-        gap[:, turns] = np.abs(np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi)
+        gap[..., turns] = np.abs(np.remainder(gap[..., turns] + np.pi, 2 * np.pi) - np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             share: Real = gap / self.scale
         return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
