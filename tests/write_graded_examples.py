@@ -21,8 +21,8 @@ from tmm_cli.problem.reader import read_file
 from tmm_cli.variants.family import families
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
-NAMES = ["Antonova", "Borisov", "Vasic", "Georgieva", "Dimitrov", "Jovanovic", "Zaitseva", "Ivanov", "Kovac", "Lebedeva",
-         "Markovic", "Novak"]  # fmt: skip
+NAMES = ["Antonova", "Borisov", "Vasic", "Georgieva", "Dimitrov", "Jovanovic", "Zaitseva", "Ivanov", "Kovac",
+         "Lebedeva", "Markovic", "Novak"]  # fmt: skip
 DRAWING = 0.01  # of the largest value
 MISTAKES = {  # of the students, by number: the mistake, or of whom the sheet was copied, or what broke
     3: "Coriolis", 4: "Rpm", 5: "WeightForMass", 6: "Sense", 7: "OppositeReaction", 8: "copy", 9: "broken", 10: "late",
@@ -59,7 +59,8 @@ grading:
     - {of: R_45, at: [4, 9], points: 2}
     - {of: M_b, at: [4, 9], points: 3}
 """),
-    "crank-slider": ("crank-slider", "variants: {r: {from: 50, to: 70, step: 5}, l: {from: 200, to: 240, step: 10}}", """
+    "crank-slider": (
+        "crank-slider", "variants: {r: {from: 50, to: 70, step: 5}, l: {from: 200, to: 240, step: 10}}", """
 grading:
   drawn: false
   answers:
@@ -132,7 +133,7 @@ def variants(task, folder, random):
     rows = {}
     for name in NAMES:
         row = []
-        for parameter, own in free.items():
+        for own in free.values():
             values = own.get("among")
             if values is None:
                 low, high, step = (float(str(own[key]).split()[0]) for key in ("from", "to", "step"))
