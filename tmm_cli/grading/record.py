@@ -77,6 +77,11 @@ class Mark:
     mistakes: tuple[str, ...] = ()
     text: str = ""
 
+    @property
+    def judged(self) -> bool:
+        """Whether there was a variant to judge it by."""
+        return self.allowed > 0
+
 
 @dataclass(frozen=True)
 class StudentMarks:
