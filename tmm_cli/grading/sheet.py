@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +34,7 @@ class Written:
     value: Vector
     size: Real
 
-    @property
+    @cached_property
     def there(self) -> Real:
         return ~np.isnan(self.value)
 
@@ -58,15 +59,15 @@ class Right:
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
         gap = np.where(written.size, sizes, gap)
         turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "turn"]
-        gap[:, turns] = np.abs(np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi)
+        gap[..., turns] = np.abs(np.remainder(gap[..., turns] + np.pi, 2 * np.pi) - np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             share: Real = gap / self.scale
         return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
 
-    def cell(self, n: int, k: int) -> Callable[[complex, bool], float]:
-        """The error of one answer, of a value; the second argument: by its size alone."""
-        one = Right((self.asked[k],), *(part[n : n + 1, k : k + 1] for part in (self.value, self.scale, self.allowed)))
-        return lambda value, size: float(one.error(Written(np.array([[value]]), np.array([[size]])))[0, 0])
+    def side_by_side(self, rows: Sequence[int], k: int, count: int) -> Right:
+        """One answer of some students, for as many values as may be meant by it."""
+        own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
+        return Right((self.asked[k],) * count, *own)
 
     def take(self, rows: Real) -> Right:
         """That of some students, or of some again and again."""
@@ -101,7 +102,10 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
     scale = _scales(asked, solution)
-    change = np.array([np.abs(predicted(other, asked) - value) for other in _nearby(family)]) / STEP
+    places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
+    there = [replace(one, position=places.index(one.position or 0)) for one in asked]
+    nearby = _nearby(family.changed(family.linkage, family.q[:, places]))
+    change = np.array([np.abs(predicted(other, there) - value) for other in nearby]) / STEP
     with np.errstate(divide="ignore", invalid="ignore"):
         response = np.sqrt(np.sum(change**2, axis=0)) / scale
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
