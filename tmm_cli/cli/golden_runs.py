@@ -68,7 +68,9 @@ def _read(file: Path) -> Any:
         content["result"].items()
     except FileNotFoundError:
         return _("there are no expected values; tmm check --update writes them")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except RecursionError:
+        return _("this is not a file of expected values (its brackets are nested without end)")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         return _("this is not a file of expected values ({error})").format(error=error)
     return content
 

@@ -25,7 +25,7 @@ FIGURES = ["%.0s0", *(f"%.{n}g" for n in range(1, 18))]  # by how many are true;
 
 def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as CSV in the units of the file; a cell that a spreadsheet would run as a formula is quoted."""
-    yield ",".join(_cell(column.heading(units)) for column in table.columns) + "\n"
+    yield ",".join(csv_cell(column.heading(units)) for column in table.columns) + "\n"
     columns = [_numbers_or_words(column, units) for column in table.columns]
     for start in range(0, table.rows, ROWS):
         here = slice(start, start + ROWS)
@@ -42,14 +42,15 @@ def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
 
 def _cells(values: Any, figures: Any) -> list[str]:
     if not isinstance(values, np.ndarray):
-        return [_cell(word) for word in values]
+        return [csv_cell(word) for word in values]
     if figures is None:
         return [FULL % v if v - v == 0 else "" for v in values.tolist()]  # nan and infinity have no cell
     return [FIGURES[n] % v if n >= 0 else "" for v, n in zip(values.tolist(), figures.tolist(), strict=True)]
 
 
 @lru_cache(maxsize=1024)
-def _cell(text: str) -> str:
+def csv_cell(text: str) -> str:
+    """A word as a cell of CSV; what a spreadsheet would run as a formula is quoted."""
     pieces = SEPARATORS.split(text)
     safe = "".join("'" + piece if _runs(piece) else piece for piece in pieces)
     safe = "'" + safe if text.startswith(("\t", "\r")) else safe

@@ -1,4 +1,4 @@
-"""What charts of measurements share: an A4 page with its title, plain numbers, light grids."""
+"""What charts share: an A4 page with its title, plain numbers, light grids."""
 
 from __future__ import annotations
 
