@@ -5,6 +5,7 @@ import io
 import json
 import os
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -131,6 +132,16 @@ def test_a_workbook_has_marks_answers_and_the_group(own, tmp_path):
     assert b"<f>" not in data and data == written(tmp_path, Gradebook(own, [
         marks("=1+1", text="=2+2"), marks("https://x.org")
     ]), "xlsx")["marks.xlsx"]  # fmt: skip
+
+
+def test_where_nothing_writes_workbooks_the_rest_is_written_and_it_is_said(own, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
+    told = []
+    write(tmp_path, Gradebook(own, [marks("Ann")]), ("xlsx", "moodle"), told.append)
+    assert os.listdir(tmp_path) == ["moodle.csv"]
+    assert told == [
+        "marks.xlsx is written by xlsxwriter, which is not installed\n  allowed: pip install 'tmm-cli[excel]'"
+    ]
 
 
 def test_what_one_sheet_cannot_hold_goes_on_in_the_next(own, tmp_path, monkeypatch):
