@@ -19,7 +19,7 @@ from tmm_cli.results.files import folder_name
 
 STATES = {
     "right": _("right"),
-    "follows": _("right given your own earlier answers"),
+    "follows": _("right given yours"),
     "wrong": _("wrong"),
     "missing": _("no answer"),
 }
