@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli import inputs_of
-from tmm_cli.analysis.mechanism import Mechanism
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli import solve
 from tmm_cli.errors import _
 from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
@@ -65,9 +63,9 @@ class Faults:
 
 
 def faults_of(task: Task) -> Faults:
-    """Raises ProblemError, LinkageError."""
-    problem = task.problem.whole
-    mechanism = Mechanism(inputs_of(problem), mobile(problem.linkage))
+    """Raises ProblemError where the file's own variant cannot be moved."""
+    results = solve(task.problem, "kinematics")
+    mechanism, problem = results.mechanism, results.problem
     limits = {
         (one.link, one.pair): one.allowed if problem.limits_set[not one.slides] else max(one.allowed, one.largest)
         for one in mechanism.pressure
