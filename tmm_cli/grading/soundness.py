@@ -12,6 +12,7 @@ from tmm_cli.errors import _
 from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import angle, followers, named
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
@@ -25,11 +26,12 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 class Faults:
     """What would be wrong with a variant, by the measure of the file's own.
 
-    turns: of a full cycle; 0 where the driver does not turn fully. limits: largest pressure angles (rad): those that
+    turns: of a full cycle; 0 where the driver does not turn fully. strokes: of the output in it. limits: largest pressure angles (rad): those that
     are allowed, or that of the file's own variant where it goes beyond one that the file does not set.
     """
 
     turns: int
+    strokes: int
     limits: Mapping[Held, float]
 
     def of(self, family: Family) -> Real:
@@ -44,7 +46,10 @@ class Faults:
         with np.errstate(all="ignore"):
             found = [
                 (np.all(states.moving, axis=1), _("it cannot be assembled in all its positions")),
-                (family.sound, _("its output moves otherwise than that of the file")),
+                (
+                    family.sound & (_strokes(family.strokes) == self.strokes),
+                    _("its output moves otherwise than that of the file"),
+                ),
                 *_margins(states),
                 *_slots(states),
                 *self._pressures(states),
@@ -71,7 +76,11 @@ def faults_of(task: Task) -> Faults:
         for one in mechanism.pressure
     }
     full = mechanism.driver_range.full and problem.linkage.driver.kind == "turn"
-    return Faults(mechanism.driver_range.turns if full else 0, limits)
+    return Faults(mechanism.driver_range.turns if full else 0, _strokes(mechanism.strokes), limits)
+
+
+def _strokes(strokes: Strokes | None) -> int:
+    return 0 if strokes is None else len(strokes.strokes)
 
 
 def _margins(states: LinkStates) -> Iterator[tuple[Real, str]]:
