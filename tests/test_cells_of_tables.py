@@ -75,9 +75,43 @@ def test_what_only_looks_like_a_table_is_refused(tmp_path):
     linked = packed(tmp_path / "linked.xlsx", {"xl/externalLinks/externalLink1.xml": b""})
     assert refusal(linked) == "it takes values from other files: put the values themselves in"
     empty = packed(tmp_path / "empty.xlsx", {"a.txt": b""})
-    assert refusal(empty).startswith("this is no sound XLSX: ")
+    assert refusal(empty) == "this is no XLSX\n  allowed: a table as CSV or XLSX"
     (tmp_path / "cut.xlsx").write_bytes(far.read_bytes()[:900])
     assert refusal(tmp_path / "cut.xlsx").startswith("this is no sound XLSX: ")
+
+
+def rewritten(path, sheet):
+    """A sound workbook with another text for its sheet."""
+    with zipfile.ZipFile(book(path, [("A1", 1)])) as sound:
+        parts = {name: sound.read(name) for name in sound.namelist()}
+    return packed(path, {**parts, "xl/worksheets/sheet1.xml": SHEET.replace(b"ROWS", sheet)})
+
+
+SHEET = b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>ROWS</sheetData></worksheet>'
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        b"<c><v>1</v></c>",  # its place is that of the one before and one more: no bound
+        b"""<c a=' r="A1"'><v>1</v></c>""",
+        b'<c r="&#65;1"><v>1</v></c>',
+        b'<x:c xmlns:x="a"><v>1</v></x:c>',
+    ],
+)
+def test_cells_that_do_not_say_where_they_stand_are_not_counted_through(cells, tmp_path):
+    told = "a cell does not say where it stands\n  allowed: a file that a spreadsheet has saved"
+    assert refusal(rewritten(tmp_path / "t.xlsx", b"<row>" + cells + b"</row>")) == told
+
+
+def test_a_place_may_stand_behind_other_attributes(tmp_path):
+    assert rows_of(rewritten(tmp_path / "t.xlsx", b"<row r='2'><c s = '0' r = 'B2'><v>1.5</v></c></row>")) == [["1.5"]]
+
+
+def test_other_spreadsheets_than_xlsx_are_not_read_as_one(tmp_path):
+    repeated = b'<table:table-cell table:number-columns-repeated="16384" office:value="1"/>'
+    path = packed(tmp_path / "ods.xlsx", {"mimetype": b"application/vnd.oasis", "content.xml": repeated})
+    assert refusal(path) == "this is no XLSX\n  allowed: a table as CSV or XLSX"
 
 
 def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_commands import SHAPER
+from test_commands import ROOT, SHAPER
 from test_diagnosis import ASKED, group
+from test_variants_of_task import family_of
 
 from tmm_cli.grading.copies import with_copies
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
 from tmm_cli.grading.grade import grade
+from tmm_cli.grading.mistakes.other_zero import OtherZero
 from tmm_cli.grading.own_answers import own_answer
 from tmm_cli.grading.record import Given, Submission, VariantTable
 from tmm_cli.grading.sheet import Written, predicted
@@ -100,3 +102,23 @@ def test_the_sheet_of_another_variant_is_named_to_the_teacher():
     found = with_copies(list(grade(TASK, TABLE, [Submission(n, sheet(r)) for n, r in zip(NAMES, rows, strict=True)])))
     assert [marks.copied for marks in found] == ["", "", "", NAMES[5], "", "", "", ""]
     assert not any("student 5" in reason for mark in found[3].marks for reason in mark.reasons)
+
+
+def test_positions_may_be_counted_from_either_extreme_position():
+    either = ASKED.replace("grading:", "grading:\n  from: either")
+    task = read_task(read_text(SHAPER.read_text(encoding="utf-8") + either, "task.yaml"))
+    rows, others = rights(), predicted(OtherZero(True).family(family_of(TASK, TABLE)), TASK.asked)
+    sheets = [sheet(rows[0]), sheet(others[1])]
+    found = list(grade(task, TABLE, [Submission(n, own) for n, own in zip(NAMES, sheets, strict=False)]))
+    assert [marks.points for marks in found] == [11.0, 11.0]
+    (marks,) = grade(TASK, TABLE, [Submission(NAMES[1], sheets[1])])
+    assert marks.points < 11.0
+
+
+def test_where_a_guides_reaction_acts_is_not_judged_where_it_is_nearly_zero():
+    text = (ROOT / "problems" / "crank-slider.yaml").read_text(encoding="utf-8")
+    task = read_task(read_text(text + "grading: {answers: [{of: arm of R_03, at: [5, 8, 9, 10]}]}", "task.yaml"))
+    answers = {asked.key: Given(1e6, unit="mm") for asked in task.asked}
+    (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", answers)])
+    assert [mark.state for mark in marks.marks] == ["wrong", "wrong", "right", "wrong"]
+    assert np.isnan(marks.marks[2].right)

@@ -93,7 +93,7 @@ def interrupted(where):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False)
 
 
-@pytest.mark.parametrize("where", ["tmm_cli.cli", "typer", "numpy"])
+@pytest.mark.parametrize("where", ["tmm_cli.errors", "tmm_cli.cli", "typer", "numpy"])
 def test_ctrl_c_at_any_time_ends_with_130_and_no_word(where):
     done = interrupted(where)
     assert (done.returncode, done.stderr) == (130, b"")
@@ -108,6 +108,8 @@ def test_check_names_what_cannot_be_written(tmp_path):
     done = tmm("check", tmp_path, "--junit", tmp_path)
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1] == f"error: {tmp_path}: Is a directory"
+    done = tmm("check", SINE, "--junit", tmp_path)  # its expected values are there, and met
+    assert (done.returncode, done.stderr) == (2, f"error: {tmp_path}: Is a directory\n")
 
 
 def test_expected_values_nested_without_end_are_none(tmp_path):
@@ -116,7 +118,8 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
     (tmp_path / "expected" / "sine.json").write_text("[" * 100_000, encoding="utf-8")
     done = tmm("check", tmp_path)
     assert done.returncode == 1
-    assert "this is not a file of expected values" in done.stderr
+    wrong = "this is not a file of expected values (its brackets are nested without end)"
+    assert done.stderr == f"error: sine: {tmp_path / 'expected' / 'sine.json'}: {wrong}\n1 problems, 1 differ\n"
 
 
 @pytest.mark.parametrize(
@@ -130,6 +133,16 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
 def test_no_cell_breaks_or_runs_in_any_locale(word, cell):
     table = table_of_words("t", "", ("header",), [(word,)])
     assert "".join(csv_text(table, UnitSystem())) == f"header\n{cell}\n"
+
+
+def test_names_of_links_reach_the_table_defused(tmp_path):
+    text = SINE.read_text(encoding="utf-8")
+    for name, hostile in (("crank", "=cmd|calc"), ("stone", "nan"), ("slider with a slot", "a;-b")):
+        text = text.replace(f"name: {name},", f'name: "{hostile}",')
+    (tmp_path / "x.yaml").write_text(text, encoding="utf-8")
+    assert tmm("structure", tmp_path / "x.yaml", "-o", tmp_path).returncode == 0
+    lines = (tmp_path / "x" / "links.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[1:] == ['1,crank,"\'=cmd|calc","O, A"', '2,stone,"nan",A', '3,slider,"a;\'-b",E']
 
 
 def test_what_is_no_number_has_an_empty_cell():

@@ -76,6 +76,14 @@ def test_a_bare_speed_is_plain_where_the_file_says_its_unit():
     assert told(("82 rpm", "70"), ("angle: deg}", "angle: deg, angular speed: rpm}")) == []
 
 
+def test_a_speed_that_no_machine_has_is_warned_of():
+    assert told(("82 rpm", "1e5 rad/s")) == []
+    assert told(("82 rpm", "1e19 rad/s")) == [
+        "the driver's speed, 1e+19 rad/s = 9.55e+19 rpm, counterclockwise, is more than machines have: "
+        "is the unit right?"
+    ]
+
+
 def test_sizes_that_no_mechanism_has_are_warned_of():
     assert told(("OA: 110", "OA: 0.11"))[0] == "OA is 0.11 mm, less than 5 mm: is the unit right?"
     assert told(("CD: 650", "CD: 65 m")) == ["CD is 65000 mm, more than 50 m: is the unit right?"]

@@ -16,15 +16,12 @@ Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.Proble
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
-from functools import cache
-from typing import TYPE_CHECKING, Literal
-
-from tmm_cli.errors import LinkageError
-
+# Nothing is imported here: the command reads this file before its own, where an interruption is caught.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Literal
+
     from tmm_cli.analysis.mechanism import Inputs
     from tmm_cli.analysis.pipeline import Results
     from tmm_cli.analysis.spatial_chain import ChainResults
@@ -68,15 +65,19 @@ def solve(
     of: points, links, centres of mass (E, 5, S3) that alone are asked for; only groups on the way to them are solved.
     """
     from tmm_cli.analysis.pipeline import solve as compute
+    from tmm_cli.problem.refusals import in_words_of
 
     whole = problem.whole
-    with _in_words_of(whole):
+    with in_words_of(whole):
         return compute(inputs_of(whole), stage, positions, of, whole)
 
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
     """The structure alone: no task of synthesis is solved for it, unless it hangs on lengths. Raises ProblemError."""
+    from dataclasses import replace
+
     from tmm_cli.analysis.pipeline import solve as compute
+    from tmm_cli.errors import LinkageError
     from tmm_cli.problem.record import TaskProblem
 
     draft = problem.draft() if isinstance(problem, TaskProblem) else None
@@ -90,6 +91,8 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 
 def inputs_of(problem: Problem) -> Inputs:
     """What the stages need of a problem."""
+    from functools import cache
+
     from tmm_cli.analysis.mechanism import Inputs
 
     again = problem.extended
@@ -107,10 +110,13 @@ def count(problem: ChainProblem) -> ChainResults:
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError."""
+    from dataclasses import replace
+
     from tmm_cli.analysis.other_driver import redriven
+    from tmm_cli.problem.refusals import in_words_of
 
     whole = problem.whole
-    with _in_words_of(whole):
+    with in_words_of(whole):
         linkage = redriven(whole.linkage, link)
     request = replace(whole.request, places=(), start=0.0)
     return replace(whole, linkage=linkage, request=request, extended=None)
@@ -122,9 +128,10 @@ def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None =
     Where the sketch does not decide among them: the structure with the assemblies at the sketch. Raises ProblemError.
     """
     from tmm_cli.analysis.all_assemblies import with_assemblies
+    from tmm_cli.problem.refusals import in_words_of
 
     whole = problem.whole
-    with _in_words_of(whole):
+    with in_words_of(whole):
         return with_assemblies(inputs_of(whole), positions, whole)
 
 
@@ -133,21 +140,13 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
     """
+    from collections.abc import Sequence
+
     from tmm_cli.analysis.pipeline import solve as compute
+    from tmm_cli.problem.refusals import in_words_of
     from tmm_cli.variants.batch import prepare as ready
 
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
-    with _in_words_of(several[0]):
+    with in_words_of(several[0]):
         strokes = compute(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
         return ready([problem.linkage for problem in several], strokes=strokes)
-
-
-@contextmanager
-def _in_words_of(problem: Problem) -> Iterator[None]:
-    """What a stage refuses is said in the terms of the file. Raises ProblemError."""
-    try:
-        yield
-    except LinkageError as error:
-        from tmm_cli.problem.refusals import refusal
-
-        raise refusal(error, problem) from None

@@ -24,9 +24,13 @@ UNPACKED = 10  # times as large may be what is packed in an XLSX
 COPIED = 100  # times as large its texts may be when every cell has the longest of them
 PARTS = 1_000  # in an XLSX
 
-PLACE = re.compile(rb"""\br\s*=\s*["']\s*([A-Za-z]*)(\d+)\s*["']""")
+_NAME, _GIVEN = rb"(?:[^\s<>/:]+:)?", rb"""\s*=\s*(?:"[^"<>]*"|'[^'<>]*')"""
+PLACE = re.compile(  # a cell that says where it stands
+    rb"<" + _NAME + rb"c(?:\s+(?!r\s*=)[\w:.-]+" + _GIVEN + rb"""){0,20}+\s+r\s*=\s*["']([A-Za-z]+)(\d+)["'][\s/>]"""
+)
 TEXT = re.compile(rb"</(?:[\w.-]+:)?si\s*>")
-CELL = re.compile(rb"<(?:[\w.-]+:)?c[\s/>]")
+CELL = re.compile(rb"<" + _NAME + rb"c[\s/>]")
+OTHERS = {"content.xml", "xl/workbook.bin"}  # in what is not XLSX, and might be read as a table all the same
 REFUSED = {  # parts of an XLSX
     "vbaproject": _("it has macros: save it as .xlsx without them"),
     "externallink": _("it takes values from other files: put the values themselves in"),
@@ -41,7 +45,7 @@ def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> 
     """
     file = os.fspath(path)
     try:
-        data = _bytes(file, largest)
+        data = bytes_of(file, largest)
         rows = _of_xlsx(data, largest, most) if data.startswith(b"PK\x03\x04") else _of_csv(data, most)
         found = [[cell.strip() for cell in row] for row in rows]
         long = next((cell for row in found for cell in row if len(cell) > LONGEST), None)
@@ -52,7 +56,9 @@ def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> 
         raise error.located(file) from None
 
 
-def _bytes(file: str, largest: int) -> bytes:
+def bytes_of(path: Path | str, largest: int) -> bytes:
+    """A file that is one of its own and not too large. Raises ProblemError."""
+    file = os.fspath(path)
     try:
         found = os.lstat(file)
         if not stat.S_ISREG(found.st_mode):
@@ -73,7 +79,7 @@ def _too_much(message: str, found: int, allowed: int) -> ProblemError:
 
 
 def _of_csv(data: bytes, most: int) -> list[list[str]]:
-    text = _decoded(data)
+    text = decoded(data)
     if "\0" in text:
         raise ProblemError(_("this is no text"), allowed=_("a table as CSV or XLSX"))
     told = re.match(r"sep=(.)\r?\n", text)  # as Excel begins some
@@ -94,7 +100,8 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
     return found
 
 
-def _decoded(data: bytes) -> str:
+def decoded(data: bytes) -> str:
+    """A text in UTF-8, in UTF-16 with its mark, or else in cp1251."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", errors="replace")
     try:
@@ -118,9 +125,13 @@ def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
             return [[_text(cell) for cell in row] for row in sheet.to_python()]
     except (CalamineError, OSError, ValueError, IndexError) as error:
         raise _damaged(error) from None
+    except BaseException as error:
+        if type(error).__name__ != "PanicException":  # of Rust: a file that it did not think of
+            raise
+        raise _damaged(error) from None
 
 
-def _damaged(error: Exception) -> ProblemError:
+def _damaged(error: BaseException) -> ProblemError:
     return ProblemError(_("this is no sound XLSX: {reason}").format(reason=error))
 
 
@@ -131,16 +142,19 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
             parts = packed.infolist()
             if len(parts) > PARTS or sum(part.file_size for part in parts) > UNPACKED * largest:
                 raise ProblemError(_("far more is packed in it than in a table"), allowed=_("a smaller file"))
-            for part in parts:
-                for name, why in REFUSED.items():
-                    if name in part.filename.casefold():
-                        raise ProblemError(why)
+            names = {part.filename.casefold() for part in parts}
+            for name, why in REFUSED.items():
+                if any(name in part for part in names):
+                    raise ProblemError(why)
+            if "xl/workbook.xml" not in names or names & OTHERS:
+                raise ProblemError(_("this is no XLSX"), allowed=_("a table as CSV or XLSX"))
             cells, longest = 0, 0
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
+                here = len(CELL.findall(content))
                 if b"sheetData" in content:
-                    _refuse_far(content, most)
-                cells += len(CELL.findall(content))
+                    _refuse_far(content, here, most)
+                cells += here
                 if b"sst" in content:
                     longest = max(longest, *map(len, TEXT.split(content)))
             if cells * longest > COPIED * largest:
@@ -153,9 +167,12 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
         raise _damaged(error) from None
 
 
-def _refuse_far(content: bytes, most: int) -> None:
-    """A cell far out makes a table of all the empty ones before it. Raises ProblemError."""
-    for letters, digits in set(PLACE.findall(content)):
+def _refuse_far(content: bytes, cells: int, most: int) -> None:
+    """A cell far out makes a table of all the empty ones before it. cells: how many there are. Raises ProblemError."""
+    places = PLACE.findall(content)
+    if len(places) != cells:
+        raise ProblemError(_("a cell does not say where it stands"), allowed=_("a file that a spreadsheet has saved"))
+    for letters, digits in set(places):
         column = 0
         for letter in letters[:8].upper():
             column = column * 26 + letter - 64

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -25,7 +24,8 @@ PER_ALLOWED = 3.0  # an answer may be off by so many standard errors of a drawin
 CAP = 5.0  # standard errors: what is farther off is off for another reason, and counts no more
 GAIN = 12.0  # squares of standard errors that a mistake must explain
 MARGIN = 9.0  # by which it must explain more than the next
-TRIED = 8  # pairs of mistakes that are computed for a student, the best by a first estimate
+FIRST = 8  # mistakes that explain most alone: one of a pair is among them
+TRIED = 5  # pairs of mistakes that are computed for a student, the best by a first estimate
 ALIKE = 3  # kinds of mistakes that may be named together
 
 
@@ -76,24 +76,25 @@ class _Sheets:
                 predicted(family, asked, [case]) if case.solves else written_down(plain, asked, [case])
                 for case in self.cases
             ])  # fmt: skip
-        self.costs = np.stack([self.cost(value) for value in self.values])
+        self.price = np.array([case.price for case in self.cases])
+        self.costs = np.stack([self.cost(value) for value in self.values]) + self.price[:, None]
         self.none = self.cost(right.value)
         self.wrong = right.error(written) > right.allowed
+        kinds = [type(case) for case in self.cases]
+        self.kind = np.array([kinds.index(kind) for kind in kinds])
+        self.whole = np.array([kind is not ScaleInverted for kind in kinds])
+        self.slips = np.array([c for c, case in enumerate(self.cases) if not case.solves and self.whole[c]])
 
     def errors(self, value: Vector, rows: Real | None = None) -> Real:
         """In standard errors; of answers that are not there zero, of values that are not there many."""
         right, written = self.right, self.written
         if rows is not None:
             right, written = right.take(rows), written.take(rows)
-        with np.errstate(all="ignore"):
-            scale = np.maximum(1.0, np.abs(value) / right.scale)  # drawn off a plan of the wrong values
-            found = right.error(written, value) / scale / (right.allowed / PER_ALLOWED)
-        return np.where(written.there, np.nan_to_num(found, nan=np.inf), 0.0)
+        return _errors(right, written, value)
 
     def cost(self, value: Vector, rows: Real | None = None) -> Real:
         """How badly a value explains the sheets: squares of standard errors, as far as they count."""
-        total: Real = np.sum(np.minimum(self.errors(value, rows), CAP) ** 2, axis=-1)
-        return total
+        return _cost(self.errors(value, rows))
 
     def claims(self) -> Iterator[list[Claim]]:
         """Student by student."""
@@ -102,19 +103,17 @@ class _Sheets:
             yield self._claims(n, pairs.get(n, []))
 
     def _claims(self, n: int, pairs: Sequence[Explanation]) -> list[Claim]:
-        own = self.right.take(np.array([n]))
-        order = np.argsort(self.costs[:, n])
-        single: list[Explanation] = [(float(self.costs[c, n]), (int(c),), self.values[c, n]) for c in order]
+        costs = self.costs[:, n]
+        near = [int(c) for c in np.argsort(costs) if costs[c] <= np.min(costs) + MARGIN]
+        single: list[Explanation] = [(float(costs[c]), (c,), self.values[c, n]) for c in near]
         best = single[0]
         if pairs and pairs[0][0] < best[0] - GAIN:
             best = pairs[0]
         found: list[Claim] = []
-        value = own.value[0]
         if best[0] < self.none[n] - GAIN:
             rivals = [rival for rival in (pairs if len(best[1]) == 2 else single) if rival[0] < best[0] + MARGIN]
             found = self._named(n, best, rivals)
-            value = best[2] if found else value
-        return [*found, *self._slips(n, value, {k for claim in found for k in claim.answers})]
+        return [*found, *self._slips(n, {k for claim in found for k in claim.answers})]
 
     def _named(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
         """The mistakes of the best explanation, each with what explains as well in its place."""
@@ -140,23 +139,16 @@ class _Sheets:
             moved = np.abs(best[2] - without) > self.right.allowed[n] * self.right.scale[n] * 0.5
         return tuple(np.flatnonzero(self.wrong[n] & fits & moved).tolist())
 
-    def _slips(self, n: int, value: Vector, known: set[int]) -> Iterator[Claim]:
+    def _slips(self, n: int, known: set[int]) -> Iterator[Claim]:
         """Mistakes in writing down single answers."""
-        at = np.array([n])
-        for k in np.flatnonzero(self.wrong[n]):
-            if k in known:
-                continue
-            fits = []
-            for c, case in enumerate(self.cases):
-                if case.solves or isinstance(case, ScaleInverted):
-                    continue
-                with np.errstate(all="ignore"):
-                    moved = np.abs(self.values[c, n, k] - self.right.value[n, k]) / self.right.scale[n, k]
-                near = self.errors(self.values[c, n][None], at)[0, k] <= PER_ALLOWED
-                if near and moved > 4 / PER_ALLOWED * self.right.allowed[n, k]:
-                    fits.append(case)
-            if len({type(case) for case in fits}) == 1:
-                yield Claim(tuple(fits), (int(k),))
+        right, at = self.right.take(np.array([n])), self.slips
+        with np.errstate(all="ignore"):
+            moved = np.abs(self.values[at, n] - right.value) / right.scale > 4 / PER_ALLOWED * right.allowed
+        near = _errors(right, self.written.take(np.array([n])), self.values[at, n]) <= PER_ALLOWED
+        for k in np.flatnonzero(self.wrong[n]).tolist():
+            fits = [self.cases[at[row]] for row in np.flatnonzero(near[:, k] & moved[:, k])]
+            if k not in known and len({type(case) for case in fits}) == 1:
+                yield Claim(tuple(fits), (k,))
 
     def _pairs(self) -> dict[int, list[Explanation]]:
         """For students whom no single mistake explains: the best pairs, their costs and values."""
@@ -172,24 +164,43 @@ class _Sheets:
             at = np.array(students)
             with np.errstate(all="ignore"):
                 value = predicted(self.family.take(at), self.right.asked, [self.cases[c] for c in pair])
-            for n, cost, own in zip(students, self.cost(value, at), value, strict=True):
+            price = np.sum(self.price[list(pair)])
+            for n, cost, own in zip(students, self.cost(value, at) + price, value, strict=True):
                 found.setdefault(n, []).append((float(cost), pair, own))
         for own in found.values():
             own.sort(key=lambda one: one[0])
         return found
 
     def _likely(self, n: int) -> list[tuple[int, int]]:
-        """Pairs that explain a sheet best if their changes add up, or multiply."""
-        right, values = self.right.value[n], self.values[:, n]
-        moving = [c for c in range(len(values)) if np.all(np.isfinite(values[c])) and np.any(values[c] != right)]
-        two = [(a, b) for a, b in combinations(moving, 2) if type(self.cases[a]) is not type(self.cases[b])]
-        pairs = np.array(two).reshape(-1, 2)
-        if not len(pairs):
+        """Pairs that explain a sheet best if their changes add up, or multiply; one of the two explains much alone."""
+        right, values, costs = self.right.take(np.array([n])), self.values[:, n], self.costs[:, n]
+        written = self.written.take(np.array([n]))
+        moving = np.all(np.isfinite(values), axis=1) & np.any(values != right.value, axis=1)
+        first = [c for c in np.argsort(costs).tolist() if moving[c]][:FIRST]
+        second = np.flatnonzero(moving & (self.whole | np.isin(np.arange(len(values)), first)))
+        if not len(second):
             return []
-        one, other = values[pairs[:, 0]], values[pairs[:, 1]]
-        rows = np.full(len(pairs), n)
+        one, other = values[first][:, None], values[second][None]
         with np.errstate(all="ignore"):
-            added = self.cost(one + other - right, rows)
-            multiplied = self.cost(np.where(right == 0, 0, one * other / right), rows)
-        order = np.argsort(np.minimum(added, multiplied))[:TRIED]
-        return [(int(a), int(b)) for a, b in pairs[order]]
+            added = _cost(_errors(right, written, one + other - right.value))
+            multiplied = _cost(_errors(right, written, np.where(right.value == 0, 0, one * other / right.value)))
+        cost = np.where(self.kind[first][:, None] == self.kind[second], np.inf, np.minimum(added, multiplied))
+        cost = cost + self.price[first][:, None] + self.price[second]
+        found: list[tuple[int, int]] = []
+        for place in np.argsort(cost, axis=None)[: 2 * TRIED].tolist():
+            a, b = sorted((first[place // len(second)], int(second[place % len(second)])))
+            if (a, b) not in found and np.isfinite(cost.flat[place]):
+                found.append((a, b))
+        return found[:TRIED]
+
+
+def _errors(right: Right, written: Written, value: Vector) -> Real:
+    with np.errstate(all="ignore"):
+        scale = np.maximum(1.0, np.abs(value) / right.scale)  # drawn off a plan of the wrong values
+        found = right.error(written, value) / scale / (right.allowed / PER_ALLOWED)
+    return np.where(written.there, np.nan_to_num(found, nan=np.inf), 0.0)
+
+
+def _cost(errors: Real) -> Real:
+    total: Real = np.sum(np.minimum(errors, CAP) ** 2, axis=-1)
+    return total

@@ -9,11 +9,12 @@ import numpy as np
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
-from tmm_cli.grading.readings import readings
+from tmm_cli.grading.mistakes.other_zero import OtherZero
+from tmm_cli.grading.readings import read
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
-from tmm_cli.grading.sheet import Right, Written, right
+from tmm_cli.grading.sheet import right
+from tmm_cli.grading.submissions.positions import at_positions
 from tmm_cli.grading.task import Task
-from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import Dimension
 from tmm_cli.variants.family import Family, families
 from tmm_cli.vectors import Real
@@ -34,11 +35,13 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
     for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         own = [known[row] for row in rows]
         if isinstance(family, LinkageError):
-            found |= {n: _none(task, submissions[n], str(family)) for n in own}
+            found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
         else:
-            found |= dict(zip(own, _marks(task, family, [submissions[n] for n in own]), strict=True))
+            for part, begun in _begun(task, family, [submissions[n] for n in own]):
+                there = [own[row] for row in part]
+                found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
     for n, submission in enumerate(submissions):
-        yield found.get(n) or _none(task, submission, _("there is no variant of this student"))
+        yield found.get(n) or ungraded(task, submission, _("there is no variant of this student"))
 
 
 def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
@@ -51,21 +54,42 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
     own = task.dimensions(table.names)
     dimensions = tuple(first or then for first, then in zip(said or own, own, strict=True))
     columns = np.array([
-        [task.units.si(v.value, d) if d and not v.dimension else v.value for v, d in zip(row, dimensions, strict=True)]
-        for row in found
+        [task.number(value, dimension) for value, dimension in zip(row, dimensions, strict=True)] for row in found
     ]).reshape(len(students), len(table.names))  # fmt: skip
     return dimensions, columns
 
 
-def _none(task: Task, submission: Submission, why: str) -> StudentMarks:
+def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
+    """Of a student of whom nothing can be judged."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
 
+def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Iterator[tuple[Real, Family]]:
+    """The students who count the positions from where the task does, and those who do from the other extreme position.
+
+    The latter only where the task allows it; each by what makes more of the answers right.
+    """
+    rows, strokes = np.arange(len(submissions)), family.strokes
+    if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
+        yield rows, family
+        return
+    both = (family, OtherZero(True).family(family))
+    holds = []
+    for one in both:
+        wanted = right(one, task.asked)
+        holds.append(np.sum(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed, axis=1))
+    other = holds[1] > holds[0]
+    for one, part in zip(both, (rows[~other], rows[other]), strict=True):
+        if part.size:
+            yield part, one.take(part)
+
+
 def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Of the students of one family."""
+    submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     wanted = right(family, task.asked)
-    written, how, refused = read(task, wanted, submissions)
+    written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
     claims = diagnose(family, wanted, written)
     follows = following(family, wanted, written, claims)
@@ -91,31 +115,3 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
             ))  # fmt: skip
         found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
     return found
-
-
-def read(
-    task: Task, wanted: Right, submissions: Sequence[Submission]
-) -> tuple[Written, dict[tuple[int, int], str], dict[tuple[int, int], str]]:
-    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
-    shape = len(submissions), len(task.asked)
-    value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
-    how: dict[tuple[int, int], str] = {}
-    refused: dict[tuple[int, int], str] = {}
-    for n, submission in enumerate(submissions):
-        for k, asked in enumerate(task.asked):
-            given = submission.answers.get(asked.key)
-            if given is None:
-                continue
-            try:
-                meant = readings(given, asked.quantity, task.units)
-            except ProblemError as error:
-                refused[n, k] = str(error)
-                continue
-            size[n, k] = asked.quantity.vector and given.form in ("number", "size")
-            unit = next(iter(meant))
-            if len(meant) > 1:
-                one = wanted.cell(n, k)
-                unit = min(meant, key=lambda name: one(meant[name], bool(size[n, k])))
-                how[n, k] = unit
-            value[n, k] = meant[unit]
-    return Written(value, size), how, refused

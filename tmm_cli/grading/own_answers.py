@@ -191,8 +191,8 @@ def own_answer(quantity: Quantity, value: Vector, motion: Motion, right: Vector)
         point = thing if any(thing in linkage.links[name].points for name in linkage.moving) else ""
         link = "" if point else thing.removeprefix("S")
         return OwnMotion(point or thing, link, value, 1 if kind == "v" else 2, motion.rate, motion.acceleration)
-    if kind == "omega" and thing == linkage.driver.link:
-        return OwnSpeed(value)
+    if kind == "omega" and thing == linkage.driver.link and linkage.driver.kind == "turn":
+        return None if np.any(linkage.driver.acceleration != 0) else OwnSpeed(value)
     if kind in ("omega", "epsilon"):
         return OwnMotion("", thing, value, 1 if kind == "omega" else 2, motion.rate, motion.acceleration)
     if kind == "Coriolis":

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.grading.quantities.base import Quantity
-from tmm_cli.grading.record import Given
-from tmm_cli.problem.errors import quote
+from tmm_cli.grading.record import Form, Given, Key, Submission
+from tmm_cli.grading.sheet import Right, Written
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.units import UnitError, UnitSystem, parse_unit
 from tmm_cli.quantities import (
     ACCELERATION,
@@ -21,6 +23,7 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )
+from tmm_cli.vectors import Vector
 
 UNSAID: dict[Dimension, tuple[str, ...]] = {
     LENGTH: ("mm", "m", "cm"),
@@ -33,10 +36,58 @@ UNSAID: dict[Dimension, tuple[str, ...]] = {
 }
 
 
-def readings(given: Given, quantity: Quantity, units: UnitSystem) -> dict[str, complex]:
-    """Values in SI by the unit that they were read in; the file's own unit first. Raises ProblemError."""
-    named = (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
-    return {name: _value(given, factor(name, quantity.dimension)) for name in ((given.unit,) if given.unit else named)}
+Cells = dict[tuple[int, int], str]  # words by student and answer
+
+
+def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) -> tuple[Written, Cells, Cells]:
+    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
+    shape = len(submissions), len(wanted.asked)
+    value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
+    how: Cells = {}
+    refused: Cells = {}
+    for k, asked in enumerate(wanted.asked):
+        for (form, unit, turn_unit), rows in _alike(submissions, asked.key).items():
+            given = [submissions[n].answers[asked.key] for n in rows]
+            try:
+                named = _factors(asked.quantity, unit, units)
+                numbers = _numbers(given, form, factor(turn_unit or "deg", ANGLE))
+            except ProblemError as no:
+                refused |= dict.fromkeys(((n, k) for n in rows), str(no))
+                continue
+            size[rows, k] = asked.quantity.vector and form in ("number", "size")
+            meant = numbers[:, None] * np.array(list(named.values()))
+            best = np.zeros(len(rows), dtype=int)
+            if len(named) > 1:
+                error = wanted.side_by_side(rows, k, len(named)).error(Written(meant, size[rows, k][:, None]))
+                best = np.argmin(np.nan_to_num(error, nan=np.inf), axis=1)
+                names = list(named)
+                how |= {(n, k): names[b] for n, b in zip(rows, best.tolist(), strict=True)}
+            value[rows, k] = meant[np.arange(len(rows)), best]
+    return Written(value, size), how, refused
+
+
+def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
+    """Who answered in the same form and units."""
+    found: dict[tuple[Form, str, str], list[int]] = {}
+    for n, submission in enumerate(submissions):
+        given = submission.answers.get(key)
+        if given is not None:
+            found.setdefault((given.form, given.unit, given.turn_unit), []).append(n)
+    return found
+
+
+def _factors(quantity: Quantity, unit: str, units: UnitSystem) -> dict[str, float]:
+    """In SI: the unit as it is written, else each that it may be, the file's own first. Raises UnitError."""
+    names = (unit,) if unit else (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
+    return {name: factor(name, quantity.dimension) for name in names}
+
+
+def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
+    """What was written, as complex numbers of the unit."""
+    first, second = np.array([[one.first, one.second] for one in given]).T
+    turned = first * np.exp(1j * second * turn) if form == "polar" else first
+    found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)
+    return found
 
 
 @cache
@@ -48,11 +99,3 @@ def factor(name: str, dimension: Dimension) -> float:
     if not unit.dimension.fits(dimension):
         raise UnitError(_("{want} is wanted here").format(want=dimension), found=quote(name), allowed=dimension.example)
     return unit.si(1.0)
-
-
-def _value(given: Given, unit: float) -> complex:
-    if given.form == "polar":
-        return complex(given.first * unit * np.exp(1j * given.second * factor(given.turn_unit or "deg", ANGLE)))
-    if given.form == "components":
-        return complex(given.first, given.second) * unit
-    return complex(given.first * unit)

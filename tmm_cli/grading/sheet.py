@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.grading.quantities import quantities
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution, solve
 from tmm_cli.grading.task import Asked
+from tmm_cli.quantities import ANGULAR_ACCELERATION
 from tmm_cli.variants.family import Family
 from tmm_cli.variants.stack import changed, numbers
 from tmm_cli.vectors import Real, Vector
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
 
 DRAWN, COMPUTED = 0.005, 0.0005  # how exactly lengths are taken off a drawing (0.5 mm of 100 mm), and computed with
 STEP = 1e-6  # by which lengths are changed to see what hangs on them
+NOTHING = 1e-9  # of the largest value of its kind: what rounding leaves of zero
 SAME = 1e-6  # of a number that is exact, as a class is
 
 
@@ -30,7 +34,7 @@ class Written:
     value: Vector
     size: Real
 
-    @property
+    @cached_property
     def there(self) -> Real:
         return ~np.isnan(self.value)
 
@@ -55,15 +59,15 @@ class Right:
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
         gap = np.where(written.size, sizes, gap)
         turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "turn"]
-        gap[:, turns] = np.abs(np.remainder(gap[:, turns] + np.pi, 2 * np.pi) - np.pi)
+        gap[..., turns] = np.abs(np.remainder(gap[..., turns] + np.pi, 2 * np.pi) - np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             share: Real = gap / self.scale
-        return share
+        return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
 
-    def cell(self, n: int, k: int) -> Callable[[complex, bool], float]:
-        """The error of one answer, of a value; the second argument: by its size alone."""
-        one = Right((self.asked[k],), *(part[n : n + 1, k : k + 1] for part in (self.value, self.scale, self.allowed)))
-        return lambda value, size: float(one.error(Written(np.array([[value]]), np.array([[size]])))[0, 0])
+    def side_by_side(self, rows: Sequence[int], k: int, count: int) -> Right:
+        """One answer of some students, for as many values as may be meant by it."""
+        own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
+        return Right((self.asked[k],) * count, *own)
 
     def take(self, rows: Real) -> Right:
         """That of some students, or of some again and again."""
@@ -97,14 +101,31 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     """What is right for all variants of a family."""
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
-    scale = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
-    change = np.array([np.abs(predicted(other, asked) - value) for other in _nearby(family)]) / STEP
+    scale = _scales(asked, solution)
+    places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
+    there = [replace(one, position=places.index(one.position or 0)) for one in asked]
+    nearby = _nearby(family.changed(family.linkage, family.q[:, places]))
+    change = np.array([np.abs(predicted(other, there) - value) for other in nearby]) / STEP
     with np.errstate(divide="ignore", invalid="ignore"):
         response = np.sqrt(np.sum(change**2, axis=0)) / scale
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
     allowed = np.hypot([one.tolerance for one in asked], exactly * np.nan_to_num(response))
     exact = [one.quantity.against == "exact" for one in asked]
     return Right(tuple(asked), value, scale, np.where(exact, SAME, allowed))
+
+
+def _scales(asked: Sequence[Asked], solution: Solution) -> Real:
+    """Of all that is asked; what is zero all the cycle is measured against the largest of its kind in the mechanism."""
+    found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
+    rest = quantities(solution.family.linkage, solution.family.structure).values()
+    for dimension in {one.quantity.dimension for one in asked if one.quantity.against in ("largest", "range")}:
+        own = [k for k, one in enumerate(asked) if one.quantity.dimension == dimension]
+        sizes = [_scale(other, solution) for other in rest if other.dimension == dimension]
+        if dimension == ANGULAR_ACCELERATION:  # all may turn evenly
+            sizes.append(np.nanmax(solution.motion.rate**2, axis=1))
+        largest = np.max(sizes, axis=0)[:, None]
+        found[:, own] = np.where(found[:, own] > NOTHING * largest, found[:, own], largest)
+    return found
 
 
 def _scale(quantity: Quantity, solution: Solution) -> Real:

@@ -23,6 +23,7 @@ from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import NUMBER, Dimension
+from tmm_cli.synthesis.reading import TaskFile
 from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.variant import Variant
@@ -140,6 +141,9 @@ class Task:
     def _parameters(
         self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
     ) -> dict[str, PhysicalValue]:
+        """All parameters; of a file with a task of synthesis those that do not rest on what it finds."""
+        if "synthesis" in self.tree.data:
+            return {**TaskFile(self.tree).early, **given}
         raw = self._shape.parameters
         rest = {name: value for name, value in raw.items() if name not in given}
         return {**given, **parameters(rest, units or self.units, given)}
@@ -148,8 +152,8 @@ class Task:
     def _shape(self) -> Any:
         return checked_shape(self.tree)
 
-    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
-        """What the file's own values of parameters measure; None for bare numbers."""
+    def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
+        """The file's own values of parameters."""
         found = self._parameters({})
         for name in names:
             if name not in found:
@@ -157,7 +161,15 @@ class Task:
                     _("there is no parameter of that name"), found=quote(name),
                     allowed=", ".join(found) or _("none: the file has no parameters"), near=nearest(name, found),
                 )  # fmt: skip
-        return tuple(found[name].dimension for name in names)
+        return tuple(found[name] for name in names)
+
+    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
+        """What the file's own values of parameters measure; None for bare numbers."""
+        return tuple(value.dimension for value in self.own(names))
+
+    def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
+        """In SI; bare where there is no dimension."""
+        return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
 
     def value(self, text: str) -> PhysicalValue:
         """A value of a table of variants."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from tmm_cli.errors import (
@@ -27,6 +29,15 @@ if TYPE_CHECKING:
     from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
+
+
+@contextmanager
+def in_words_of(problem: Problem) -> Iterator[None]:
+    """What a stage refuses inside is said in the terms of the file. Raises ProblemError."""
+    try:
+        yield
+    except LinkageError as error:
+        raise refusal(error, problem) from None
 
 
 def refusal(error: LinkageError, problem: Problem) -> ProblemError:

@@ -14,6 +14,7 @@ from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MAS
 from tmm_cli.results.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
+FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
 
 
@@ -69,6 +70,11 @@ def doubts(problem: Problem) -> Iterable[str]:
     """What is allowed and computed, and yet is probably not what was meant."""
     data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
     yield from _bare_speed(problem, data)
+    for driver in problem.linkage.drivers:
+        if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
+            yield _("the driver's speed, {motion}, is more than machines have: is the unit right?").format(
+                motion=motion(driver)
+            )
     yield from _sizes(problem)
     yield from _masses(problem, data)
     positions = data.get("positions", {})
@@ -149,5 +155,5 @@ def _farthest(link: Link, point: str) -> str:
 
 
 def _short(number: float) -> str:
-    """Three figures, and all those before the point."""
-    return f"{number:.3g}" if number < 1000 else f"{number:.0f}"
+    """Three figures, and all those before the point of a number that people would write so."""
+    return f"{number:.0f}" if 1000 <= number < 1e6 else f"{number:.3g}"

@@ -9,11 +9,14 @@ import numpy as np
 
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.quantities import FORCE, MOMENT
+from tmm_cli.quantities import FORCE, LENGTH, MOMENT
 from tmm_cli.structure.assur import Structure
 
 if TYPE_CHECKING:
     from tmm_cli.grading.solution import Solution
+
+
+NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be drawn
 
 
 def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
@@ -36,6 +39,8 @@ def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
             both = f"{by}{on}" if len(by) == len(on) == 1 else f"{by},{on}"
             called = f"R_{both}" if alone else f"R_{both} in {name}"
             put(Quantity(called, "forces", FORCE, partial(_reaction, name, on), True, thing=name, on=on))
+            if any(slide.name == name for slide in linkage.slides):
+                put(Quantity(f"arm of {called}", "forces", LENGTH, partial(_arm, name), thing=name))
     for driver in linkage.drivers:
         own = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
         if driver.kind == "turn":
@@ -51,6 +56,14 @@ def _inertia(link: str, part: str, solution: Solution) -> Any:
 
 def _reaction(pair: str, on: str, solution: Solution) -> Any:
     return solution.reactions.of(pair).onto(on)
+
+
+def _arm(pair: str, solution: Solution) -> Any:
+    """Where a guide's force acts, along the guide from its running point; nothing where the force is nearly zero."""
+    reaction = solution.reactions.of(pair)
+    size = np.abs(reaction.force)
+    assert reaction.arm is not None
+    return np.where(size > NEARLY_ZERO * np.max(size, axis=-1, keepdims=True), reaction.arm, np.nan)
 
 
 def _balance(link: str, part: str, solution: Solution) -> Any:

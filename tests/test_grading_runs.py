@@ -1,0 +1,156 @@
+"""A group is graded alike by one process, by several and by a cluster; what is graded is kept, and not graded again."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import pytest
+from test_commands import ROOT
+
+from tmm_cli.grading import run, workers
+from tmm_cli.grading.record import Given, Submission, VariantTable
+from tmm_cli.grading.run import graded
+from tmm_cli.grading.task import read_task
+from tmm_cli.grading.workers import cluster, here, processes
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+
+SINE = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
+ASKED = "\ngrading: {answers: [{of: H}, {of: v of E, at: 3}]}\n"
+TABLE = VariantTable(("r",), {f"S{n}": (f"{90 + n / 10}",) for n in range(12)})
+GIVEN = {("H", None): Given(180.0), ("v of E", 3): Given(0.99)}
+GROUP = [Submission(student, GIVEN) for student in TABLE.rows]
+
+
+def task(asked=ASKED):
+    return read_task(read_text(SINE + asked, "task.yaml"))
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr(run, "CHUNK", 4)
+
+
+def counted(done):
+    """The way of this process, and how many students it was given."""
+
+    def way(jobs, stopped):
+        for number, marks in here(jobs, stopped):
+            done.append(len(marks))
+            yield number, marks
+
+    return way
+
+
+def test_a_second_run_grades_only_what_has_changed(small, tmp_path):
+    kept, done, seen = tmp_path / "marks" / ".graded", [], []
+    first = graded(task(), TABLE, GROUP, counted(done), kept)
+    assert done == [4, 4, 4]
+    assert repr(graded(task(), TABLE, GROUP, counted(done), kept, seen.append)) == repr(first)
+    assert done == [4, 4, 4] and seen == [12]
+    changed = [*GROUP[:5], replace(GROUP[5], answers={}), *GROUP[6:]]
+    moved = replace(TABLE, rows=TABLE.rows | {"S7": ("92",)})
+    second = graded(task(), moved, changed, counted(done), kept)
+    assert done == [4, 4, 4, 2] and second[6] == first[6] and {m.state for m in second[5].marks} == {"missing"}
+
+
+def test_a_task_that_has_changed_is_graded_anew(tmp_path):
+    done = []
+    for one in (task(), task(ASKED.replace("{of: H}", "{of: H, points: 2}"))):
+        graded(one, TABLE, GROUP, counted(done), tmp_path / ".graded")
+    assert done == [12, 12]
+
+
+@pytest.mark.parametrize("spoil", [
+    lambda text: text[: len(text) // 2],
+    lambda text: text.replace(b'"right"', b'"wrong"'),
+    lambda text: os.urandom(1000),
+    lambda text: b"{" * 10_000,
+], ids=["torn", "changed", "noise", "nested"])  # fmt: skip
+def test_what_is_damaged_of_the_kept_marks_is_graded_again(spoil, tmp_path):
+    kept, done = tmp_path / ".graded", []
+    first = graded(task(), TABLE, GROUP, here, kept)
+    kept.write_bytes(spoil(kept.read_bytes()))
+    assert repr(graded(task(), TABLE, GROUP, counted(done), kept)) == repr(first)
+    assert sum(done) > 0
+    assert repr(graded(task(), TABLE, GROUP, counted(done := []), kept)) == repr(first) and not done
+
+
+@pytest.mark.parametrize("way", [here, processes(2)], ids=["here", "processes"])
+def test_what_is_graded_before_a_stop_is_kept_and_the_gradebook_is_the_same_to_the_last_bit(way, small, tmp_path):
+    kept, seen, done = tmp_path / ".graded", [], []
+    part = graded(task(), TABLE, GROUP, way, kept, seen.append, lambda: any(seen))
+    assert 4 <= len(part) == sum(seen)
+    whole = graded(task(), TABLE, GROUP, counted(done), kept)
+    assert sum(done) == 12 - sum(seen)
+    assert repr(whole) == repr(graded(task(), TABLE, GROUP))
+
+
+def test_what_fails_is_told_of_its_student_and_stops_nothing():
+    table = replace(TABLE, rows=TABLE.rows | {"S3": ("90 N",), "S4": ("four",)})
+    marks = graded(task(), table, [*GROUP, Submission("nobody")])
+    told = {one.student: one.problems[0] for one in marks if one.problems}
+    assert told == {
+        "S3": "could not be graded: task.yaml:16:44: links.1.length: a length is wanted here; "
+        "found:   'r', a force (90 N); allowed: a length, e.g. 110 mm or 0.11 m",
+        "S4": "could not be graded: there is no such parameter; found:   'four'; allowed: none is given",
+        "nobody": "there is no variant of this student",
+    }
+    assert [one.student for one in marks] == [*TABLE.rows, "nobody"]
+
+
+def test_a_table_of_other_parameters_is_refused_before_the_work():
+    with pytest.raises(ProblemError, match="there is no parameter of that name"):
+        graded(task(), replace(TABLE, names=("R",)), GROUP)
+
+
+def test_no_scheduler_is_one_line(monkeypatch):
+    monkeypatch.setattr(workers, "ANSWERS", 0.2)
+    with pytest.raises(ProblemError, match="no scheduler answers there"):
+        graded(task(), TABLE, GROUP, cluster("tcp://127.0.0.1:9"))
+
+
+@pytest.fixture
+def dask(tmp_path):
+    """The address of a scheduler, and its two workers as processes."""
+    distributed = pytest.importorskip("distributed")
+    note = tmp_path / "scheduler.json"
+
+    def started(kind, *options):
+        call = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--no-dashboard", "--scheduler-file", str(note)]
+        return subprocess.Popen(
+            [*call, *options], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=subprocess.DEVNULL
+        )
+
+    workers = [started("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]  # they wait for the scheduler
+    every = [started("scheduler", "--host", "127.0.0.1", "--port", "0"), *workers]
+    try:
+        while not note.exists():
+            time.sleep(0.05)
+        address = json.loads(note.read_text(encoding="utf-8"))["address"]
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        yield address, workers
+    finally:
+        for one in every:
+            one.kill()
+            one.wait()
+
+
+def test_a_cluster_that_loses_a_worker_on_the_way_gives_the_same_gradebook(dask, monkeypatch):
+    monkeypatch.setattr(run, "CHUNK", 1)
+    address, workers = dask
+    seen = []
+
+    def lose(count):
+        seen.append(count)
+        if sum(seen) == 2:
+            workers[0].kill()
+
+    assert repr(graded(task(), TABLE, GROUP, cluster(address), None, lose)) == repr(graded(task(), TABLE, GROUP))
+    assert seen == [0, *[1] * 12]
