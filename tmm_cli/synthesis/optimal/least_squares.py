@@ -72,7 +72,8 @@ def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real)
     bend = ((ahead - rows.off) / AHEAD - (slopes.off @ step[..., None])[..., 0]) / AHEAD
     known = np.all(np.isfinite(bend), axis=-1, keepdims=True)
     bent = step_of(Rows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
-    return np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
+    ends: Real = np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
+    return ends
 
 
 def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
