@@ -53,8 +53,7 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
     own = task.dimensions(table.names)
     dimensions = tuple(first or then for first, then in zip(said or own, own, strict=True))
     columns = np.array([
-        [task.units.si(v.value, d) if d and not v.dimension else v.value for v, d in zip(row, dimensions, strict=True)]
-        for row in found
+        [task.number(value, dimension) for value, dimension in zip(row, dimensions, strict=True)] for row in found
     ]).reshape(len(students), len(table.names))  # fmt: skip
     return dimensions, columns
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -102,7 +102,10 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
     scale = _scales(asked, solution)
-    change = np.array([np.abs(predicted(other, asked) - value) for other in _nearby(family)]) / STEP
+    places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
+    there = [replace(one, position=places.index(one.position or 0)) for one in asked]
+    nearby = _nearby(family.changed(family.linkage, family.q[:, places]))
+    change = np.array([np.abs(predicted(other, there) - value) for other in nearby]) / STEP
     with np.errstate(divide="ignore", invalid="ignore"):
         response = np.sqrt(np.sum(change**2, axis=0)) / scale
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])

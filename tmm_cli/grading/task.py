@@ -157,8 +157,8 @@ class Task:
     def _shape(self) -> Any:
         return checked_shape(self.tree)
 
-    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
-        """What the file's own values of parameters measure; None for bare numbers."""
+    def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
+        """The file's own values of parameters."""
         found = self._parameters({})
         for name in names:
             if name not in found:
@@ -166,7 +166,15 @@ class Task:
                     _("there is no parameter of that name"), found=quote(name),
                     allowed=", ".join(found) or _("none: the file has no parameters"), near=nearest(name, found),
                 )  # fmt: skip
-        return tuple(found[name].dimension for name in names)
+        return tuple(found[name] for name in names)
+
+    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
+        """What the file's own values of parameters measure; None for bare numbers."""
+        return tuple(value.dimension for value in self.own(names))
+
+    def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
+        """In SI; bare where there is no dimension."""
+        return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
 
     def value(self, text: str) -> PhysicalValue:
         """A value of a table of variants."""

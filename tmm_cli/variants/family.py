@@ -76,10 +76,10 @@ def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | Linkage
     A variant that no stage takes comes with its error instead. Raises what `make` raises.
     """
     rows = np.arange(len(columns))
-    together = _together(make, columns) if len(columns) > 1 else None
-    if together is not None and np.any(together.sound):
-        yield rows[together.sound], together.take(rows[together.sound])
-        rows = rows[~together.sound]
+    every = together(make, columns) if len(columns) > 1 else None
+    if every is not None and np.any(every.sound):
+        yield rows[every.sound], every.take(rows[every.sound])
+        rows = rows[~every.sound]
     for row in rows:
         try:
             yield np.array([row]), _alone(make, columns[row])
@@ -87,8 +87,8 @@ def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | Linkage
             yield np.array([row]), error
 
 
-def _together(make: Make, columns: Real) -> Family | None:
-    """All at once; None where that cannot be."""
+def together(make: Make, columns: Real) -> Family | None:
+    """All at once, sound or not, assembled as the first one; None where that cannot be. Raises what `make` raises."""
     first = columns[0].tolist()
     try:
         varied = make([TracedNumber(x, columns[:, k : k + 1]) for k, x in enumerate(first)])
@@ -173,10 +173,11 @@ def _named(linkage: Linkage, curve: OutputCurve, ends: Real, resists: Any) -> St
 
 def _runs(curve: OutputCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
     """As OutputCurve.runs, for (variants, 2) at once."""
-    shares = np.linspace(0, 1, 33)
+    shares = np.linspace(0, 1, 33 if curve.swings else 2)  # an angle is followed through half turns
     found = []
     for k in range(starts.shape[1]):
-        run = np.broadcast_to(curve.place(starts[:, k : k + 1] + ways[:, k : k + 1] * shares), (len(starts), 33))
+        places = starts[:, k : k + 1] + ways[:, k : k + 1] * shares
+        run = np.broadcast_to(curve.place(places), places.shape)
         run = np.unwrap(run, axis=1) if curve.swings else run
         found.append((run[:, 0], run[:, -1] - run[:, 0]))
     lows, runs = zip(*found, strict=True)

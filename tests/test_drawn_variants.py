@@ -1,0 +1,119 @@
+"""Variants that are drawn are sound, unlike one another, and a student's hangs on the seed and his name."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from test_commands import SHAPER
+
+from tmm_cli import solve
+from tmm_cli.grading import draw_variants
+from tmm_cli.grading.choices import choices, with_vary
+from tmm_cli.grading.draw_variants import Variety, draw, draw_for
+from tmm_cli.grading.task import read_task
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+
+ASKED = """
+variants: {OA: {from: 100, to: 240, step: 5}, DE: [150, 250], n1: {among: [70 rpm, 80 rpm, 90 rpm]}}
+grading: {answers: [{of: H}, {of: k}, {of: v of E, at: [3, 7]}, {of: M_b, at: 3}]}
+"""
+
+
+def task(text=ASKED, vary=()):
+    return read_task(with_vary(read_text(SHAPER.read_text(encoding="utf-8") + text, "task.yaml"), vary))
+
+
+@cache
+def drawn():
+    variety = Variety(task())
+    return variety, draw(variety, 1, 12)
+
+
+def test_drawn_variants_are_sound_as_files_of_their_own():
+    variety, table = drawn()
+    assert len(table.rows) == 12 and len(set(table.rows.values())) == 12
+    for row in list(table.rows.values())[:4]:
+        results = solve(variety.task.variant(dict(zip(table.names, row, strict=True))))
+        assert results.driver_range.full and not results.dead
+        assert all(pressure.holds for pressure in results.pressure)
+        assert all(slot.far <= 0 for slot in results.slots)
+        margins = (np.min(at.margin) for at in results.motion.placements)
+        assert all(margin > kernel.near for margin, kernel in zip(margins, results.kernels, strict=True))
+
+
+def test_what_was_thrown_away_is_counted_by_its_reason():
+    variety, _table = drawn()
+    assert variety.thrown["its pressure angle goes beyond 30 deg"] > 0
+    assert sum(variety.thrown.values()) < variety.tried
+
+
+def test_results_are_spread_over_their_range():
+    variety, table = drawn()
+    strokes = [
+        solve(variety.task.variant(dict(zip(table.names, row, strict=True))), "kinematics").strokes.travel
+        for row in list(table.rows.values())[:5]
+    ]
+    assert max(strokes) > 1.8 * min(strokes)
+
+
+def test_a_student_has_a_variant_by_the_seed_and_the_name_alone(monkeypatch):
+    monkeypatch.setattr(draw_variants, "CHUNK", 100)
+    monkeypatch.setattr(draw_variants, "ENOUGH", 80)
+    names = ["Ana", "Бојан", "Čeda", "<script>"]
+    few = draw_for(Variety(task()), 7, names)
+    more = draw_for(Variety(task()), 7, ["Aaron", *reversed(names), "Zoran"])
+    assert {name: more.rows[name] for name in names} == few.rows
+    assert len(set(more.rows.values())) == 6
+    assert draw_for(Variety(task()), 8, names).rows != few.rows
+
+
+def test_a_linkage_that_is_moved_one_by_one_is_judged_too():
+    source = (SHAPER.parent / "press-class-iii.yaml").read_text(encoding="utf-8")
+    text = "\nvariants: {OA: {from: 60, to: 400, step: 170}}\ngrading: {answers: [{of: M_b, at: 1}]}\n"
+    variety = Variety(read_task(read_text(source + text, "task.yaml")))
+    assert variety.alone
+    assert [bool(why) for why in variety.judged(np.array([[0], [2]])).why] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("vary", "texts"),
+    [
+        ("OA=80..90:5", ("80", "85", "90")),
+        ("OA=8 cm..9 cm:5 mm", ("8 cm", "8.5 cm", "9 cm")),
+        ("n1=80 rpm..81 rpm:0.5", ("80 rpm", "80.5 rpm", "81 rpm")),
+        ("OA=1..2:0.3", ("1", "1.3", "1.6", "1.9")),
+    ],
+)
+def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
+    found = {choice.name: choice.texts for choice in choices(task(vary=[vary]))}
+    assert found[vary.partition("=")[0]] == texts
+
+
+@pytest.mark.parametrize(
+    ("vary", "message"),
+    [
+        ("OA", "--vary OA: a name, two bounds and perhaps a step are wanted\n  allowed: --vary OA=80..140:5"),
+        (
+            "OA=90..80:5",
+            "--vary OA=90..80:5: variants.OA: the lower bound comes first\n  found:   90 and 80\n"
+            "  allowed: [low, high]",
+        ),
+        (
+            "OA=80..90:0",
+            "--vary OA=80..90:0: variants.OA.step: 1 to 9999 steps must lie between the bounds\n  found:   0\n"
+            "  allowed: another step; or bounds without steps, [low, high]",
+        ),
+        (
+            "oa=80..90",
+            "--vary oa=80..90: variants.oa: there is no parameter of that name\n  found:   'oa'\n"
+            "  allowed: OA, OC, CD, DE, n1\n  did you mean 'OA'?",
+        ),
+    ],
+)
+def test_ranges_that_are_none_are_refused(vary, message):
+    with pytest.raises(ProblemError) as caught:
+        choices(task(vary=[vary]))
+    assert str(caught.value) == message

@@ -1,0 +1,218 @@
+"""Drawing variants of a task that are sound, unlike one another, and spread over what comes out of them.
+
+Candidates are drawn and judged in chunks, as arrays. A pool of those that are sound is put in an order in which each
+lies farthest, in what is asked of it, from all before it. Numbered variants are the pool from its beginning. A student
+of a list goes through the pool in an order of his own, which hangs on the seed and his name alone, and has the first
+that nobody before him has.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.grading.choices import choices, numbers
+from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.sheet import Right, right
+from tmm_cli.grading.soundness import faults_of
+from tmm_cli.grading.task import Asked, Task
+from tmm_cli.groups.sequence import link_states
+from tmm_cli.tolerances import SAME_ASSEMBLY
+from tmm_cli.variants.family import Family, families, together
+from tmm_cli.variants.variant import Variant
+from tmm_cli.vectors import Real, Vector
+
+CHUNK = 2_000  # candidates at once
+TRIED = 20_000  # candidates of a pool at most
+SLOWLY = 300  # likewise, where each is moved alone
+ENOUGH = 2_000  # sound candidates of a pool
+POOL = 1_000  # variants of a pool at most
+POOLS = 20  # after so many the rest of the students have none
+CLOSE = 3.0  # times what is allowed anyway: an answer on which drawing errors act more can hardly be judged
+MOSTLY = 0.75  # of what is asked is to be better than that
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Candidates: why each is thrown away, "" where it is sound; rows of the sound ones, and what comes out of these.
+
+    values: (sound ones, results); allowed: by how much these may differ and still be right.
+    """
+
+    why: Real
+    rows: Real
+    values: Vector
+    allowed: Real
+
+
+class Variety:
+    """What a task's variants are drawn from: thrown counts the candidates thrown away, by the reason.
+
+    Raises ProblemError, LinkageError where the file's own variant is not sound itself.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self.task, self.free = task, choices(task)
+        self.names = tuple(choice.name for choice in self.free)
+        self.dimensions = tuple(choice.dimension for choice in self.free)
+        self.numbers = [numbers(task, choice) for choice in self.free]
+        self.asked: tuple[Asked, ...] = task.asked if task.blocks.grading else ()
+        own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
+        self.own = np.array([own])
+        self.faults = faults_of(task)
+        self.size = math.prod(len(choice.texts) for choice in self.free)
+        self.thrown: Counter[str] = Counter()
+        self.tried = 0
+        base = together(self._make, np.concatenate([self.own, self.own]))
+        self.alone = base is None or not bool(np.all(base.sound))
+
+    def _make(self, values: Sequence[Any]) -> Variant:
+        return self.task.make(self.names, self.dimensions, values)
+
+    def texts(self, picks: Real) -> tuple[str, ...]:
+        """A variant as it stands in a table."""
+        return tuple(choice.texts[k] for choice, k in zip(self.free, picks.tolist(), strict=True))
+
+    def judged(self, picks: Real) -> Judged:
+        """Candidates by the numbers of their values, (candidates, parameters). Raises ProblemError."""
+        columns = np.stack([values[picks[:, k]] for k, values in enumerate(self.numbers)], axis=1)
+        why = np.full(len(columns), "", dtype=object)
+        rows, found = [np.zeros(0, dtype=int)], [(np.zeros((0, len(self.asked) or len(self.free))),) * 2]
+        for at, family in self._families(columns):
+            if isinstance(family, LinkageError):
+                why[at] = _("it cannot be assembled in all its positions")
+                continue
+            own = self.faults.of(family)
+            sound = np.flatnonzero(own == "")
+            if self.asked and sound.size:
+                wanted = right(family.take(sound), self.asked)
+                good = _well_conditioned(wanted)
+                own[sound[~good]] = _("what is asked hangs too much on its lengths")
+                found.append((wanted.value[good], (wanted.allowed * wanted.scale)[good]))
+                sound = sound[good]
+            elif sound.size:
+                found.append((columns[at[sound]], np.zeros((len(sound), len(self.free)))))
+            rows.append(at[sound])
+            why[at] = own
+        values, allowed = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        return Judged(why, np.concatenate(rows), values.astype(complex), allowed)
+
+    def _families(self, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
+        """All with the file's own variant before them, whose assembly is that of the sketch; or each alone."""
+        if not self.alone:
+            family = together(self._make, np.concatenate([self.own, columns]))
+            if family is not None:
+                yield np.arange(len(columns)), family.take(np.arange(1, len(family)))
+                return
+        for row, own in enumerate(columns):
+            yield from ((np.array([row]), family) for _rows, family in families(self._make, own[None]))
+
+    def pools(self, seed: int) -> Iterator[Iterator[Real]]:
+        """Sound candidates of each pool, one after another in the order of spreading."""
+        for number in range(POOLS):
+            random = np.random.default_rng([seed, number])
+            tried = SLOWLY if self.alone else TRIED
+            lengths = [len(values) for values in self.numbers]
+            every = self.size <= tried
+            if every and number:
+                return
+            if every:
+                picks = random.permutation(np.stack(np.unravel_index(np.arange(int(self.size)), lengths), axis=1))
+            else:
+                drawn = np.stack([random.integers(0, n, tried) for n in lengths], axis=1)
+                picks = drawn[np.sort(np.unique(drawn, axis=0, return_index=True)[1])]
+            yield self._pool(picks)
+
+    def _pool(self, picks: Real) -> Iterator[Real]:
+        parts: list[Judged] = []
+        for first in range(0, len(picks), CHUNK):
+            parts.append(self.judged(picks[first : first + CHUNK]))
+            self.thrown.update(why for why in parts[-1].why.tolist() if why)
+            self.tried += len(parts[-1].why)
+            if sum(len(part.rows) for part in parts) >= ENOUGH:
+                break
+        rows = np.concatenate([part.rows + CHUNK * n for n, part in enumerate(parts)])
+        values, allowed = (np.concatenate([getattr(p, name) for p in parts]) for name in ("values", "allowed"))
+        return (picks[rows[row]] for row in _spread(values, allowed, self.thrown))
+
+    def as_drawn(self, picks: Real) -> bool:
+        """Whether a variant as a file of its own is assembled as the file's own variant is."""
+        if not self._assembled_alike(picks):
+            self.thrown[_("its sketch shows another assembly than that of the file")] += 1
+            return False
+        return True
+
+    def _assembled_alike(self, picks: Real) -> bool:
+        row = np.array([[values[k] for values, k in zip(self.numbers, picks, strict=True)]])
+        alone = next(families(self._make, row))[1]
+        if isinstance(alone, LinkageError):
+            return False
+        if self.alone:
+            return True
+        _rows, family = next(self._families(row))
+        assert isinstance(family, Family)
+        one, other = (link_states(f.linkage, f.kernels, alone.q[:, :1], 0).poses for f in (alone, family))
+        return all(bool(np.allclose(one[link].z, other[link].z, atol=SAME_ASSEMBLY)) for link in one)
+
+
+def draw(variety: Variety, seed: int, count: int) -> VariantTable:
+    """Variants 1, 2, ... of this count, or fewer where there are no more. Raises ProblemError."""
+    every = (picks for pool in variety.pools(seed) for picks in pool if variety.as_drawn(picks))
+    rows = {variety.texts(picks): None for picks in islice(every, count)}
+    return VariantTable(variety.names, {str(n + 1): row for n, row in enumerate(rows)})
+
+
+def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTable:
+    """A variant for each of these, the first ones first; some may have none. Raises ProblemError."""
+    found: dict[str, tuple[str, ...]] = {}
+    taken: set[tuple[str, ...]] = set()
+    for number, pool in enumerate(variety.pools(seed)):
+        every = list(islice(pool, POOL))
+        for student in students:
+            if student in found:
+                continue
+            key = hashlib.sha256(f"{seed} {number} {student}".encode()).digest()
+            order = np.random.default_rng(int.from_bytes(key)).permutation(len(every))
+            free = (k for k in order if variety.texts(every[k]) not in taken and variety.as_drawn(every[k]))
+            own = next(free, None)
+            if own is not None:
+                found[student] = variety.texts(every[own])
+                taken.add(found[student])
+        if len(found) == len(students):
+            break
+    return VariantTable(variety.names, {student: found[student] for student in students if student in found})
+
+
+def _well_conditioned(found: Right) -> Real:
+    """Which variants ask mostly what drawing errors act on little."""
+    tolerance = np.array([one.tolerance for one in found.asked])
+    exact = np.array([one.quantity.against == "exact" for one in found.asked])
+    return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)
+
+
+def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int]:
+    """Rows, each as far as can be from all before it; those that give the answers of another one are thrown away."""
+    if not len(values):
+        return
+    size = np.nanmax(values.real, axis=0) - np.nanmin(values.real, axis=0) + np.ptp(values.imag, axis=0)
+    varies = size > 0
+    places = values[:, varies] / size[varies]
+    far = np.full(len(values), np.inf)
+    row = 0
+    while far[row] > 0:
+        yield row
+        apart = np.abs(places - places[row])
+        far = np.minimum(far, np.sqrt(np.sum(apart**2, axis=1)))
+        alike = ~np.any(np.abs(values - values[row]) > allowed, axis=1) & (far > 0)
+        thrown[_("its answers are those of another one")] += int(np.count_nonzero(alike)) - int(alike[row])
+        far[alike] = 0
+        far[row] = 0
+        row = int(np.argmax(far))

@@ -1,0 +1,104 @@
+"""Whether variants are fit for students: they turn, keep their stones in their slots, force no link across its way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli import inputs_of
+from tmm_cli.analysis.mechanism import Mechanism
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.errors import _
+from tmm_cli.grading.task import Task
+from tmm_cli.groups.sequence import LinkStates, link_states
+from tmm_cli.kinematics.pressure import angle, followers, named
+from tmm_cli.tolerances import END_OF_SLOT
+from tmm_cli.variants.family import Family
+from tmm_cli.vectors import Real
+
+SCAN = 48  # places in a turn of the driver: extremes between them are found by parabolas
+
+Held = tuple[str, str]  # a link and the pairs in which it is driven
+
+
+@dataclass(frozen=True)
+class Faults:
+    """What would be wrong with a variant, by the measure of the file's own.
+
+    turns: of a full cycle; 0 where the driver does not turn fully. limits: largest pressure angles (rad): those that
+    are allowed, or that of the file's own variant where it goes beyond one that the file does not set.
+    """
+
+    turns: int
+    limits: Mapping[Held, float]
+
+    def of(self, family: Family) -> Real:
+        """A sentence for every variant, "" where nothing is wrong."""
+        linkage = family.linkage
+        low = np.min(family.q, axis=1, keepdims=True)
+        if self.turns:
+            q = low + np.linspace(0, 2 * np.pi * self.turns, SCAN * self.turns + 1)
+        else:
+            q = low + (np.max(family.q, axis=1, keepdims=True) - low) * np.linspace(0, 1, SCAN + 1)
+        states = link_states(linkage, family.kernels, q, 0)
+        with np.errstate(all="ignore"):
+            found = [
+                (np.all(states.moving, axis=1), _("it cannot be assembled in all its positions")),
+                (family.sound, _("its output moves otherwise than that of the file")),
+                *_margins(states),
+                *_slots(states),
+                *self._pressures(states),
+            ]
+        holds, sentences = zip(*found, strict=True)
+        wrong = [~np.broadcast_to(one, len(q)) for one in holds]
+        return np.asarray(np.select(wrong, sentences, "").astype(object))
+
+    def _pressures(self, states: LinkStates) -> Iterator[tuple[Real, str]]:
+        for kernel, at in zip(states.kernels, states.placements, strict=True):
+            for lead in followers(kernel.group):
+                limit = self.limits.get((lead[0], named(lead)))
+                if limit is not None:
+                    holds = _top(angle(states, kernel, at, lead)) <= limit
+                    yield holds, _("its pressure angle goes beyond {limit:.4g} deg").format(limit=np.degrees(limit))
+
+
+def faults_of(task: Task) -> Faults:
+    """Raises ProblemError, LinkageError."""
+    problem = task.problem.whole
+    mechanism = Mechanism(inputs_of(problem), mobile(problem.linkage))
+    limits = {
+        (one.link, one.pair): one.allowed if problem.limits_set[not one.slides] else max(one.allowed, one.largest)
+        for one in mechanism.pressure
+    }
+    full = mechanism.driver_range.full and problem.linkage.driver.kind == "turn"
+    return Faults(mechanism.driver_range.turns if full else 0, limits)
+
+
+def _margins(states: LinkStates) -> Iterator[tuple[Real, str]]:
+    for kernel, at in zip(states.kernels, states.placements, strict=True):
+        margin = np.broadcast_to(at.margin, states.q.shape)
+        yield -_top(-margin) > kernel.near, _("it comes near a dead position")
+
+
+def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
+    driven = {driver.joint for driver in states.linkage.drivers if driver.kind == "slide"}
+    for slide in states.linkage.slides:
+        if slide.ends is not None and slide.name not in driven:
+            first, last = (states.linkage.local(slide.carrier, name) for name in slide.ends)
+            length = np.ravel(abs(last - first))
+            run = np.broadcast_to(states.run(slide), states.q.shape)
+            beyond = np.maximum(_top(run) - length, _top(-run))
+            yield beyond <= END_OF_SLOT * length, _("a stone leaves its slot")
+
+
+def _top(values: Real) -> Real:
+    """The largest of each row, by a parabola through it and its neighbours."""
+    k = np.argmax(values, axis=1)[:, None]
+    last = values.shape[1] - 1
+    before, top, after = (np.take_along_axis(values, np.clip(k + n, 0, last), 1)[:, 0] for n in (-1, 0, 1))
+    bend = 2 * top - before - after
+    inside = (k[:, 0] > 0) & (k[:, 0] < last) & (bend > 0)
+    found: Real = top + np.where(inside, (before - after) ** 2 / (8 * np.where(inside, bend, 1.0)), 0.0)
+    return found

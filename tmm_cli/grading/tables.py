@@ -1,0 +1,167 @@
+"""Tables of variants: a row a student, a column a parameter, made by hand or drawn; read and written as CSV or XLSX."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tmm_cli.errors import _
+from tmm_cli.grading.cells import rows_of
+from tmm_cli.grading.choices import NUMBER
+from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.task import Task
+from tmm_cli.problem.errors import ProblemError, nearest, quote, under
+from tmm_cli.problem.units import parse_unit
+from tmm_cli.results.text import csv_cell
+
+WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")
+WHICH = ("variant", "вариант", "varijanta", "no", "no.", "n", "№", "#", "br", "br.", "id")
+HEADING = re.compile(r"(.*?)\s*(?:,\s*(.+)|\[(.+)\]|\((.+)\))?")
+COMMA = re.compile(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])")
+MINUS = str.maketrans("−–\u2012\u2011", "----", "\xa0\u202f")
+FORMULA = re.compile(r"'(?=[=+\-@\t\r])")  # what is written so that no spreadsheet runs it
+
+
+def read_table(path: Path | str, task: Task) -> VariantTable:
+    """A table with a heading. Variants without a column for their students are numbered from 1. Raises ProblemError."""
+    rows = rows_of(path)
+    try:
+        return _table(rows, task)
+    except ProblemError as error:
+        raise error.located(str(path)) from None
+
+
+def read_students(path: Path | str) -> tuple[str, ...]:
+    """Names of the column `student` of a table, or of its first one, each once. Raises ProblemError."""
+    head, *rows = rows_of(path) or [[]]
+    at = _named(head, WHO)
+    rows = rows if at is not None else [head, *rows]
+    names = [FORMULA.sub("", row[at or 0]) for row in rows if len(row) > (at or 0)]
+    found = tuple(dict.fromkeys(" ".join(name.split()) for name in names if name))
+    if not found:
+        raise ProblemError(_("there are no students"), allowed=_("a name in each row"), file=str(path))
+    return found
+
+
+def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
+    """Values of a student's parameters, or of the variant of a number that counts from 1. Raises ProblemError."""
+    students = list(table.rows)
+    if asked not in table.rows and asked.isascii() and asked.isdigit() and 1 <= int(asked[:9]) <= len(students):
+        asked = students[int(asked) - 1]
+    if asked not in table.rows:
+        raise ProblemError(
+            _("there is no such variant"), found=quote(asked), near=nearest(asked, students),
+            allowed=_("1 to {last}, or a student of the table").format(last=len(students)),
+        )  # fmt: skip
+    return dict(zip(table.names, table.rows[asked], strict=True))
+
+
+def csv_of(table: VariantTable) -> str:
+    """With the units in the heading where a column has one alone."""
+    return "".join(",".join(csv_cell(cell) for cell in row) + "\n" for row in _written(table))
+
+
+def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
+    """Sheets of texts and numbers; no cell is a formula or a link. None where nothing is installed that writes them."""
+    try:
+        import xlsxwriter
+    except ImportError:
+        return None
+    stream = io.BytesIO()
+    with xlsxwriter.Workbook(stream, {"in_memory": True}) as book:
+        bold = book.add_format({"bold": True})
+        for name, rows in sheets.items():
+            sheet = book.add_worksheet(name)
+            sheet.freeze_panes(1, 1)
+            sheet.set_column(0, 0, max((min(len(row[0]), 40) for row in rows), default=8) + 2)
+            for n, row in enumerate(rows):
+                for k, cell in enumerate(row):
+                    _put(sheet, n, k, cell, bold if n == 0 else None)
+    return stream.getvalue()
+
+
+def sheet_of(table: VariantTable) -> list[list[str]]:
+    """Its rows with the heading."""
+    return _written(table)
+
+
+def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
+    if n and k and re.fullmatch(r"-?\d+(\.\d+)?(e[-+]?\d+)?", cell):
+        sheet.write_number(n, k, float(cell))
+    else:
+        sheet.write_string(n, k, cell, form)
+
+
+def _written(table: VariantTable) -> list[list[str]]:
+    columns = []
+    for k, name in enumerate(table.names):
+        texts = [row[k] for row in table.rows.values()]
+        parts = [NUMBER.fullmatch(text) for text in texts]
+        units = {part[2] if part else None for part in parts}
+        unit = units.pop() if len(units) == 1 else None
+        alone = [part[1] for part in parts if part] if unit else texts
+        columns.append([f"{name}, {unit}" if unit else name, *alone])
+    return [list(row) for row in zip(["student", *table.rows], *columns, strict=True)]
+
+
+def _named(head: Sequence[str], names: Sequence[str]) -> int | None:
+    return next((k for k, text in enumerate(head) if text.casefold() in names), None)
+
+
+def _table(rows: list[list[str]], task: Task) -> VariantTable:
+    if len(rows) < 2:
+        raise ProblemError(_("a heading and a row a variant are wanted"), allowed="student;OA, mm;n1, rpm")
+    head, *rest = rows
+    who, which = _named(head, WHO), _named(head, WHICH)
+    key = which if who is None else who
+    columns = [(k, *_heading(text)) for k, text in enumerate(head) if k not in (who, which) and text]
+    names = tuple(name for _k, name, _unit in columns)
+    dimensions = task.dimensions(names)
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ProblemError(_("two columns have one name"), found=quote(twice))
+    found: dict[str, tuple[str, ...]] = {}
+    for number, row in enumerate(rest, 2):
+        cells = [*row, *[""] * (len(head) - len(row))]
+        student = str(number - 1) if key is None else FORMULA.sub("", " ".join(cells[key].split()))
+        with under(_("row {number}").format(number=number)):
+            if not student or student in found:
+                raise ProblemError(
+                    _("every row wants a student of its own"), found=quote(student), allowed=_("each name once")
+                )
+            found[student] = tuple(
+                _value(task, name, cells[k], unit, dimension)
+                for (k, name, unit), dimension in zip(columns, dimensions, strict=True)
+            )
+    return VariantTable(names, found)
+
+
+def _heading(text: str) -> tuple[str, str]:
+    """Name and unit."""
+    found = HEADING.fullmatch(text)
+    assert found is not None
+    unit = found[2] or found[3] or found[4] or ""
+    if unit:
+        with under(text):
+            parse_unit(unit)
+    return found[1], unit
+
+
+def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
+    """A cell as a value of a problem file."""
+    text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
+    with under(name):
+        if not text:
+            raise ProblemError(_("a value is wanted"), found=_("an empty cell"))
+        value = task.value(text)
+        if unit and value.dimension is None:
+            text = f"{text} {unit}"
+            value = task.value(text)
+        if dimension and value.dimension and not value.dimension.fits(dimension):
+            raise ProblemError(
+                _("{want} is wanted here").format(want=dimension), found=quote(cell), allowed=dimension.example
+            )
+    return text
