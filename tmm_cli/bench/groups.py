@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -82,14 +81,18 @@ class Group:
                 value[n] = two[0]
         return self.drawn(value)
 
-    def drawn(self, value: Vector) -> Vector:
-        """Answers as they are measured off a plan of these values; exact ones are counted, not measured."""
+    def drawn(self, value: Vector, rows: Real | None = None) -> Vector:
+        """Answers as they are measured off a plan of these values; exact ones are counted, not measured.
+
+        rows: whose they are, all students when left out.
+        """
+        scale = self.right.scale if rows is None else self.right.scale[rows]
         vector, exact = (np.array(found) for found in zip(*(
             (asked.quantity.vector, asked.quantity.against == "exact") for asked in self.right.asked
         ), strict=True))  # fmt: skip
         off = self.random.uniform(-DRAWING, DRAWING, value.shape)
         aside = self.random.uniform(-DRAWING, DRAWING, value.shape) * vector
-        size = np.maximum(self.right.scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
+        size = np.maximum(scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
         return np.where(exact, value, value + (off + 1j * aside) * size)
 
 
@@ -98,7 +101,7 @@ def group(count: int, seed: int = 1) -> Group:
     task = read_task(read_text(text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
-    rows = {f"student-{n + 1:06d}": row for n, row in enumerate(zip(*columns, strict=True))}
+    rows = {str(n): row for n, row in enumerate(zip(*columns, strict=True))}
     table = VariantTable(tuple(BOUNDS), rows)
     family = family_of(task, table)
     return Group(task, table, family, right(family, task.asked), random)
@@ -113,14 +116,20 @@ def family_of(task: Task, table: VariantTable) -> Family:
     return family
 
 
-def write(group: Group, sheets: Vector, folder: Path) -> None:
-    """The task, the table of variants, and a file of each student, as they are handed in."""
-    (folder / "submissions").mkdir(parents=True)
+def write(group: Group, sheets: Vector, folder: Path, first: int = 0) -> None:
+    """The task, the table of variants, and a file of each student, as they are handed in.
+
+    first: students who are there already.
+    """
+    (folder / "submissions").mkdir(parents=True, exist_ok=True)
     (folder / "task.yaml").write_text(text(), encoding="utf-8")
-    head = ["student", *group.table.names]
-    (folder / "variants.csv").write_text(_csv([head, *([name, *row] for name, row in group.table.rows.items())]))
-    for student, own in zip(group.table.rows, sheets.tolist(), strict=True):
-        (folder / "submissions" / f"{student}.csv").write_text(_csv(_rows(group.task, own)))
+    names = [f"student-{first + n + 1}" for n in range(len(sheets))]
+    rows = [[name, *row] for name, row in zip(names, group.table.rows.values(), strict=True)]
+    with (folder / "variants.csv").open("a", encoding="utf-8", newline="") as stream:
+        csv.writer(stream).writerows(rows if first else [["student", *group.table.names], *rows])
+    for name, own in zip(names, sheets.tolist(), strict=True):
+        with (folder / "submissions" / f"{name}.csv").open("w", encoding="utf-8", newline="") as stream:
+            csv.writer(stream).writerows(_rows(group.task, own))
 
 
 def _rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
@@ -131,9 +140,3 @@ def _rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
         own = ("", x, y) if asked.quantity.vector else (x, "", "")
         position = "" if asked.number is None else asked.number
         yield asked.quantity.name, position, task.units.symbol(asked.quantity.dimension), *own
-
-
-def _csv(rows: Iterator[Sequence[object]] | list[Sequence[object]]) -> str:
-    found = io.StringIO()
-    csv.writer(found, lineterminator="\n").writerows(rows)
-    return found.getvalue()

@@ -89,7 +89,7 @@ def _graded(
 
     names = _chosen(formats, list(EXPORTS))
     introduce(task.problem)
-    table = read_table(variants)
+    table = read_table(variants, task)
     way = cluster(scheduler) if scheduler else processes(jobs or os.cpu_count() or 1)
     with _bars() as bars, _stoppable() as stopped:
         reading = bars.add_task(_("read"), total=len(table.rows))
