@@ -76,7 +76,8 @@ class _Sheets:
                 predicted(family, asked, [case]) if case.solves else written_down(plain, asked, [case])
                 for case in self.cases
             ])  # fmt: skip
-        self.costs = np.stack([self.cost(value) for value in self.values])
+        self.price = np.array([case.price for case in self.cases])
+        self.costs = np.stack([self.cost(value) for value in self.values]) + self.price[:, None]
         self.none = self.cost(right.value)
         self.wrong = right.error(written) > right.allowed
         kinds = [type(case) for case in self.cases]
@@ -163,7 +164,8 @@ class _Sheets:
             at = np.array(students)
             with np.errstate(all="ignore"):
                 value = predicted(self.family.take(at), self.right.asked, [self.cases[c] for c in pair])
-            for n, cost, own in zip(students, self.cost(value, at), value, strict=True):
+            price = np.sum(self.price[list(pair)])
+            for n, cost, own in zip(students, self.cost(value, at) + price, value, strict=True):
                 found.setdefault(n, []).append((float(cost), pair, own))
         for own in found.values():
             own.sort(key=lambda one: one[0])
@@ -183,6 +185,7 @@ class _Sheets:
             added = _cost(_errors(right, written, one + other - right.value))
             multiplied = _cost(_errors(right, written, np.where(right.value == 0, 0, one * other / right.value)))
         cost = np.where(self.kind[first][:, None] == self.kind[second], np.inf, np.minimum(added, multiplied))
+        cost = cost + self.price[first][:, None] + self.price[second]
         found: list[tuple[int, int]] = []
         for place in np.argsort(cost, axis=None)[: 2 * TRIED].tolist():
             a, b = sorted((first[place // len(second)], int(second[place % len(second)])))

@@ -13,6 +13,7 @@ from tmm_cli.grading.mistakes.other_zero import OtherZero
 from tmm_cli.grading.readings import read
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.sheet import right
+from tmm_cli.grading.submissions.positions import at_positions
 from tmm_cli.grading.task import Task
 from tmm_cli.quantities import Dimension
 from tmm_cli.variants.family import Family, families
@@ -86,6 +87,7 @@ def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Ite
 
 def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Of the students of one family."""
+    submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     wanted = right(family, task.asked)
     written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)

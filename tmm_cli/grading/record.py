@@ -36,11 +36,18 @@ class Given:
 
 @dataclass(frozen=True)
 class Submission:
-    """What one student handed in. problems: what could not be read, a sentence each; they stop nothing."""
+    """What one student handed in.
+
+    problems: what could not be read, a sentence each; they stop nothing. by_angle: answers whose position is told by
+    the driver's angle (rad), by quantity and angle: which position that is depends on the variant. unread: nothing
+    could be read.
+    """
 
     student: str
     answers: Mapping[Key, Given] = field(default_factory=dict)
     problems: tuple[str, ...] = ()
+    by_angle: Mapping[tuple[str, float], Given] = field(default_factory=dict)
+    unread: bool = False
 
 
 State = Literal["missing", "right", "follows", "wrong"]
@@ -69,6 +76,11 @@ class Mark:
     reasons: tuple[str, ...] = ()
     mistakes: tuple[str, ...] = ()
     text: str = ""
+
+    @property
+    def judged(self) -> bool:
+        """Whether there was a variant to judge it by."""
+        return self.allowed > 0
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,7 @@ def _decoded(data: bytes, file: str) -> str:
         ) from None
 
 
-def read_text(text: str, file: str) -> Tree:
+def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> Tree:
     """Read the text of a problem file; `file` is its name in messages. Raises as `read_file`."""
     text = text.removeprefix("\ufeff")
     if len(text) > MAX_BYTES:
@@ -87,7 +87,7 @@ def read_text(text: str, file: str) -> Tree:
         )  # fmt: skip
     if tab := _TAB.search(text):
         raise tab_error(file, _mark_at(text, text.index("\t", tab.start())))
-    composer = Composer(text, file)
+    composer = composed_by(text, file)
     data = composer.compose()
     return Tree(file, data, composer.marks, composer.key_marks, composer.commas)
 

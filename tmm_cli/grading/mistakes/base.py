@@ -26,6 +26,7 @@ class Mistake:
     name: ClassVar[str]
     sentence: ClassVar[str]
     solves: ClassVar[bool] = True  # whether the stages must run again; else it changes what is written down alone
+    price: ClassVar[float] = 0.0  # squares of standard errors that it must explain more than others, as it fits so much
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -31,6 +31,7 @@ class ScaleInverted(Mistake):
         "All values of this plan are wrong by one factor: lengths divided by the scale in place of multiplied."
     )
     solves = False
+    price = 25.0
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

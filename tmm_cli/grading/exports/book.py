@@ -1,0 +1,145 @@
+"""What all exports share: marks with their task, and how names, points and values are written for people."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import unicodedata
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Literal
+
+from tmm_cli.errors import _
+from tmm_cli.grading.readings import factor
+from tmm_cli.grading.record import Mark, StudentMarks
+from tmm_cli.grading.task import Asked, Task
+from tmm_cli.results.files import folder_name
+
+STATES = {
+    "right": _("right"),
+    "follows": _("right given your own earlier answers"),
+    "wrong": _("wrong"),
+    "missing": _("no answer"),
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answer that is asked, as exports name it. unit: the file's own; scale: it in SI."""
+
+    asked: Asked
+    name: str
+    unit: str
+    scale: float
+
+    def text(self, value: complex, unit: str = "", size: bool = False) -> str:
+        """A value (SI) with its unit, the file's own when left out; a vector by size and direction: `1.31 m/s at 35°`.
+
+        size: that of a vector without its direction.
+        """
+        scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
+        number = f"{self.number(value) / scale + 0.0:.5g} {_printed(unit or self.unit)}".rstrip()
+        if not self.asked.quantity.vector or size:
+            return number
+        return _("{size} at {direction}°").format(size=number, direction=f"{direction(value):.4g}")
+
+    def number(self, value: complex) -> float:
+        """A value (SI) as one number: the size of a vector."""
+        return abs(value) if self.asked.quantity.vector else value.real
+
+    @property
+    def of(self) -> str:
+        """What errors of it are shares of."""
+        return OF[self.asked.quantity.against]
+
+
+OF = {
+    "largest": _("the largest value in the cycle"),
+    "range": _("the whole way"),
+    "turn": _("a full turn"),
+    "exact": "",
+}
+
+
+@dataclass(frozen=True)
+class Gradebook:
+    """Marks of all students, in the order of the task's answers.
+
+    decimal: sign in numbers of CSV files; with a comma cells are divided by semicolons, as spreadsheets of such
+    countries do. users: whom the teacher named; others are in no gradebook of a learning platform. None: all.
+    """
+
+    task: Task
+    marks: Sequence[StudentMarks]
+    decimal: Literal[".", ","] = "."
+    users: Container[str] | None = None
+
+    @property
+    def title(self) -> str:
+        return self.task.problem.title
+
+    @cached_property
+    def answers(self) -> tuple[Answer, ...]:
+        units = self.task.units
+        return tuple(
+            Answer(asked, asked.name, units.symbol(dimension), units.factor(dimension))
+            for asked in self.task.asked
+            for dimension in (asked.quantity.dimension,)
+        )
+
+    @cached_property
+    def files(self) -> tuple[str, ...]:
+        """A file's name for every student, without ending: no two alike, on no system."""
+        taken: set[str] = set()
+        found, count = [], Counter[str]()
+        for student in self.marks:
+            base = name = unicodedata.normalize("NFC", folder_name(student.student))
+            while name.casefold() in taken:
+                count[base] += 1
+                name = f"{base}-{count[base] + 1}"
+            taken.add(name.casefold())
+            found.append(name)
+        return tuple(found)
+
+
+Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # files by name, piece by piece
+
+
+@cache
+def _printed(unit: str) -> str:
+    return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+
+
+def points_text(points: float) -> str:
+    """Points as people write them: 4, 3.5."""
+    return f"{rounded(points):.10g}"
+
+
+def rounded(points: float) -> float:
+    """Points without what adding up leaves."""
+    return round(points, 3) + 0.0
+
+
+def percent(student: StudentMarks) -> float | None:
+    """Points as a share of all; None where there are none to be had."""
+    return round(100 * student.points / student.of, 1) if student.of else None
+
+
+def share_text(share: float) -> str:
+    """A share for people, to two figures: 0.51 %, 5.1 %, 51 %."""
+    if not share < 10:  # nan too
+        return _("over 999 %")
+    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{100 * share:.2g} %"
+
+
+def direction(value: complex) -> float:
+    """Of a vector, in degrees from 0 to 360."""
+    found = math.degrees(cmath.phase(value)) % 360
+    return 0.0 if found >= 359.95 else found
+
+
+def fitting(mark: Mark) -> bool:
+    """Whether the answer earns its points."""
+    return mark.state in ("right", "follows")

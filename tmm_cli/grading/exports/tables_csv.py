@@ -1,0 +1,35 @@
+"""marks.csv, a row a student, and answers.csv, a row an answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from tmm_cli.grading.exports.book import Gradebook, points_text
+from tmm_cli.grading.exports.rows import ANSWERS_HEADER, Cell, answers_rows, marks_header, marks_rows
+from tmm_cli.grading.record import Mark
+from tmm_cli.results.text import csv_cell
+
+
+def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+    """Both tables."""
+    yield "marks.csv", csv_lines(book, marks_header(book), marks_rows(book))
+    yield "answers.csv", csv_lines(book, ANSWERS_HEADER, answers_rows(book))
+
+
+def csv_lines(book: Gradebook, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[str]:
+    """A table line by line; with decimal commas as spreadsheets of such countries take it: semicolons and a mark."""
+    comma = book.decimal == ","
+    between = ";" if comma else ","
+    yield ("\ufeff" if comma else "") + between.join(map(csv_cell, header)) + "\n"
+    for row in rows:
+        yield between.join([_cell(cell, comma) for cell in row]) + "\n"
+
+
+def _cell(cell: Cell, comma: bool) -> str:
+    if isinstance(cell, str):
+        return csv_cell(cell)
+    if cell is None:
+        return ""
+    number = points_text(cell.points) if isinstance(cell, Mark) else f"{cell:.10g}"
+    number = number.replace(".", ",") if comma else number
+    return f"{number} {cell.state}" if isinstance(cell, Mark) else number

@@ -1,0 +1,115 @@
+"""marks.xlsx: the marks, every answer, the group. Texts are written as texts: nothing in it is a formula or a link."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
+from itertools import count, islice
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.grading.exports.book import Gradebook, rounded
+from tmm_cli.grading.exports.rows import Cell, finite, marks_header, marks_rows, reasons
+from tmm_cli.grading.exports.student_sheet import written
+from tmm_cli.grading.record import Mark
+from tmm_cli.grading.shown import shown
+from tmm_cli.grading.statistics import tables
+from tmm_cli.quantities import NUMBER
+from tmm_cli.results.table import Column
+
+MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
+COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
+ANSWERS_HEADER = ("student", "asked", "answer", "right value", "error, %", "points", "reasons")
+WRITTEN = datetime(2000, 1, 1)  # the same marks give the same bytes
+PLAIN = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
+
+
+def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
+    """One workbook."""
+    yield "marks.xlsx", (_workbook(book),)
+
+
+def _workbook(book: Gradebook) -> bytes:
+    from xlsxwriter import Workbook  # an extra
+
+    stream = io.BytesIO()
+    with Workbook(stream, PLAIN) as workbook:
+        workbook.set_properties({"created": WRITTEN, "title": "marks"})
+        formats = {name: workbook.add_format({"bg_color": colour}) for name, colour in COLOURS.items()}
+        head = workbook.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
+        _sheets(workbook, "Marks", marks_header(book), marks_rows(book), formats, head)
+        _sheets(workbook, "Answers", ANSWERS_HEADER, _answers(book), formats, head)
+        _group(workbook, book, head)
+    return stream.getvalue()
+
+
+def _answers(book: Gradebook) -> Iterator[list[Cell]]:
+    """A row an answer, to be read; answers.csv has more, to be computed with."""
+    for student in book.marks:
+        name = shown(student.student)
+        for answer, mark in zip(book.answers, student.marks, strict=True):
+            value = answer.text(mark.right) if mark.judged else ""
+            error = finite(100 * mark.error) if mark.value is not None else None
+            yield [name, answer.name, written(answer, mark), value, error, mark, reasons(mark)]
+
+
+def _sheets(
+    workbook: Any, name: str, header: Sequence[str], rows: Iterable[Sequence[Cell]], formats: dict[str, Any], head: Any
+) -> None:
+    """A table, on further sheets where one cannot hold it."""
+    rows = iter(rows)
+    for number in count(1):
+        some = islice(rows, MOST_ROWS)
+        first = next(some, None)
+        if first is None and number > 1:
+            return
+        sheet = workbook.add_worksheet(name if number == 1 else f"{name} {number}")
+        sheet.freeze_panes(1, 1)
+        sheet.set_column(0, 0, 24)
+        sheet.set_column(1, len(header) - 2, 10)
+        sheet.set_column(len(header) - 1, len(header) - 1, 60)
+        for k, text in enumerate(header):
+            sheet.write_string(0, k, text, head)
+        last = 0
+        for last, row in enumerate(() if first is None else (first, *some), 1):
+            _row(sheet, last, row, formats)
+        sheet.autofilter(0, 0, last, len(header) - 1)
+
+
+def _row(sheet: Any, at: int, row: Sequence[Cell], formats: dict[str, Any]) -> None:
+    for k, cell in enumerate(row):
+        if isinstance(cell, str):
+            if cell:
+                sheet.write_string(at, k, cell)
+        elif isinstance(cell, Mark):
+            sheet.write_number(at, k, rounded(cell.points), formats[cell.state])
+        elif cell is not None:
+            sheet.write_number(at, k, cell)
+
+
+def _group(workbook: Any, book: Gradebook, head: Any) -> None:
+    """All tables of the group, one below the other."""
+    sheet, at = workbook.add_worksheet("Group"), 0
+    sheet.set_column(0, 0, 40)
+    sheet.set_column(1, 7, 14)
+    title = workbook.add_format({"bold": True, "font_size": 13})
+    for table in tables(book.task, book.marks):
+        sheet.write_string(at, 0, table.title, title)
+        for k, column in enumerate(table.columns):
+            sheet.write_string(at + 1, k, column.heading(book.task.units), head)
+        for n, row in enumerate(zip(*(_cells(book, column) for column in table.columns), strict=True)):
+            _row(sheet, at + 2 + n, row, {})
+        at += table.rows + 2
+        for note in table.notes:
+            sheet.write_string(at, 0, note)
+            at += 1
+        at += 1
+
+
+def _cells(book: Gradebook, column: Column) -> list[Cell]:
+    if column.dimension is None:
+        return list(column.values)
+    assert column.dimension == NUMBER
+    return [v if np.isfinite(v) else None for v in column.numbers(book.task.units).tolist()]

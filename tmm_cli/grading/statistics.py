@@ -1,0 +1,124 @@
+"""The group: how its points are spread, which quantities are hardest, which mistakes are commonest; as tables."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_cli.errors import _
+from tmm_cli.grading.record import State, StudentMarks
+from tmm_cli.grading.shown import sentence, shown
+from tmm_cli.grading.task import Task
+from tmm_cli.quantities import NUMBER
+from tmm_cli.results.table import Column, Table, table_of_words
+from tmm_cli.vectors import Real
+
+STEP = 10  # per cent: a bar of the histogram
+
+
+@dataclass
+class Difficulty:
+    """How a quantity went, at all positions that it was asked at: answers by state, points earned and to be had."""
+
+    name: str
+    answers: Counter[State] = field(default_factory=Counter)
+    points: float = 0.0
+    of: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """Of the points, earned; without points, of the answers."""
+        if self.of:
+            return self.points / self.of
+        return (self.answers["right"] + self.answers["follows"]) / max(1, self.answers.total())
+
+
+def handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
+    """Those who gave an answer; the group's figures are of them."""
+    return [student for student in marks if any(mark.state != "missing" for mark in student.marks)]
+
+
+def percents(marks: Sequence[StudentMarks]) -> Real:
+    """Points of each who handed in, in per cent."""
+    return np.array([100 * student.points / student.of for student in handed_in(marks) if student.of])
+
+
+def histogram(marks: Sequence[StudentMarks]) -> Real:
+    """How many have 0 to 10 %, 10 to 20 %, ...; full marks stand in the last."""
+    found: Real = np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
+    return found
+
+
+def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
+    """All quantities, those that earned least first."""
+    found = {asked.quantity.name: Difficulty(asked.quantity.name) for asked in task.asked}
+    for student in handed_in(marks):
+        for mark in student.marks:
+            own = found[mark.key[0]]
+            own.answers[mark.state] += 1
+            own.points += mark.points
+            own.of += mark.of
+    return sorted(found.values(), key=lambda own: round(own.share, 9))
+
+
+def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
+    """Mistakes that most students made first: name, students, answers."""
+    students: defaultdict[str, set[int]] = defaultdict(set)
+    answers = Counter[str]()
+    for n, student in enumerate(marks):
+        for mark in student.marks:
+            for mistake in mark.mistakes:
+                students[mistake].add(n)
+                answers[mistake] += 1
+    found = [(name, len(own), answers[name]) for name, own in students.items()]
+    return sorted(found, key=lambda one: (-one[1], -one[2], one[0]))
+
+
+def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
+    """All tables of a group; those that would be empty are left out."""
+    own = percents(marks)
+    absent = len(marks) - len(handed_in(marks))
+    notes = [_("students: {count}").format(count=len(marks))]
+    notes += [_("without an answer, and not counted: {count}").format(count=absent)] if absent else []
+    if own.size:
+        rows = {
+            _("best"): own.max(), _("upper quartile"): np.quantile(own, 0.75), _("median"): np.median(own),
+            _("mean"): own.mean(), _("lower quartile"): np.quantile(own, 0.25), _("lowest"): own.min(),
+        }  # fmt: skip
+        shares = _numbers(_("points, %"), np.round(list(rows.values()), 1))
+        yield Table("group", _("Group"), (Column(_("of those who handed in"), list(rows)), shares), notes=tuple(notes))
+        ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
+        yield Table("histogram", _("Points"), (Column(_("points"), ranges), _numbers(_("students"), histogram(marks))))
+        yield _difficulties(hardest(task, marks))
+    mistakes = commonest(marks)
+    if mistakes:
+        names, students, answers = zip(*mistakes, strict=True)
+        counts = _numbers(_("students"), students), _numbers(_("answers"), answers)
+        yield Table("mistakes", _("Commonest mistakes"), (Column(_("mistake"), list(names)), *counts))
+    copied = [(shown(student.student), shown(student.copied)) for student in marks if student.copied]
+    if copied:
+        yield table_of_words("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
+    unread = [(shown(student.student), sentence(problem)) for student in marks for problem in student.problems]
+    if unread:
+        yield table_of_words("problems", _("Could not be read"), (_("student"), _("what")), unread)
+
+
+def _difficulties(found: Sequence[Difficulty]) -> Table:
+    states: dict[str, State] = {
+        _("right, %"): "right", _("given own, %"): "follows", _("wrong, %"): "wrong", _("missing, %"): "missing"
+    }  # fmt: skip
+    columns = [
+        Column(_("quantity"), [own.name for own in found]),
+        _numbers(_("points earned, %"), [round(100 * own.share, 1) for own in found]),
+    ]
+    for header, state in states.items():
+        shares = [round(100 * own.answers[state] / max(1, own.answers.total()), 1) for own in found]
+        columns.append(_numbers(header, shares))
+    return Table("hardest", _("Hardest quantities"), tuple(columns))
+
+
+def _numbers(header: str, values: object) -> Column:
+    return Column(header, np.asarray(values, dtype=float), NUMBER)

@@ -1,0 +1,176 @@
+"""Cells under their headings to what a student answered: parts of vectors put together, what is not asked left out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+from tmm_cli.errors import _
+from tmm_cli.grading.record import Given, Key, Submission
+from tmm_cli.grading.submissions.headings import Heading, Headings, Part, UnknownQuantityError, read_position
+from tmm_cli.grading.submissions.numbers import checked_unit, read_answer
+from tmm_cli.grading.task import Task
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.units import parse_unit
+from tmm_cli.quantities import ANGLE
+
+MOST_TOLD = 20  # problems of one submission
+LIMIT = 10_000  # headings that are kept read
+
+
+Cells = dict[Part, tuple[str, str]]  # text and unit of every part of an answer
+
+
+class Entry(NamedTuple):
+    """A cell and what stands over it, or beside it in columns of their own."""
+
+    cell: str
+    heading: str
+    part: Part = ""
+    position: str = ""
+    unit: str = ""
+
+
+class Answers:
+    """Reads answers to what a task asks. Raises ProblemError where its block `grading` is wrong."""
+
+    def __init__(self, task: Task) -> None:
+        self.asked = {one.key for one in task.asked}
+        self.vectors = {one.quantity.name: one.quantity.vector for one in task.asked}
+        self.names = list(self.vectors)
+        self.headings = Headings(task.quantities)
+        self.known: dict[Entry, Heading | ProblemError] = {}
+
+    def heading(self, entry: Entry) -> Heading:
+        """What is over a cell. Raises ProblemError."""
+        over = entry._replace(cell="")
+        found = self.known.get(over)
+        if found is None:
+            try:
+                found = self._heading(over)
+            except ProblemError as error:
+                found = error
+            if len(self.known) < LIMIT:
+                self.known[over] = found
+        if isinstance(found, ProblemError):
+            raise found.with_traceback(None)
+        return found
+
+    def _heading(self, over: Entry) -> Heading:
+        found = self.headings.read(over.heading)
+        position, angle = read_position(over.position)
+        if position is not None or angle is not None:
+            found = replace(found, position=position, angle=angle)
+        return replace(found, part=over.part or found.part, unit=checked_unit(over.unit) or found.unit)
+
+    def submission(self, student: str, entries: Iterable[Entry], problems: Iterable[str] = ()) -> Submission:
+        """What the cells of one student say. Cells that are empty, or hold a dash, are no answers."""
+        told: list[str | ProblemError] = list(problems)
+        cells: dict[Heading, Cells] = {}  # by quantity and position
+        unasked: dict[Heading, None] = {}
+        for entry in entries:
+            if not entry.cell.strip(" -–—"):
+                continue
+            try:
+                over = self.heading(entry)
+            except ProblemError as error:
+                told.append(error)
+                continue
+            place = replace(over, part="", unit="")
+            if over.quantity not in self.names or (over.angle is None and _key(place) not in self.asked):
+                unasked[place] = None
+            elif over.part in cells.setdefault(place, {}):
+                told.append(twice(place))
+            else:
+                cells[place][over.part] = entry.cell, over.unit
+        answers: dict[Key, Given] = {}
+        by_angle: dict[tuple[str, float], Given] = {}
+        for place, parts in cells.items():
+            try:
+                given = _given(parts)
+                if given is None:
+                    continue
+                if given.form != "number" and not self.vectors[place.quantity]:
+                    raise ProblemError(_("one number is wanted here"), found=quote(given.text))
+            except ProblemError as error:
+                told.append(error.at(_called(place)))
+                continue
+            if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
+                told.append(_("{name}: the components count, not what stands beside them").format(name=_called(place)))
+            if place.angle is None:
+                answers[_key(place)] = given
+            else:
+                by_angle[place.quantity, place.angle] = given
+        if unasked:
+            told.insert(0, self._not_asked(list(unasked)))
+        lines = [line if isinstance(line, str) else self._line(line) for line in told[:MOST_TOLD]]
+        if len(told) > MOST_TOLD:
+            lines.append(_("and {count} more").format(count=len(told) - MOST_TOLD))
+        return Submission(student, answers, tuple(lines), by_angle)
+
+    def _line(self, error: ProblemError) -> str:
+        if isinstance(error, UnknownQuantityError):
+            near = nearest(error.name, self.names)
+            error = ProblemError(error.message, found=error.found, near=near)
+        return one_line(error)
+
+    def _not_asked(self, places: list[Heading]) -> str:
+        """Of a quantity that is not asked with what is perhaps meant: R_12 is never taken for R_21."""
+        names = []
+        for place in places[:MOST_TOLD]:
+            near = None if place.quantity in self.names else nearest(place.quantity, self.names)
+            names.append(_called(place) + (_(" ({near} is asked)").format(near=near) if near else ""))
+        more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
+        return _("not asked, so not counted: {names}").format(names=", ".join([*names, *more]))
+
+
+def one_line(error: ProblemError) -> str:
+    """All that an error says, in one line."""
+    return "; ".join(" ".join(line.split()) for line in str(error).splitlines())
+
+
+def twice(place: Heading) -> str:
+    """That an answer stands there again."""
+    return _("{name} is given twice: the first counts").format(name=_called(place))
+
+
+def _key(place: Heading) -> Key:
+    return place.quantity, place.position
+
+
+def _called(place: Heading) -> str:
+    if place.angle is not None:
+        return _("{quantity} at phi = {angle:.6g} deg").format(quantity=place.quantity, angle=math.degrees(place.angle))
+    if place.position is None:
+        return place.quantity
+    return _("{quantity} at {position}").format(quantity=place.quantity, position=place.position)
+
+
+def _given(cells: Cells) -> Given | None:
+    """One answer of its parts. Raises ProblemError."""
+    if "x" in cells or "y" in cells:
+        if not {"x", "y"} <= cells.keys():
+            raise ProblemError(_("one component is missing"), found=", ".join(cells), allowed="x, y")
+        x, y = (_number(*cells[part]) for part in ("x", "y"))
+        if x.unit != y.unit:
+            raise ProblemError(_("the components have two units"), found=f"{quote(x.unit)}, {quote(y.unit)}")
+        return Given(x.first, y.first, "components", x.unit, text=f"{x.text}; {y.text}")
+    size = cells.get("size") or cells.get("")
+    if size is None:
+        raise ProblemError(_("the size is missing"), found=", ".join(cells), allowed="size, angle")
+    if "angle" in cells:
+        given, turn = _number(*size), _number(*cells["angle"])
+        if turn.unit and parse_unit(turn.unit).dimension != ANGLE:
+            raise ProblemError(_("a direction is an angle"), found=quote(turn.unit), allowed="deg, rad")
+        return Given(given.first, turn.first, "polar", given.unit, turn.unit, _("{size} at {angle}").format(
+            size=given.text, angle=turn.text))  # fmt: skip
+    return replace(_number(*size), form="size") if "size" in cells else read_answer(*size)
+
+
+def _number(text: str, unit: str) -> Given:
+    found = read_answer(text, unit)
+    if found is None or found.form != "number":
+        raise ProblemError(_("one number is wanted here"), found=quote(text))
+    return found

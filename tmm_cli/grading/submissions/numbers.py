@@ -1,0 +1,153 @@
+"""The text of one answer, as students write it, to numbers.
+
+A number: `1,31 m/s`, `3·10^-3`, `1 200.5`, `II`. A vector by components: `(1,2; -3,4) N`, `Fx = 1.2 N, Fy = -3.4 N`; by
+size and direction: `1.2 kN at 34 deg`, `1200 N, 34°`. Nothing is computed, and a text is at most LONGEST characters.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from tmm_cli.errors import _
+from tmm_cli.grading.record import Given
+from tmm_cli.problem.errors import ProblemError, clean, latin, quote
+from tmm_cli.problem.scalars import finite_float
+from tmm_cli.problem.units import dotted_unit, parse_unit, plain_text
+from tmm_cli.quantities import ANGLE
+
+LONGEST = 200
+CLASSES = {name: float(n) for n, name in enumerate(("I", "II", "III", "IV", "V", "VI"), start=1)}
+
+_SIGNS = {
+    **dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2014\u2015\ufe63\uff0d"), "-"),
+    **dict.fromkeys((*range(0x2000, 0x200B), 0x205F, 0x3000), " "),
+    **dict.fromkeys((0x200B, 0x2060, 0xFEFF), None),
+}
+_PLAIN = re.compile(r"[+-]?\d+(?:[.,]\d+)?")
+_DIGITS = (
+    r"\d{1,3}(?: \d{3})+(?:[.,]\d+)?(?!\d)|\d{1,3}(?:,\d{3})+\.\d+|\d{1,3}(?:\.\d{3})+,\d+|\d+(?:[.,]\d*)?|[.,]\d+"
+)
+_POWER = r"10 *\^ *[({]? *([+-]? *\d+) *[)}]?"
+_NUMBER = re.compile(rf"([+-]?) *(?:{_POWER}|({_DIGITS})(?:[eEеЕ]([+-]?\d+)| *[·*xх] *{_POWER})?)")
+_BEHIND = re.compile(r" *([^\W\d_]|[°%]|1 */|$)")  # what may follow a number: a unit
+_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)\b.*", re.IGNORECASE)
+_DATE = re.compile(r"\d{4}-\d\d-\d\d.*|\d\d:\d\d:\d\d.*")
+_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]](.*)")
+_DIRECTION = re.compile(r"\bat\b|∠")
+_LABEL = re.compile(r"([^\W\d]\w*) *= *")
+_LABELLED = re.compile(r"[ ,;]+(?=[^\W\d]\w* *=)")
+_BETWEEN = re.compile(r", +|(?<=[^\d ]),")
+_DIRECTIONS = ("phi", "φ", "angle", "alpha", "α")
+
+
+def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
+    """What a cell says; None of an empty one or a dash. unit, turn_unit: meant where the cell has none.
+
+    Raises ProblemError.
+    """
+    source = plainly(text)
+    if not source.strip("- "):
+        return None
+    told = clean(source, 80)
+    if roman := CLASSES.get(latin(source).upper()):
+        return Given(roman, unit=unit, text=told)
+    parts, of_both, polar = _parts(source)
+    if parts == [source]:
+        number, own = read_number(source)
+        return Given(number, unit=own or unit, text=told)
+    if len(parts) != 2:
+        raise ProblemError(
+            _("a vector has two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
+        )
+    labels, numbers = zip(*(_labelled(part) for part in parts), strict=True)
+    (first, one), (second, other) = (read_number(part) for part in numbers)
+    polar = polar or labels[1] in _DIRECTIONS or (_turns(other) and not _turns(one))
+    if polar:
+        if other and not _turns(other):
+            raise ProblemError(_("a direction is an angle"), found=quote(other), allowed=_("1,2 kN at 34 deg"))
+        return Given(first, second, "polar", one or of_both or unit, other or turn_unit, told)
+    units = {name for name in (one, other, of_both) if name}
+    if len(units) > 1:
+        raise ProblemError(_("the components have two units"), found=quote(source), allowed=_("(1,2; -3,4) N"))
+    ends = tuple(label[-1:].lower() for label in labels)
+    if ends not in (("", ""), ("x", "y"), ("y", "x")):
+        raise ProblemError(_("these are no components"), found=quote(source), allowed=_("Fx = 1,2 N, Fy = -3,4 N"))
+    x, y = (second, first) if ends == ("y", "x") else (first, second)
+    return Given(x, y, "components", units.pop() if units else unit, text=told)
+
+
+def plainly(text: str) -> str:
+    """The text with minus signs, points, spaces and superscripts of all kinds as those of a keyboard.
+
+    Raises ProblemError.
+    """
+    if len(text) > LONGEST:
+        raise ProblemError(
+            _("this is too long"), found=quote(text), allowed=_("at most {most} characters").format(most=LONGEST)
+        )
+    return plain_text(text.translate(_SIGNS)).strip()
+
+
+def read_number(source: str) -> tuple[float, str]:
+    """A number and the unit behind it, "" where none is, of a plain text. Raises ProblemError."""
+    if _PLAIN.fullmatch(source):
+        return finite_float(source.replace(",", ".")), ""
+    found = _NUMBER.match(source)
+    if found is None or not _BEHIND.match(source, found.end()):
+        if _NOT_FINITE.fullmatch(source):
+            raise ProblemError(_("not a finite number"), found=quote(source))
+        if _DATE.fullmatch(source):
+            raise ProblemError(
+                _("a spreadsheet made a date of this"), found=quote(source), allowed=_("a number in a cell of text")
+            )
+        raise ProblemError(_("this is no number"), found=quote(source), allowed=_("1,31 m/s, 1.31 or 3·10^-3"))
+    sign, alone, digits, exponent, power = found.groups()
+    digits = (digits or "1").replace(" ", "")
+    if "," in digits and "." in digits:  # the first parts thousands
+        digits = digits.replace(min(".,", key=digits.index), "")
+    tens = (alone or exponent or power or "0").replace(" ", "")
+    if len(tens) > 4:
+        raise ProblemError(_("the number is too large or too small"), found=quote(source))
+    number = finite_float(f"{sign}{digits.replace(',', '.')}e{tens}")
+    return number, checked_unit(source[found.end() :])
+
+
+@lru_cache(maxsize=1024)
+def checked_unit(text: str) -> str:
+    """A unit as it is written; "" of none. Raises UnitError."""
+    name = text.strip().removesuffix(".")
+    if name:
+        if "." in name:
+            raise dotted_unit(name)
+        parse_unit(name)
+    return name
+
+
+def _turns(unit: str) -> bool:
+    return bool(unit) and parse_unit(unit).dimension == ANGLE
+
+
+def _labelled(part: str) -> tuple[str, str]:
+    """`Fx = 1.2 N` as its label and the rest."""
+    label = _LABEL.match(part)
+    return (label[1], part[label.end() :]) if label else ("", part)
+
+
+def _parts(source: str) -> tuple[list[str], str, bool]:
+    """The numbers that stand beside one another; the unit of all; whether the second is said to be a direction."""
+    inside, unit = source, ""
+    brackets = _BRACKETS.fullmatch(source)
+    if brackets:
+        inside, unit = brackets[1], checked_unit(brackets[2])
+    if not brackets and _DIRECTION.search(source):
+        return [part.strip() for part in _DIRECTION.split(source)], "", True
+    if "=" in inside:
+        parts = _LABELLED.split(inside)
+    elif ";" in inside:
+        parts = inside.split(";")
+    elif len(found := _BETWEEN.split(inside)) > 1 or not brackets:
+        parts = found
+    else:
+        parts = inside.split("," if inside.count(",") == 1 else None)
+    return [part.strip() for part in parts], unit, False

@@ -1,0 +1,131 @@
+"""What students hand in: a folder with a file of each, or one table of all. A file that is broken stops nothing."""
+
+from __future__ import annotations
+
+import os
+import unicodedata
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+from tmm_cli.errors import _
+from tmm_cli.grading.cells import bytes_of, decoded, rows_of
+from tmm_cli.grading.record import Submission
+from tmm_cli.grading.submissions.answers import Answers, Entry, one_line
+from tmm_cli.grading.submissions.shapes import Shape, shape_of
+from tmm_cli.grading.submissions.yaml_sheet import read_sheet
+from tmm_cli.grading.task import Task
+from tmm_cli.problem.errors import ProblemError, clean, latin, quote
+
+LARGEST, MOST_ROWS = 2_000_000, 2_000  # of a student's file: bytes, rows
+LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
+LONGER = _("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
+NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder
+TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
+
+
+def read_submissions(path: str | os.PathLike[str], task: Task, students: Collection[str]) -> Iterator[Submission]:
+    """Submissions, each read when it is wanted; at the end those of students who handed nothing in.
+
+    path: a folder, whose files are named as the students, or a table. students: whose names are known. Raises
+    ProblemError where the path or the whole table cannot be read.
+    """
+    real = Path(os.path.realpath(path))
+    reader = _Reader(task, students)
+    seen = set()
+    for submission in reader.folder(real) if real.is_dir() else reader.table(real):
+        seen.add(submission.student)
+        yield submission
+    for student in students:
+        if student not in seen:
+            yield Submission(student, problems=(_("nothing was handed in"),))
+
+
+class _Reader:
+    def __init__(self, task: Task, students: Collection[str]) -> None:
+        self.answers = Answers(task)
+        self.students = frozenset(students)
+        self.alike: dict[str, list[str]] = {}
+        for student in students:
+            self.alike.setdefault(_folded(student), []).append(student)
+
+    def student(self, name: str) -> str:
+        """The student who is meant; of one who is not known the name, as it can be printed."""
+        if name in self.students:
+            return name
+        found = self.alike.get(_folded(name), [])
+        if len(found) == 1:
+            return found[0]
+        return clean(name.encode(errors="replace").decode().translate(NO_PATH).strip(" ."), 100) or "?"
+
+    def folder(self, folder: Path) -> Iterator[Submission]:
+        """Of all files, in the order of their names. Two files of one student are none."""
+        files: dict[str, list[str]] = {}
+        for name in sorted(os.listdir(folder)):
+            if not name.startswith((".", "~$")):  # of the system, and of an editor that is open
+                files.setdefault(self.student(Path(name).stem), []).append(name)
+        for student, names in files.items():
+            if len(names) == 1:
+                yield self.file(folder / names[0], student)
+            else:
+                told = ", ".join(clean(name, 60) for name in names[:4])
+                yield _unread(student, _("there are {count} files of this student: {names}").format(
+                    count=len(names), names=told))  # fmt: skip
+
+    def file(self, path: Path, student: str) -> Submission:
+        """Of one student's file."""
+        problems: dict[str, None] = {}
+        own: list[Entry] = []
+        try:
+            if path.suffix.lower() in SHEETS:
+                found = [read_sheet(decoded(bytes_of(path, LARGEST)), path.name)]
+            elif path.suffix.lower() in TABLES or path.is_dir() or path.is_symlink():
+                rows = rows_of(path, LARGEST, MOST_ROWS)
+                shape = self.shape(rows)
+                found = [(shape.named(row), list(shape.entries(row))) for row in rows[1:] if not shape.longer(row)]
+                problems = dict.fromkeys([LONGER] if any(map(shape.longer, rows[1:])) else [])
+            else:
+                raise ProblemError(_("this is no answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
+        except ProblemError as error:
+            return _unread(student, one_line(error.located(clean(path.name))))
+        for name, entries in found:
+            other = self.student(name)
+            if name and other != student:
+                problems[_("the file names another student: {name}").format(name=quote(other))] = None
+                if other in self.students:
+                    continue
+            own += entries
+        return self.answers.submission(student, own, problems)
+
+    def table(self, path: Path) -> Iterator[Submission]:
+        """Of all students in one table; a sheet in YAML is that of one. Raises ProblemError."""
+        if path.suffix.lower() in SHEETS:
+            yield self.file(path, self.student(path.stem))
+            return
+        by_student: dict[str, list[list[str]]] = {}
+        rows = rows_of(path, LARGEST_TABLE, MOST_ROWS_OF_ALL)
+        shape = self.shape(rows, str(path))
+        if shape.student is None:
+            raise ProblemError(
+                _("no column names the students"), found=", ".join(rows[0]), allowed="student", file=str(path)
+            )
+        for row in rows[1:]:
+            by_student.setdefault(self.student(shape.named(row)), []).append(row)
+        for student, own in by_student.items():
+            problems = (LONGER,) if any(map(shape.longer, own)) else ()
+            entries = (entry for row in own if not shape.longer(row) for entry in shape.entries(row))
+            yield self.answers.submission(student, entries, problems)
+
+    def shape(self, rows: list[list[str]], file: str | None = None) -> Shape:
+        """Raises ProblemError."""
+        if not rows:
+            raise ProblemError(_("the table is empty"), file=file)
+        return shape_of(rows[0], self.answers)
+
+
+def _unread(student: str, why: str) -> Submission:
+    return Submission(student, problems=(why,), unread=True)
+
+
+def _folded(name: str) -> str:
+    """Names that look the same are the same: in their accents, capitals, spaces, Latin and Cyrillic letters."""
+    return latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()
