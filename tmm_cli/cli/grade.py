@@ -152,8 +152,9 @@ def _stoppable() -> Iterator[Callable[[], bool]]:
 
 def _verdict(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
     """Say how many were graded; the exit code."""
-    left = sum(one.unread or own.problems != one.problems for one, own in zip(handed, marks, strict=True))
-    say(_("graded: {count} students, in {folder}").format(count=len(marks) - left, folder=out))
-    if left:
-        say(_("could not be graded: {count} students").format(count=left))
+    both = list(zip(handed, marks, strict=True))
+    left = sum(one.unread or own.problems != one.problems for one, own in both)
+    none = sum(not (one.unread or one.answers or one.by_angle) for one, own in both if own.problems == one.problems)
+    told = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
+    say(told.format(folder=out, count=len(both) - none - left, none=none, left=left))
     return CHECK_FAILED if left else OK

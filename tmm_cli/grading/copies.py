@@ -14,7 +14,8 @@ LEAST = 3  # answers
 MOST_OF = 0.6  # of a student's answers that the other variant must make right
 TWICE = 2.0  # times as many as the own variant does
 DIFFERENT = 0.5  # of what is allowed: variants whose values are nearer than that are alike, and tell nothing
-BLOCK = 200  # students compared with all others at once
+NEAR = 1000  # students before and after one in the table: who copies is in a group with whom he copies from
+BLOCK = 50  # students compared with those at once
 
 
 def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
@@ -22,21 +23,22 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     value, size, right, scale, allowed = _arrays(found)
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
-    suspects = np.flatnonzero(np.sum(there & ~own, axis=1) >= LEAST)
+    suspects = np.sum(there & ~own, axis=1) >= LEAST
     copied: dict[int, str] = {}
-    for first in range(0, len(suspects), BLOCK):
-        rows = suspects[first : first + BLOCK]
-        room = DIFFERENT * (allowed * scale)[rows][:, None]
+    for first in range(0, len(found), BLOCK):
+        rows = first + np.flatnonzero(suspects[first : first + BLOCK])
+        low, high = max(0, first - NEAR), first + BLOCK + NEAR
+        near = right[low:high]
         with np.errstate(invalid="ignore"):
-            other = np.abs(right[None] - right[rows][:, None]) > room
-        holds = _fits(value[rows][:, None], size[rows][:, None], right[None], scale[None], allowed[None])
+            other = np.abs(near - right[rows][:, None]) > DIFFERENT * (allowed * scale)[rows][:, None]
+        holds = _fits(value[rows][:, None], size[rows][:, None], near, scale[low:high], allowed[low:high])
         fits = np.sum(holds & other, axis=2)
-        fits[np.arange(len(rows)), rows] = 0
+        fits[np.arange(len(rows)), rows - low] = 0
         best = np.argmax(fits, axis=1)
         count, mine, all_of = fits[np.arange(len(rows)), best], np.sum(own[rows], axis=1), np.sum(there[rows], axis=1)
         for n, b, c, m, a in zip(rows.tolist(), best.tolist(), count, mine, all_of, strict=True):
             if c >= max(LEAST, MOST_OF * a) and c >= TWICE * m:
-                copied[n] = found[b].student
+                copied[n] = found[low + b].student
     return [replace(marks, copied=copied[n]) if n in copied else marks for n, marks in enumerate(found)]
 
 
