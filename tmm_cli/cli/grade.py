@@ -106,8 +106,8 @@ def _graded(
         say(told.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
     write(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names)
-    for one in tables(task, marks):
-        show(one, task.units, console())
+    for found in tables(task, marks):
+        show(found, task.units, console())
     return _verdict(handed, marks, out)
 
 
