@@ -13,6 +13,7 @@ from test_variants_of_task import TABLE, family_of, task
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.grade import grade
 from tmm_cli.grading.record import Given
+from tmm_cli.grading.submissions import answers
 from tmm_cli.grading.submissions import read as reading
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.submissions.template import write_template
@@ -67,9 +68,9 @@ def of_ana(folder, name, content):
     return read(folder)["Ana"]
 
 
-def plain(answers):
-    """Without their texts; units that are written in another way as the usual one."""
-    return {key: (g.first, g.second, g.form, g.unit.replace("·", "*"), g.turn_unit) for key, g in answers.items()}
+def plain(found):
+    """Answers without their texts; units that are written in another way as the usual one."""
+    return {key: (g.first, g.second, g.form, g.unit.replace("·", "*"), g.turn_unit) for key, g in found.items()}
 
 
 @pytest.mark.parametrize(
@@ -176,6 +177,12 @@ def test_many_problems_are_told_shortly(tmp_path):
     assert (len(told), told[-1]) == (21, "and 1480 more")
 
 
+def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(answers, "MOST_CELLS", 2)
+    found = of_ana(tmp_path / "in", "Ana.csv", "H,k,class\n1,2,3\n")
+    assert (len(found.answers), found.problems) == (2, ("only the first 2 cells are read",))
+
+
 @pytest.mark.parametrize(
     ("name", "content", "told"),
     [
@@ -191,9 +198,8 @@ def test_many_problems_are_told_shortly(tmp_path):
         ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is no text; allowed: a table as CSV or XLSX"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
         ("Ana.csv", "\n".join("1" * 2001), "Ana.csv: there are too many rows; allowed: at most 2000"),
-        ("Ana.csv", b"1" * 2_000_001, "Ana.csv: the file is too large; found: 2000001; allowed: at most 2000000"),
-        ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001 characters; "
-         "allowed: at most 1000000 bytes"),
+        ("Ana.csv", b"1" * 1_000_001, "Ana.csv: the file is too large; found: 1000001; allowed: at most 1000000"),
+        ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001; allowed: at most 1000000"),
         ("Ana.xlsx", b"PK\x03\x04", "Ana.xlsx: this is no sound XLSX: File is not a zip file"),
         ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),
         ("Ana.pdf", b"%PDF", "Ana.pdf: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.double_double import exactly
 from tmm_cli.linkage import Linkage
 from tmm_cli.tolerances import NO_COORDINATE
-from tmm_cli.vectors import Record, mapped
+from tmm_cli.vectors import Real, Record, mapped
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,11 @@ def lengths(linkage: Linkage) -> tuple[Length, ...]:
             if abs(part) > least:
                 found.setdefault((link, along, part), []).append(path)
     return tuple(Length(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items())
+
+
+def largest_beside(data: Sequence[Length]) -> Real:
+    """The largest length of the same link, of each length (m)."""
+    return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
 
 
 def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:

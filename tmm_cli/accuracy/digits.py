@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.accuracy.data import all_changed, lengths, widened
+from tmm_cli.accuracy.data import all_changed, largest_beside, lengths, widened
 from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
@@ -159,11 +159,9 @@ class _Judge:
         the values at q; step: the relative change of a length.
         """
         count, data = len(q), lengths(self.results.linkage)
-        sizes: dict[str, float] = {}
-        for length in data:
-            sizes[length.link] = max(sizes.get(length.link, 0.0), abs(length.value))
-        reach = 1.0 if self.results.linkage.driver.kind == "turn" else max(sizes.values(), default=1.0)
-        by = step * np.array([reach, *(sizes[length.link] for length in data)])
+        sizes = largest_beside(data)
+        reach = 1.0 if self.results.linkage.driver.kind == "turn" else np.max(sizes, initial=0.0) or 1.0
+        by = step * np.array([reach, *sizes])
         there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
         changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
         places = q[there] + np.where(number == 0, by[0], 0.0)

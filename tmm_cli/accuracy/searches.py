@@ -6,16 +6,16 @@ sure. What follows from several such numbers is shifted by the bound of each of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_cli.accuracy.data import Length, changed, lengths
+from tmm_cli.accuracy.data import lengths
 from tmm_cli.accuracy.digits import PAPER, SHARE, Digits
+from tmm_cli.accuracy.responses import ends, outputs, responses
 from tmm_cli.accuracy.wide import Wide
-from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.analysis.pipeline import CYCLE, Results, cycle_losses
 from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.tolerances import ROUNDOFF
@@ -25,7 +25,6 @@ Cells = Mapping[Hashable, Real]
 
 LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
 SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
-SHARE_ANEW = 1e-5  # of a length: the change with which everything is searched for anew
 
 
 class Found(NamedTuple):
@@ -40,7 +39,7 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
 
     mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
     """
-    values, told = of(results), Digits(mu=mu)
+    values, told, data = of(results), Digits(mu=mu), lengths(results.linkage)
     for key, value in values.items():
         told.bound[key] = 2 * ROUNDOFF * np.abs(np.asarray(value, float))
         told.lengths[key], told.paper[key] = np.zeros((2, *np.shape(value)))
@@ -51,10 +50,13 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
             for key, value in values.items():
                 gap = _gap(moved, key, value)
                 told.bound[key] = told.bound[key] + np.where(gap > 0, gap * (found.bound / by if by else 0.0), 0.0)
-        for changed_ones, by, length in () if np.isnan(mu) else _responses(results):
-            moved = of(changed_ones)
+        rates = {} if np.isnan(mu) or results.driver_range is None else responses(results, data)
+        for k, length in enumerate(data if rates else ()):
+            goes = {path: rate[k] for path, rate in rates.items() if rate[k]}
+            by = SHIFT / max(map(abs, goes.values()), default=np.inf)
+            moved = of(_shifted(results, {path: rate * by for path, rate in goes.items()})) if by else values
             for key, value in values.items():
-                rate = _gap(moved, key, value) / by
+                rate = _gap(moved, key, value) / (by or 1.0)
                 told.lengths[key] = told.lengths[key] + rate * SHARE * abs(length.value)
                 told.paper[key] = told.paper[key] + rate * PAPER * mu
     return told
@@ -75,15 +77,12 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
         return
     span = driver_range.end - driver_range.start
 
-    def found(path: str, bound: float, sense: int = 1) -> Found:
-        return Found(float(bound), lambda by: _shifted(results, path, sense * by))
+    def found(path: str, bound: float, sense: int = 1, also: Sequence[str] = ()) -> Found:
+        return Found(float(bound), lambda by: _shifted(results, dict.fromkeys((path, *also), sense * by)))
 
-    for name, bound in _ends(results, driver_range, wide):
-        yield found(f"driver_range.{name}", bound)
-    outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
-    for output, strokes in outputs.items():
-        if strokes is None or not strokes.strokes:
-            continue
+    for (end, *also), bound in zip(ends(driver_range), _ends(results, driver_range, wide), strict=True):
+        yield found(end, bound, also=also)
+    for output, strokes in outputs(results).items():
         starts, lows = wide.strokes(strokes)
         parts = {"start": starts, "length": starts + np.roll(starts, -1), "low": lows, "run": lows + np.roll(lows, -1)}
         for k in range(len(starts)):
@@ -110,12 +109,12 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
         yield Found(1.0, towards)
 
 
-def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[tuple[str, float]]:
+def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[float]:
     """Bounds of both ends of the driver's way."""
     span = driver_range.end - driver_range.start
-    for name, towards, place in (("start", -1, driver_range.start), ("end", 1, driver_range.end)):
+    for towards, place in ((-1, driver_range.start), (1, driver_range.end)):
         limit = None if driver_range.full else _limit(results, place)
-        yield name, 2 * ROUNDOFF * abs(place) if limit is None else wide.end(place, towards, limit, span)
+        yield 2 * ROUNDOFF * abs(place) if limit is None else wide.end(place, towards, limit, span)
 
 
 def blur(results: Results, wide: Wide) -> float:
@@ -124,39 +123,23 @@ def blur(results: Results, wide: Wide) -> float:
     if driver_range is None or request.places:
         return 0.0
     if not driver_range.full:
-        return max(bound for _, bound in _ends(results, driver_range, wide))
+        return max(_ends(results, driver_range, wide))
     if request.start != "working stroke" or results.strokes is None or not results.strokes.strokes:
         return 0.0
     return float(wide.strokes(results.strokes)[0][0])
 
 
-def _responses(results: Results) -> Iterator[tuple[Results, float, Length]]:
-    """The results with everything searched for anew when one length is changed, by how much, and which one.
+def _shifted(results: Results, by: Mapping[str, float]) -> Results:
+    """The results with numbers of the mechanism shifted by so much; paths: travels[0].low, as vectors.mapped has them.
 
-    A full turn stays one, and free of dead positions if it is. A length that passive constraints do not leave free
-    tells nothing.
+    Pressure angles at the positions are no searched ones: they stay.
     """
-    driver_range, data = results.driver_range, lengths(results.linkage)
-    if driver_range is None:
-        return
-    for length in data:
-        by = SHARE_ANEW * max(abs(other.value) for other in data if other.link == length.link)
-        moved = changed(results.linkage, length, by)
-        inputs, structure = replace(results.inputs, linkage=moved), results.structure.rebind(moved)
-        mechanism = Mechanism(inputs, structure)
-        if driver_range.full:
-            kernels = tuple(kernel.rebind(moved) for kernel in results.kernels)
-            dead = {} if results.dead else {"dead": ()}
-            mechanism = mechanism.known(kernels=kernels, driver_range=driver_range, **dead)
-        if mechanism.assembles:
-            yield replace(results, inputs=inputs, structure=structure, mechanism=mechanism), by, length
 
+    def moved(part: str) -> Any:
+        return mapped(lambda path, value: value + by[path] if path in by else value, getattr(results, part), path=part)
 
-def _shifted(results: Results, path: str, by: float) -> Results:
-    """The results with one number of the mechanism shifted; path: travels[0].low, as in vectors.mapped."""
-    part = path.partition(".")[0].partition("[")[0]
-    moved = mapped(lambda at, value: value + by if at == path else value, getattr(results, part), path=part)
-    return replace(results, mechanism=results.mechanism.changed(**{part: moved}))
+    parts = {path.partition(".")[0].partition("[")[0] for path in by}
+    return replace(results, mechanism=results.mechanism.changed(**{part: moved(part) for part in parts | {"pressure"}}))
 
 
 def _limit(results: Results, place: float) -> str | None:

@@ -109,7 +109,10 @@ class Results:
 
         if self.of or self.motion is None:
             return ()
-        return tuple(replace(p, angles=pressure_at(self.motion, p.group, p.link)) for p in self.mechanism.pressure)
+        return tuple(
+            p if p.angles.size else replace(p, angles=pressure_at(self.motion, p.group, p.link))
+            for p in self.mechanism.pressure
+        )
 
     @property
     def asked(self) -> Real:

@@ -26,7 +26,7 @@ PARTS = 1_000  # in an XLSX
 
 _NAME, _GIVEN = rb"(?:[^\s<>/:]+:)?", rb"""\s*=\s*(?:"[^"<>]*"|'[^'<>]*')"""
 PLACE = re.compile(  # a cell that says where it stands
-    rb"<" + _NAME + rb"c(?:\s+(?!r\s*=)[\w:.-]+" + _GIVEN + rb""")*\s+r\s*=\s*["']([A-Za-z]+)(\d+)["'][\s/>]"""
+    rb"<" + _NAME + rb"c(?:\s+(?!r\s*=)[\w:.-]+" + _GIVEN + rb"""){0,20}+\s+r\s*=\s*["']([A-Za-z]+)(\d+)["'][\s/>]"""
 )
 TEXT = re.compile(rb"</(?:[\w.-]+:)?si\s*>")
 CELL = re.compile(rb"<" + _NAME + rb"c[\s/>]")
@@ -151,9 +151,10 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
             cells, longest = 0, 0
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
+                here = len(CELL.findall(content))
                 if b"sheetData" in content:
-                    _refuse_far(content, most)
-                cells += len(CELL.findall(content))
+                    _refuse_far(content, here, most)
+                cells += here
                 if b"sst" in content:
                     longest = max(longest, *map(len, TEXT.split(content)))
             if cells * longest > COPIED * largest:
@@ -166,10 +167,10 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
         raise _damaged(error) from None
 
 
-def _refuse_far(content: bytes, most: int) -> None:
-    """A cell far out makes a table of all the empty ones before it. Raises ProblemError."""
+def _refuse_far(content: bytes, cells: int, most: int) -> None:
+    """A cell far out makes a table of all the empty ones before it. cells: how many there are. Raises ProblemError."""
     places = PLACE.findall(content)
-    if len(places) != len(CELL.findall(content)):
+    if len(places) != cells:
         raise ProblemError(_("a cell does not say where it stands"), allowed=_("a file that a spreadsheet has saved"))
     for letters, digits in set(places):
         column = 0

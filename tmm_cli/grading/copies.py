@@ -11,7 +11,7 @@ from tmm_cli.grading.record import StudentMarks
 from tmm_cli.vectors import Real
 
 LEAST = 3  # answers
-MOST_OF = 0.6  # of a student's answers that the other variant must make right
+MOST_OF = 0.8  # of the answers in which the variants differ must fit the other one
 TWICE = 2.0  # times as many as the own variant does
 DIFFERENT = 0.5  # of what is allowed: variants whose values are nearer than that are alike, and tell nothing
 NEAR = 1000  # students before and after one in the table: who copies is in a group with whom he copies from
@@ -24,22 +24,29 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
     suspects = np.sum(there & ~own, axis=1) >= LEAST
-    copied: dict[int, str] = {}
+    copied: dict[int, tuple[str, list[bool]]] = {}
     for first in range(0, len(found), BLOCK):
         rows = first + np.flatnonzero(suspects[first : first + BLOCK])
         low, high = max(0, first - NEAR), first + BLOCK + NEAR
-        near = right[low:high]
+        near, room = right[low:high], DIFFERENT * (allowed * scale)[rows][:, None]
         with np.errstate(invalid="ignore"):
-            other = np.abs(near - right[rows][:, None]) > DIFFERENT * (allowed * scale)[rows][:, None]
-        holds = _fits(value[rows][:, None], size[rows][:, None], near, scale[low:high], allowed[low:high])
-        fits = np.sum(holds & other, axis=2)
-        fits[np.arange(len(rows)), rows - low] = 0
-        best = np.argmax(fits, axis=1)
-        count, mine, all_of = fits[np.arange(len(rows)), best], np.sum(own[rows], axis=1), np.sum(there[rows], axis=1)
-        for n, b, c, m, a in zip(rows.tolist(), best.tolist(), count, mine, all_of, strict=True):
-            if c >= max(LEAST, MOST_OF * a) and c >= TWICE * m:
-                copied[n] = found[low + b].student
-    return [replace(marks, copied=copied[n]) if n in copied else marks for n, marks in enumerate(found)]
+            differs = there[rows][:, None] & (np.abs(near - right[rows][:, None]) > room)
+        holds = differs & _fits(value[rows][:, None], size[rows][:, None], near, scale[low:high], allowed[low:high])
+        fits, most = np.sum(holds, axis=2), np.sum(differs, axis=2)
+        mine = np.sum(differs & own[rows][:, None], axis=2)
+        likely = np.where((fits >= np.maximum(LEAST, MOST_OF * most)) & (fits >= TWICE * mine), fits - mine, 0)
+        for row, n in enumerate(rows.tolist()):
+            other = int(np.argmax(likely[row]))
+            if likely[row, other]:
+                copied[n] = found[low + other].student, holds[row, other].tolist()
+    return [_told(marks, *copied[n]) if n in copied else marks for n, marks in enumerate(found)]
+
+
+def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
+    """With the other's name, and without the mistakes that would explain what the other's variant does."""
+    own = [replace(mark, reasons=(), mistakes=()) if of_other and mark.state == "wrong" else mark
+           for mark, of_other in zip(marks.marks, explained, strict=True)]  # fmt: skip
+    return replace(marks, marks=tuple(own), copied=other)
 
 
 def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> Real:

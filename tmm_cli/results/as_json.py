@@ -65,7 +65,7 @@ LAST = (
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
     Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
-LARGE = ("kinematics", "forces")
+LARGE = ("positions", "kinematics", "forces", "lever", "energy")
 
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:

@@ -55,8 +55,8 @@ def cells(results: Results) -> Cells:
 
 def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
     """What reads the numbers of searches out of results like these; whole: those of result.json too."""
-    reports = ("quality", "pressure", "energy") if results.friction is not None else ("quality", "pressure")
-    return lambda other: all_numbers(other, reports, () if whole else None)[1]
+    energy = () if results.friction is None else ("energy",)
+    return lambda other: all_numbers(other, ("quality", "pressure", *energy), energy if whole else None)[1]
 
 
 def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:

@@ -17,6 +17,7 @@ from tmm_cli.problem.units import parse_unit
 from tmm_cli.quantities import ANGLE
 
 MOST_TOLD = 20  # problems of one submission
+MOST_CELLS = 10_000  # of one submission
 LIMIT = 10_000  # headings that are kept read
 
 
@@ -33,6 +34,15 @@ class Entry(NamedTuple):
     unit: str = ""
 
 
+class Over(NamedTuple):
+    """What a cell answers: a quantity at a position, which part of it, in which unit, and whether it is asked."""
+
+    place: Heading
+    part: Part
+    unit: str
+    asked: bool
+
+
 class Answers:
     """Reads answers to what a task asks. Raises ProblemError where its block `grading` is wrong."""
 
@@ -41,36 +51,41 @@ class Answers:
         self.vectors = {one.quantity.name: one.quantity.vector for one in task.asked}
         self.names = list(self.vectors)
         self.headings = Headings(task.quantities)
-        self.known: dict[Entry, Heading | ProblemError] = {}
+        self.known: dict[Entry, Over | ProblemError] = {}
 
-    def heading(self, entry: Entry) -> Heading:
+    def heading(self, entry: Entry) -> Over:
         """What is over a cell. Raises ProblemError."""
-        over = entry._replace(cell="")
-        found = self.known.get(over)
+        key = entry._replace(cell="")
+        found = self.known.get(key)
         if found is None:
             try:
-                found = self._heading(over)
+                found = self._heading(key)
             except ProblemError as error:
                 found = error
             if len(self.known) < LIMIT:
-                self.known[over] = found
+                self.known[key] = found
         if isinstance(found, ProblemError):
             raise found.with_traceback(None)
         return found
 
-    def _heading(self, over: Entry) -> Heading:
-        found = self.headings.read(over.heading)
-        position, angle = read_position(over.position)
+    def _heading(self, entry: Entry) -> Over:
+        over = self.headings.read(entry.heading)
+        position, angle = read_position(entry.position)
         if position is not None or angle is not None:
-            found = replace(found, position=position, angle=angle)
-        return replace(found, part=over.part or found.part, unit=checked_unit(over.unit) or found.unit)
+            over = replace(over, position=position, angle=angle)
+        place = replace(over, part="", unit="")
+        asked = over.quantity in self.names if over.angle is not None else _key(place) in self.asked
+        return Over(place, entry.part or over.part, checked_unit(entry.unit) or over.unit, asked)
 
     def submission(self, student: str, entries: Iterable[Entry], problems: Iterable[str] = ()) -> Submission:
         """What the cells of one student say. Cells that are empty, or hold a dash, are no answers."""
         told: list[str | ProblemError] = list(problems)
         cells: dict[Heading, Cells] = {}  # by quantity and position
         unasked: dict[Heading, None] = {}
-        for entry in entries:
+        for count, entry in enumerate(entries):
+            if count == MOST_CELLS:
+                told.insert(0, _("only the first {most} cells are read").format(most=MOST_CELLS))
+                break
             if not entry.cell.strip(" -–—"):
                 continue
             try:
@@ -78,13 +93,12 @@ class Answers:
             except ProblemError as error:
                 told.append(error)
                 continue
-            place = replace(over, part="", unit="")
-            if over.quantity not in self.names or (over.angle is None and _key(place) not in self.asked):
-                unasked[place] = None
-            elif over.part in cells.setdefault(place, {}):
-                told.append(twice(place))
+            if not over.asked:
+                unasked[over.place] = None
+            elif over.part in (parts := cells.setdefault(over.place, {})):
+                told.append(twice(over.place))
             else:
-                cells[place][over.part] = entry.cell, over.unit
+                parts[over.part] = entry.cell, over.unit
         answers: dict[Key, Given] = {}
         by_angle: dict[tuple[str, float], Given] = {}
         for place, parts in cells.items():

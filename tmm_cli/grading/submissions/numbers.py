@@ -46,6 +46,8 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
 
     Raises ProblemError.
     """
+    if len(text) < LONGEST and _PLAIN.fullmatch(text):
+        return Given(read_number(text)[0], unit=unit, text=text)
     source = plainly(text)
     if not source.strip("- "):
         return None

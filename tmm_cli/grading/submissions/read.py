@@ -16,7 +16,7 @@ from tmm_cli.grading.submissions.yaml_sheet import read_sheet
 from tmm_cli.grading.task import Task
 from tmm_cli.problem.errors import ProblemError, clean, latin, quote
 
-LARGEST, MOST_ROWS = 2_000_000, 2_000  # of a student's file: bytes, rows
+LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
 LONGER = _("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
 NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder

@@ -22,6 +22,9 @@ class Texts(Composer):
     def scalar(self, event: Any, path: Any) -> str:
         return str(event.value)
 
+    def cut_by_comma(self, event: Any, path: Any) -> None:
+        """Nothing: a list is read as the text that it is."""
+
     def sequence(self, start: Any, path: Any) -> Any:
         found = super().sequence(start, path)
         return self.text[start.start_mark.index : self.last.end_mark.index] if start.flow_style else found
