@@ -26,8 +26,9 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 class Faults:
     """What would be wrong with a variant, by the measure of the file's own.
 
-    turns: of a full cycle; 0 where the driver does not turn fully. strokes: of the output in it. limits: largest pressure angles (rad): those that
-    are allowed, or that of the file's own variant where it goes beyond one that the file does not set.
+    turns: of a full cycle; 0 where the driver does not turn fully. strokes: how many its output has. limits: largest
+    pressure angles (rad): those that are allowed, or that of the file's own variant where it goes beyond one that the
+    file does not set.
     """
 
     turns: int
@@ -43,13 +44,11 @@ class Faults:
         else:
             q = low + (np.max(family.q, axis=1, keepdims=True) - low) * np.linspace(0, 1, SCAN + 1)
         states = link_states(linkage, family.kernels, q, 0)
+        alike = family.strokes is None or _strokes(family.strokes) == self.strokes
         with np.errstate(all="ignore"):
             found = [
                 (np.all(states.moving, axis=1), _("it cannot be assembled in all its positions")),
-                (
-                    family.sound & (_strokes(family.strokes) == self.strokes),
-                    _("its output moves otherwise than that of the file"),
-                ),
+                (family.sound & alike, _("its output moves otherwise than that of the file")),
                 *_margins(states),
                 *_slots(states),
                 *self._pressures(states),
