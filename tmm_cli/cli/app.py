@@ -17,8 +17,8 @@ from tmm_cli.cli.common import BAD_INPUT, OK, say
 from tmm_cli.errors import _
 
 COMMANDS = (
-    "run", "structure", "kinematics", "forces", "check", "explain",
-    "new", "schema", "schemes", "synthesis", "variants",
+    "run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis", "variants",
+    "grade",
 )  # fmt: skip
 GROUPS = ("bench",)  # commands that have commands of their own, in `app`
 

@@ -17,6 +17,7 @@ from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.results.text import csv_cell
 
+LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
 WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")
 WHICH = ("variant", "вариант", "varijanta", "no", "no.", "n", "№", "#", "br", "br.", "id")
 HEADING = re.compile(r"(.*?)\s*(?:,\s*(.+)|\[(.+)\]|\((.+)\))?")
@@ -27,7 +28,7 @@ FORMULA = re.compile(r"\A'(?=[=+\-@\t\r])")  # what is written so that no spread
 
 def read_table(path: Path | str, task: Task) -> VariantTable:
     """A table with a heading. Variants without a column for their students are numbered from 1. Raises ProblemError."""
-    rows = rows_of(path)
+    rows = rows_of(path, LARGEST, MOST_ROWS)
     try:
         return _table(rows, task)
     except ProblemError as error:
