@@ -12,29 +12,26 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.assembly.crossing import EDGE, Crossings, Node, Source, alive, predicted
+from tmm_cli.assembly.corrector import CORRECTION, PATIENCE, Corrector, places_ahead
+from tmm_cli.assembly.crossing import EDGE, Crossings, Node, Source, alive
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import Pose, State
-from tmm_cli.tolerances import CONVERGED, LAST_STEP, SAME_STATE
+from tmm_cli.tolerances import LAST_STEP, SAME_STATE
 from tmm_cli.vectors import Real
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
 LEAST_STEP = 1e-9
-CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
 TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
-MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longer steps
 SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
 FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
-FEW = 6  # rounds of Newton's method: more than that begin too far away
 HALVINGS = 80
 FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
 LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it has to be followed
 AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
 SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
-PATIENCE = 4  # halvings of a step before a limit is looked for
 
 
 class Walker:
@@ -42,55 +39,9 @@ class Walker:
 
     def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
         self.kernel, self.source, self.scale = kernel, source, scale
-        self.home: State | None = None
+        self.corrector = Corrector(kernel, source)
         self.at = 0.0
-        self.crossings = Crossings(kernel, source, self.node, scale)
-
-    def node(self, q: float, start: State) -> tuple[Node, float] | None:
-        """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
-        place = np.array([q])
-        before = self.source(place, 2)
-        if not before.placed[0]:
-            return None
-        kernel = self.kernel
-        with np.errstate(all="ignore"):
-            state, size = kernel.close(start, before.poses, before.drives, FEW)
-            if not size[0] < CONVERGED:
-                return None
-            own = kernel.poses_of(state)
-            everything = {**before.poses, **own}
-            if kernel.passive and np.max(np.abs(kernel.residuals(everything, before.drives))) > CONVERGED:
-                return None
-            matrix = kernel.matrix(everything)
-            det = np.ones(1) if kernel.passive else np.linalg.det(matrix)
-            side = np.sign(det)
-            rates = kernel.rates_at(everything, matrix, side, before.first, before.drives)
-            both = {**before.first, **dict(zip(kernel.group.links, rates, strict=True))}
-            accels = kernel.accelerations_at(everything, matrix, side, both, before.second, before.drives)
-        first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
-        second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
-        return Node(q, state, first, second, float(det[0]), float(side[0])), self.apart(state, start)
-
-    def apart(self, one: State, other: State) -> float:
-        """How far two states are apart: lengths against the group's size, angles in rad."""
-        away, wound = self.gone(one)
-        return float(
-            max(
-                np.max(np.abs(one.x - other.x)) / (self.kernel.size * max(1.0, away)),
-                np.max(np.abs(one.unwrapped - other.unwrapped)) / max(1.0, wound / MANY_TURNS),
-            )
-        )
-
-    def gone(self, state: State) -> tuple[float, float]:
-        """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).
-
-        As guides become parallel links go away, and wheels on them round, for ever; steps grow with them then.
-        """
-        home = state if self.home is None else self.home
-        return (
-            float(np.max(np.abs(state.x - home.x))) / self.kernel.size,
-            float(np.max(np.abs(state.unwrapped - home.unwrapped))),
-        )
+        self.crossings = Crossings(kernel, source, self.corrector.node, scale)
 
     def trace(self, start: Node, end: float) -> tuple[list[Node], Literal["reached", "limit", "lost", "boundary"]]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node. boundary: `end` is dead."""
@@ -98,12 +49,12 @@ class Walker:
         here, failures, largest = start, 0, 0.0
         way = end - start.q
         least = LEAST_STEP * abs(way)
-        step = FIRST_STEP * way / np.pi
+        step, growth = FIRST_STEP * way / np.pi, 1.0
+        smooth = [here]  # the last nodes, found in steps that did not shrink
         while here.q != end:
             largest = max(largest, abs(here.det))
-            step = float(np.sign(way)) * min(abs(step), LARGEST_STEP * abs(way) / np.pi)
-            q = end if abs(end - here.q) <= abs(step) * (1 + 1e-9) else here.q + step
-            found = self.node(q, predicted(here, q))
+            places = places_ahead(here.q, end, step, growth, LARGEST_STEP * abs(way) / np.pi)
+            q, found = places[0], self.corrector.step(smooth, places)
             close = found is not None and found[1] < CORRECTION
             dead = self.crossings.between([start, *nodes], found[0], largest) if found is not None and close else None
             if dead is not None and abs(dead.q - end) < EDGE * self.scale:
@@ -111,15 +62,19 @@ class Walker:
             if dead is not None and (dead.q - end) * way < 0:
                 nodes.append(dead)
                 here, step, failures = dead, FIRST_STEP * way / np.pi, 0
+                smooth = [here]
                 continue
             if found is not None and close and found[0].side == here.side:
-                step *= 1.6 if found[1] < CORRECTION / 8 else 1.0
+                growth = 1.6 if found[1] < CORRECTION / 8 else 1.0
+                step *= growth
                 here, failures = found[0], 0
                 nodes.append(here)
+                smooth.append(here)
                 if self.spins(here):
                     return [*nodes, *self.beyond(here)], "lost"
                 continue
             step = (q - here.q) / 2
+            smooth = [here]
             failures += 1
             if failures % PATIENCE == 0 or abs(step) < least:
                 limit = self.limit(here, float(np.sign(way)))
@@ -133,15 +88,15 @@ class Walker:
 
     def spins(self, here: Node) -> bool:
         """Whether it goes round so much faster than the driver that there is no following it."""
-        return self.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
+        return self.corrector.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
 
     def beyond(self, last: Node) -> list[Node]:
         """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
 
         Nothing where it does not go away.
         """
-        home = last.state if self.home is None else self.home
-        if self.gone(last.state)[0] > FAR:
+        home = self.corrector.home or last.state
+        if self.corrector.gone(last.state)[0] > FAR:
             far = (last.state.x - home.x).ravel()
             k = int(np.argmax(np.abs(far)))
             speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(far[k])  # the other part grows less
@@ -154,17 +109,19 @@ class Walker:
 
     def leads_to(self, here: Node, limit: Node) -> bool:
         """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
-        near = self.apart(here.state, limit.state) / 2
-        for left in LEFT:
-            share = np.sqrt(left)  # near a limit states go as the root of what is left of the way
-            x, unwrapped = (
-                there + share * (one - there)
-                for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
-            )
-            found = self.node(limit.q + left * (here.q - limit.q), State(x, unwrapped))
-            if found is None or found[0].side != here.side or found[1] > near:
-                return False
-        return True
+        near = self.corrector.apart(here.state, limit.state) / 2
+        share = np.sqrt(LEFT)[:, None]  # near a limit states go as the root of what is left of the way
+        starts = State(*(
+            there + share * (one - there)
+            for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
+        ))  # fmt: skip
+        found = self.corrector.nodes(limit.q + np.array(LEFT) * (here.q - limit.q), starts)
+        return all(
+            one is not None
+            and one.side == here.side
+            and self.corrector.apart(one.state, starts.part(slice(k, k + 1))) <= near
+            for k, one in enumerate(found)
+        )
 
     def limit(self, last: Node, sense: float) -> Node | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
@@ -219,8 +176,8 @@ class Walker:
                 low, best, high = high, found, 2 * high
             else:
                 return None
-            # false position, the slope at the end that stays halved (Illinois); near the root halving has the last word
-            below, above = best[2], found[2]
+            # false position, the slope at an end that stays twice halved (Illinois)
+            below, above, last_sign = best[2], found[2], 0.0
             for _ in range(HALVINGS):
                 middle = low + (high - low) * below / (below - above)
                 if not low < middle < high:
@@ -228,10 +185,12 @@ class Walker:
                 found = at(middle, best[0], best[1])
                 if found is None or middle in (low, high):
                     break
+                sign = float(np.sign(found[2]))
                 if found[2] > 0:
-                    low, best, below, above = middle, found, found[2], above / 2
+                    low, best, below, above = middle, found, found[2], above / (2 if sign == last_sign else 1)
                 else:
-                    high, above, below = middle, found[2], below / 2
+                    high, above, below = middle, found[2], below / (2 if sign == last_sign else 1)
+                last_sign = sign
                 if high - low < 4 * np.finfo(float).eps * high or found[2] == 0:
                     break
         state, q, _ = best
@@ -255,8 +214,8 @@ class Walker:
 
         When all has come back to where it was after some turns, the trace is closed.
         """
-        self.home, self.at = state, at
-        found = self.node(at, state)
+        self.corrector.home, self.at = state, at
+        found = self.corrector.node(at, state)
         if found is None:
             return None
         middle = found[0]
@@ -293,7 +252,7 @@ class Walker:
         """Whether two states are the same but for full turns."""
         around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
         same = State(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
-        return self.apart(one, same) < SAME_STATE
+        return self.corrector.apart(one, same) < SAME_STATE
 
 
 def _flat(state: State, size: float) -> Real:

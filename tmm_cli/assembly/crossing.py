@@ -7,7 +7,7 @@ the place, a root of the determinant. E. L. Allgower, K. Georg, Introduction to 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,7 +61,7 @@ class Node:
 
 Source = Callable[[Real, int], LinkStates]  # links placed before a group: at places, with derivatives of an order
 Correct = Callable[[float, State], "tuple[Node, float] | None"]
-Finest = Callable[[Node], Node]
+Finest = Callable[[list[Node]], list[Node]]
 
 
 @dataclass(frozen=True)
@@ -73,17 +73,22 @@ class _Fit:
     parts: tuple[Chebyshev, ...]
     det: Chebyshev
 
-    def state(self, q: float, like: State, order: int = 0) -> State:
+    def state(self, q: float, order: int = 0) -> State:
         """The state at q, or a derivative of it by q."""
         t = (q - self.middle) / self.radius
         found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
-        x, y, unwrapped = np.split(found, [like.x.shape[-1], 2 * like.x.shape[-1]])
-        return State((x + 1j * y)[None, :], unwrapped[None, :])
+        return _stated(found[None, :])
 
 
-def predicted(node: Node, q: float) -> State:
-    """The state at q from that of a node, by its first and second derivatives."""
-    step = q - node.q
+def joined(states: Iterable[State]) -> State:
+    """Many states as one."""
+    states = list(states)
+    return State(np.concatenate([s.x for s in states]), np.concatenate([s.unwrapped for s in states]))
+
+
+def predicted(node: Node, q: Real | float) -> State:
+    """The state at places q from that of a node, by its first and second derivatives."""
+    step = (np.atleast_1d(q) - node.q)[:, None]
 
     def taylor(value: Real, first: Real, second: Real) -> Real:
         return value + step * (first + step / 2 * second)
@@ -92,6 +97,17 @@ def predicted(node: Node, q: float) -> State:
         taylor(node.state.x, node.first.x, node.second.x),
         taylor(node.state.unwrapped, node.first.unwrapped, node.second.unwrapped),
     )
+
+
+def extrapolated(nodes: list[Node], q: Real) -> State:
+    """States at places q by the polynomial that has the states of some nodes and their first and second derivatives."""
+    span, most = q[-1] - nodes[0].q, 3 * len(nodes)
+    slope = np.diag(np.arange(1.0, most), 1)  # powers of t times this are their derivatives
+    powers = np.vander([(n.q - q[0]) / span for n in nodes], most, increasing=True)
+    given = [[_parts(n.state) for n in nodes], [_parts(n.first) for n in nodes], [_parts(n.second) for n in nodes]]
+    matrix = np.concatenate([powers, powers @ slope, powers @ slope @ slope])
+    found = np.linalg.solve(matrix, np.concatenate([np.array(part) * span**k for k, part in enumerate(given)]))
+    return _stated(np.vander((q - q[0]) / span, most, increasing=True) @ found)
 
 
 class Crossings:
@@ -120,18 +136,21 @@ class Crossings:
             return None
         return found
 
-    def _finest(self, node: Node) -> Node:
-        """The same node found in double-doubles, and rounded."""
+    def _finest(self, nodes: list[Node]) -> list[Node]:
+        """The same nodes found in double-doubles, and rounded."""
         kernel = self.kernel
-        before = self.source(exactly([node.q]), 0)
-        start = State(exactly(node.state.x), exactly(node.state.unwrapped))
+        before = self.source(exactly([n.q for n in nodes]), 0)
+        states = joined(n.state for n in nodes)
         with np.errstate(all="ignore"):
-            state, size = kernel.close(start, before.poses, before.drives)
-            matrix = kernel.matrix({**before.poses, **kernel.poses_of(state)})
-        if not size[0] < LAST_STEP:
-            return node
-        state = State(rounded(state.x), rounded(state.unwrapped))
-        return replace(node, state=state, det=float(np.linalg.det(rounded(matrix))[0]))
+            states, size = kernel.close(
+                State(exactly(states.x), exactly(states.unwrapped)), before.poses, before.drives
+            )
+            det = np.linalg.det(rounded(kernel.matrix({**before.poses, **kernel.poses_of(states)})))
+        states = State(rounded(states.x), rounded(states.unwrapped))
+        return [
+            replace(n, state=states.part(slice(k, k + 1)), det=float(det[k])) if size[k] < LAST_STEP else n
+            for k, n in enumerate(nodes)
+        ]
 
     def _touches(self, here: Node, beyond: Node, largest: float) -> bool:
         """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.
@@ -161,7 +180,7 @@ def alive(end: Node, nodes: list[Node]) -> bool:
 def crossing(correct: Correct, finest: Finest, nodes: list[Node], beyond: Node, scale: float) -> Node | None:
     """The dead position between the last node and one beyond it; None where the way does not go smoothly through one.
 
-    correct: the group at a place, from a start, and how far it is from it. finest: a node in extended precision. scale:
+    correct: the group at a place, from a start, and how far it is from it. finest: nodes in extended precision. scale:
     what places are counted in.
     """
     flips = beyond.side != nodes[-1].side
@@ -214,14 +233,14 @@ def _place(
         about += radius * roots[-1]
     else:
         return None
-    samples = [finest(sample) for sample in samples]
+    samples = finest(samples)
     roots = [_root(_fitted(samples, about, radius, degree), flips) for degree in DEGREES]
     fit = _fitted(samples, about, radius, DEGREES[-1])
     if abs(fit.det(roots[-1])) > NO_DETERMINANT * max(abs(s.det) for s in samples):
         return None
     side = -nodes[-1].side if flips else nodes[-1].side
     q = about + radius * roots[-1]
-    state, first, second = (fit.state(q, samples[0].state, order) for order in range(3))
+    state, first, second = (fit.state(q, order) for order in range(3))
     return Node(q, state, first, second, 0.0, side, True, flips), radius * abs(roots[0] - roots[1]), fit
 
 
@@ -239,7 +258,7 @@ def _samples(correct: Correct, nodes: list[Node], about: float, radius: float, f
     if here is None:
         return None
     reaching = _fitted(here, about, radius, len(here) - 4)
-    first = correct(after[0], reaching.state(after[0], start.state))
+    first = correct(after[0], reaching.state(after[0]))
     side = -nodes[-1].side if flips else nodes[-1].side
     if first is None or first[1] > FOUND or first[0].side != side:
         return None
@@ -289,7 +308,7 @@ def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
     """
     for h in PROBES if dead.flips else PROBES[:2]:
         places = (dead.q - h * scale, dead.q + h * scale)
-        found = [correct(q, fit.state(q, dead.state)) for q in places]
+        found = [correct(q, fit.state(q)) for q in places]
         most = CROSSING_FITTED + CROSSING_ROUNDED / h ** (1 if dead.flips else 2)
         if any(one is None or one[1] > most for one in found):
             return False
@@ -301,3 +320,9 @@ def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
 
 def _parts(state: State) -> Real:
     return np.concatenate([state.x[0].real, state.x[0].imag, state.unwrapped[0]])
+
+
+def _stated(parts: Real) -> State:
+    """States of which these are the parts (states, parts)."""
+    x, y, unwrapped = np.split(parts, 3, axis=-1)
+    return State(x + 1j * y, unwrapped)

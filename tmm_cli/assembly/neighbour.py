@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.assembly.continuation import CORRECTION, FEW
+from tmm_cli.assembly.corrector import CORRECTION, FEW
 from tmm_cli.assembly.crossing import Source
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.newton import Newton

@@ -18,7 +18,7 @@ def check(
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem again and compare it with expected/<problem>.json beside it.
+    """Compute every problem again and compare it with expected/<problem>.json beside it; grade examples again too.
 
     What is expected is a golden run: what an earlier version computed. Every quantity of result.json is compared,
     relative to its largest value in the cycle; the tolerance is in the expected file. Exit code 1 when something
@@ -29,9 +29,13 @@ def check(
         folders = ", ".join(map(str, paths))
         say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
         raise typer.Exit(BAD_INPUT)
-    from tmm_cli.cli.golden_runs import compared, show_outcomes, write_junit
+    from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
 
-    outcomes = [compared(Path(name), update) for name in progress([str(f) for f in files])]
+    tasks = [task for path in paths if path.is_dir() for task in sorted(path.glob("grading/*/task.yaml"))]
+    outcomes = [
+        compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)
+        for name in progress([str(f) for f in (*files, *tasks)])
+    ]
     show_outcomes(outcomes)
     if junit is not None:
         with refusing():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
@@ -35,10 +35,21 @@ class Outcome(NamedTuple):
 def compared(file: Path, update: bool) -> Outcome:
     """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
+    return _compared(file.stem, expected_file, lambda: to_json(computed(str(file), "forces", silent=True)), update)
+
+
+def compared_grades(task: Path, update: bool) -> Outcome:
+    """A graded example likewise, with expected.json beside its task."""
+    from tmm_cli.grading.examples import grades  # a bank may have none
+
+    return _compared(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
+
+
+def _compared(name: str, expected_file: Path, compute: Callable[[], dict[str, Any]], update: bool) -> Outcome:
     try:
-        found = to_json(computed(str(file), "forces", silent=True))
+        found = compute()
     except ProblemError as error:
-        return Outcome(file.stem, wrong=str(error), code=BAD_INPUT)
+        return Outcome(name, wrong=str(error), code=BAD_INPUT)
     expected = _read(expected_file)
     known = isinstance(expected, dict)
     if update:
@@ -52,12 +63,12 @@ def compared(file: Path, update: bool) -> Outcome:
                 write_whole(expected_file, json_bytes(golden))
             except OSError as error:
                 wrong = f"{error.filename}: {error.strerror}"
-                return Outcome(file.stem, wrong=wrong, code=BAD_INPUT)
-        return Outcome(file.stem)
+                return Outcome(name, wrong=wrong, code=BAD_INPUT)
+        return Outcome(name)
     if not known:
-        return Outcome(file.stem, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
+        return Outcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
     different = differences(expected["result"], found, float(expected["tolerance"]))
-    return Outcome(file.stem, different=different, code=CHECK_FAILED if different else OK)
+    return Outcome(name, different=different, code=CHECK_FAILED if different else OK)
 
 
 def _read(file: Path) -> Any:

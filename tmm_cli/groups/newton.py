@@ -166,6 +166,9 @@ class Newton(Kernel):
 
     def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
         """Derivative of each row that the drivers ask for, without dimension."""
+        if not self.group.drivers:
+            nothing: Real = np.zeros((*shape, self._scale.shape[-1]))
+            return nothing
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
         return _stacked([np.zeros(shape), *rows])[..., 1:] * self._scale
 
@@ -315,7 +318,9 @@ class Newton(Kernel):
 
 def _stacked(values: Sequence[Any]) -> Real:
     """Numbers, or arrays of them, on a last axis."""
-    return np.stack(np.broadcast_arrays(*values), axis=-1)
+    if len({np.shape(value) for value in values}) > 1:
+        values = np.broadcast_arrays(*values)
+    return np.stack(values, axis=-1)
 
 
 def _nothing(shape: tuple[int, ...]) -> Wrench:

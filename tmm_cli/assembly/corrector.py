@@ -1,0 +1,126 @@
+"""One group corrected at places of the driver by Newton's method: at one of them, or at many at once.
+
+A call costs nearly the same for many places as for one, so a step along the way looks ahead.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tmm_cli.assembly.crossing import Node, Source, extrapolated, joined, predicted
+from tmm_cli.groups.newton import Newton
+from tmm_cli.groups.state import State
+from tmm_cli.tolerances import CONVERGED
+from tmm_cli.vectors import Real
+
+FEW = 6  # rounds of Newton's method: more than that begin too far away
+CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
+MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longer steps
+PATIENCE = 4  # halvings of a step that are tried at once
+MOST_AHEAD = 16  # places
+NODES = 4  # that a polynomial is laid through
+
+
+class Corrector:
+    """`source` gives the links that the group hangs on; home: where it began."""
+
+    def __init__(self, kernel: Newton, source: Source) -> None:
+        self.kernel, self.source = kernel, source
+        self.home: State | None = None
+        self.near: dict[tuple[float, float], Node | None] = {}  # found by single steps from a place to another
+        self.far: dict[float, Node | None] = {}  # found by a polynomial
+
+    def node(self, q: float, start: State) -> tuple[Node, float] | None:
+        """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
+        found = self.nodes(np.array([q]), start)[0]
+        return None if found is None else (found, self.apart(found.state, start))
+
+    def nodes(self, q: Real, start: State) -> list[Node | None]:
+        """The group at many places at once, each from a start of its own."""
+        before = self.source(q, 2)
+        if not np.any(before.placed):
+            return [None] * len(q)
+        kernel = self.kernel
+        with np.errstate(all="ignore"):
+            state, size = kernel.close(start, before.poses, before.drives, FEW)
+            sound = before.placed & (size < CONVERGED)
+            if not np.any(sound):
+                return [None] * len(q)
+            everything = {**before.poses, **kernel.poses_of(state)}
+            if kernel.passive:
+                sound &= np.max(np.abs(kernel.residuals(everything, before.drives)), axis=-1) <= CONVERGED
+            matrix = kernel.matrix(everything)
+            det = np.ones(len(q)) if kernel.passive else np.linalg.det(matrix)
+            side = np.sign(det)
+            rates = kernel.rates_at(everything, matrix, side, before.first, before.drives)
+            both = {**before.first, **dict(zip(kernel.group.links, rates, strict=True))}
+            accels = kernel.accelerations_at(everything, matrix, side, both, before.second, before.drives)
+        first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
+        second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
+
+        def one(k: int) -> Node:
+            here = slice(k, k + 1)
+            motion = state.part(here), first.part(here), second.part(here)
+            return Node(float(q[k]), *motion, float(det[k]), float(side[k]))
+
+        return [one(k) if sound[k] else None for k in range(len(q))]
+
+    def step(self, smooth: list[Node], places: list[float]) -> tuple[Node, float] | None:
+        """The group at the first of some places, as `node` finds it from the last of some nodes on a smooth way.
+
+        Many places are looked at at once: those of halved steps and, from a polynomial through the smooth nodes, as
+        many of the others as it has led to so far. What is found is kept for the next steps, and that from the
+        polynomial counts only where it is what a single step leads to; if not, `smooth` begins anew.
+        """
+        here, q = smooth[-1], places[0]
+        start = predicted(here, q)
+        there = self.far.get(q)
+        if there is not None and (apart := self.apart(there.state, start)) < CORRECTION:
+            return there, apart
+        if (here.q, q) not in self.near:
+            if q in self.far:  # the polynomial did not lead there
+                smooth[:-1] = []
+            places = places[: max(1, len(smooth) - 1)]
+            halves = [q]
+            for _ in range(PATIENCE - 1):
+                halves.append(here.q + (halves[-1] - here.q) / 2)
+            starts = [predicted(here, np.array(halves))]
+            if len(places) > 1:
+                starts.append(extrapolated(smooth[-NODES:], np.array(places[1:])))
+            found = self.nodes(np.array([*halves, *places[1:]]), joined(starts))
+            self.near = dict(zip(((here.q, half) for half in halves), found, strict=False))
+            self.far = dict(zip(places[1:], found[PATIENCE:], strict=True))
+        there = self.near[here.q, q]
+        return None if there is None else (there, self.apart(there.state, start))
+
+    def apart(self, one: State, other: State) -> float:
+        """How far two states are apart: lengths against the group's size, angles in rad."""
+        away, wound = self.gone(one)
+        return float(
+            max(
+                np.max(np.abs(one.x - other.x)) / (self.kernel.size * max(1.0, away)),
+                np.max(np.abs(one.unwrapped - other.unwrapped)) / max(1.0, wound / MANY_TURNS),
+            )
+        )
+
+    def gone(self, state: State) -> tuple[float, float]:
+        """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).
+
+        As guides become parallel links go away, and wheels on them round, for ever; steps grow with them then.
+        """
+        home = self.home or state
+        return (
+            float(np.max(np.abs(state.x - home.x))) / self.kernel.size,
+            float(np.max(np.abs(state.unwrapped - home.unwrapped))),
+        )
+
+
+def places_ahead(q: float, end: float, step: float, growth: float, largest: float) -> list[float]:
+    """Places up to `end` in steps that grow."""
+    found: list[float] = []
+    while q != end and len(found) < MOST_AHEAD:
+        step = np.sign(step) * min(abs(step), largest)
+        q = end if abs(end - q) <= abs(step) * (1 + 1e-9) else float(q + step)
+        found.append(q)
+        step *= growth
+    return found
