@@ -39,7 +39,7 @@ def variants(
     with refusing():
         from tmm_cli.grading.choices import with_vary
         from tmm_cli.grading.draw_variants import Variety, draw, draw_for
-        from tmm_cli.grading.tables import read_students, read_table
+        from tmm_cli.grading.tables import read_students
         from tmm_cli.grading.task import read_task
         from tmm_cli.problem.errors import ProblemError
         from tmm_cli.problem.reader import read_file
@@ -50,7 +50,7 @@ def variants(
             table = draw(variety, seed, count)
         else:
             listed = read_students(students)
-            before = list(read_table(out / TABLE, task).rows) if (out / TABLE).exists() else []
+            before = read_students(out / TABLE) if (out / TABLE).exists() else ()
             first = [name for name in before if name in listed]
             table = draw_for(variety, seed, [*first, *sorted(set(listed) - set(first))])
             count = len(listed)

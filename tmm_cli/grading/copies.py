@@ -44,8 +44,10 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
     """With the other's name, and without the mistakes that would explain what the other's variant does."""
-    own = [replace(mark, reasons=(), mistakes=()) if of_other and mark.state == "wrong" else mark
-           for mark, of_other in zip(marks.marks, explained, strict=True)]  # fmt: skip
+    own = [
+        replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
+        for mark, of_other in zip(marks.marks, explained, strict=True)
+    ]
     return replace(marks, marks=tuple(own), copied=other)
 
 

@@ -150,14 +150,17 @@ def _takes(task: Task, name: str, value: float, dimension: Dimension) -> bool:
 def _asked(task: Task) -> Iterator[Table]:
     if task.blocks.grading is None:
         return
-    notes = (_("Positions are counted from {first}.").format(first=task.rules.count),)
+    if task.rules.from_ == "either":
+        told = _("Positions are counted from {first}, the first one at either extreme position of the output.")
+    else:
+        told = _("Positions are counted from {first}.")
     rows = []
     for name, group in groupby(task.asked, lambda one: one.quantity.name):
         every = list(group)
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         rows.append((name, numbers, _unit(task, every[0]), f"{sum(one.points for one in every):.10g}"))
     headers = (_("quantity"), _("at positions"), _("unit"), _("points"))
-    yield table_of_words("asked", _("What is asked"), headers, rows, notes)
+    yield table_of_words("asked", _("What is asked"), headers, rows, (told.format(first=task.rules.count),))
 
 
 def _unit(task: Task, asked: Asked) -> str:
