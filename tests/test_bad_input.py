@@ -97,12 +97,12 @@ CASES = {
         "driver.turns: this word is not known here\n  found:   'yes'\n  allowed: ccw, cw",
     ),
     "sketch that fits no assembly": (
-        "E: [350, 270]", "E: [900, 270]", "[900",
+        "E: [0.23*CD + DE, 270]", "E: [900, 270]", "[900",
         "sketch.E: the sketch fits no assembly\n  found:   [900, 270]\n"
         "  allowed: about [358.443, 270] with the driver at 30 deg",
     ),
     "sketch that does not decide": (
-        ", E: [350, 270]", "", "sketch:",
+        ", E: [0.23*CD + DE, 270]", "", "sketch:",
         "sketch: the sketch does not say how group II(4,5) is assembled; see tmm kinematics "
         "x.yaml --assemblies\n"
         "  allowed: with the driver at 30 deg, E: [358.443, 270] or [-60.7845, 270]; 4: -3.47591 deg or "

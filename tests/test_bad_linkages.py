@@ -149,8 +149,9 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, title, description, units, parameters, synthesis, points, guides, links, driver, gears, "
-        "racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, positions, checks\n"
+        "  allowed: tmm, title, description, units, parameters, synthesis, variants, grading, points, guides, links, "
+        "driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
+        "positions, checks\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (

@@ -323,7 +323,8 @@ def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
 
 
 @pytest.mark.parametrize(
-    "command", ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "bench"]
+    "command",
+    ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "variants", "bench"],
 )
 def test_every_command_has_help_and_stands_in_the_readme(command):
     done = tmm(command, "--help")

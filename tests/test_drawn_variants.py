@@ -26,6 +26,12 @@ def task(text=ASKED, vary=()):
     return read_task(with_vary(read_text(SHAPER.read_text(encoding="utf-8") + text, "task.yaml"), vary))
 
 
+@pytest.fixture(autouse=True)
+def few(monkeypatch):
+    monkeypatch.setattr(draw_variants, "CHUNK", 100)
+    monkeypatch.setattr(draw_variants, "ENOUGH", 80)
+
+
 @cache
 def drawn():
     variety = Variety(task())
@@ -59,9 +65,7 @@ def test_results_are_spread_over_their_range():
     assert max(strokes) > 1.8 * min(strokes)
 
 
-def test_a_student_has_a_variant_by_the_seed_and_the_name_alone(monkeypatch):
-    monkeypatch.setattr(draw_variants, "CHUNK", 100)
-    monkeypatch.setattr(draw_variants, "ENOUGH", 80)
+def test_a_student_has_a_variant_by_the_seed_and_the_name_alone():
     names = ["Ana", "Бојан", "Čeda", "<script>"]
     few = draw_for(Variety(task()), 7, names)
     more = draw_for(Variety(task()), 7, ["Aaron", *reversed(names), "Zoran"])
@@ -70,12 +74,14 @@ def test_a_student_has_a_variant_by_the_seed_and_the_name_alone(monkeypatch):
     assert draw_for(Variety(task()), 8, names).rows != few.rows
 
 
-def test_a_linkage_that_is_moved_one_by_one_is_judged_too():
-    source = (SHAPER.parent / "press-class-iii.yaml").read_text(encoding="utf-8")
-    text = "\nvariants: {OA: {from: 60, to: 400, step: 170}}\ngrading: {answers: [{of: M_b, at: 1}]}\n"
-    variety = Variety(read_task(read_text(source + text, "task.yaml")))
-    assert variety.alone
-    assert [bool(why) for why in variety.judged(np.array([[0], [2]])).why] == [False, True]
+def test_one_by_one_they_are_judged_as_together():
+    variety = Variety(task())
+    picks = np.array([[0, 0, 0], [28, 0, 0], [4, 50, 2]])
+    together = variety.judged(picks)
+    variety.alone = True
+    alone = variety.judged(picks)
+    assert together.why.tolist() == alone.why.tolist() == ["", "its output moves otherwise than that of the file", ""]
+    assert together.values == pytest.approx(alone.values, rel=1e-9)
 
 
 @pytest.mark.parametrize(

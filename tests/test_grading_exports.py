@@ -5,6 +5,7 @@ import io
 import json
 import os
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -133,6 +134,16 @@ def test_a_workbook_has_marks_answers_and_the_group(own, tmp_path):
     ]), "xlsx")["marks.xlsx"]  # fmt: skip
 
 
+def test_where_nothing_writes_workbooks_the_rest_is_written_and_it_is_said(own, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
+    told = []
+    write(tmp_path, Gradebook(own, [marks("Ann")]), ("xlsx", "moodle"), told.append)
+    assert os.listdir(tmp_path) == ["moodle.csv"]
+    assert told == [
+        "marks.xlsx is written by xlsxwriter, which is not installed\n  allowed: pip install 'tmm-cli[excel]'"
+    ]
+
+
 def test_what_one_sheet_cannot_hold_goes_on_in_the_next(own, tmp_path, monkeypatch):
     monkeypatch.setattr(xlsx, "MOST_ROWS", 5)
     data = written(tmp_path, Gradebook(own, [marks("Ann"), marks("Bob")]), "xlsx")["marks.xlsx"]
@@ -154,8 +165,7 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 | H | 0.41 m † | 420 mm | 2.4 % | 3 % | 1 / 1 | right |
 | class | - | 2 | - | exact | 0 / 1 | no answer |
 | v of E at 3 | 1.5 m/s | 1.2 m/s at 180° | 19 % | 3 % | 0 / 1 | wrong |
-| a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right given \
-your own earlier answers |
+| a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right given yours |
 | M_b at 3 | 200 N·m | 200 N·m | 0 % | 5 % | 0.1 / 0.1 | right |
 
 ## Why
@@ -186,7 +196,7 @@ def test_gradescope_takes_a_record_a_student(own, tmp_path):
     assert [test["status"] for test in found["tests"]] == ["passed", "failed", "failed", "passed", "passed"]
     assert found["tests"][3] == {
         "name": "a of E at 7", "score": 1.0, "max_score": 1.0, "status": "passed", "output_format": "text",
-        "visibility": "visible", "output": "result: right given your own earlier answers\nyour answer: 5 m/s² at 53.13°"
+        "visibility": "visible", "output": "result: right given yours\nyour answer: 5 m/s² at 53.13°"
         "\nright value: 4 m/s² at 90°\noff by 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
         + OWN,
     }  # fmt: skip

@@ -15,9 +15,9 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGES = ("README.md", "problems/README.md", "tmm_cli/README.md", "tmm_cli/bench/README.md")
 
 
-def block(language: str, number: int = 0) -> str:
-    """A block of code of the README."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.M | re.S)[number]
+def block(language: str, number: int = 0, text: str = README) -> str:
+    """A block of code of a README."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.M | re.S)[number]
 
 
 def test_the_example_is_the_file_that_the_first_command_reads():
@@ -39,7 +39,7 @@ def test_the_excerpt_is_what_the_first_command_prints(tmp_path):
 def test_the_library_lines_run_and_give_what_their_comments_say(monkeypatch):
     monkeypatch.chdir(ROOT)
     names: dict[str, object] = {}
-    exec(block("python"), names)
+    exec(block("python", text=(ROOT / "tmm_cli/README.md").read_text(encoding="utf-8")), names)
     assert f"{names['results'].strokes.k:.3f}" == "1.511"
     assert names["batch"](names["results"].motion.q)["T.1"] == pytest.approx(names["results"].reactions.balance.moment)
 

@@ -157,7 +157,7 @@ def test_tasks_that_no_mechanism_meets_end_at_once(task: str, message: str) -> N
 
 
 def test_the_group_that_was_sketched_wrong_is_blamed_and_not_a_later_one() -> None:
-    assert refusal(changed("D: [140, 280]", "D: [140, -680]")) == (
+    assert refusal(changed("D: [0.23*CD, 0.97*CD - OC]", "D: [140, -680]")) == (
         "x.yaml:26:25: sketch.D: the sketch fits no assembly\n  found:   [140, -680]\n"
         "  allowed: about [-148.829, -982.732] with the driver at 30 deg"
     )

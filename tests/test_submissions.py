@@ -35,7 +35,7 @@ R_34;7;;kN;1,2;−3,4;;
 M_b;3;-20;N*m;;;;
 k;;;;;;;
 """
-WIDE = """"H, mm",class,"v of E at 7, m/s","v of E at 7, angle, deg",R_34 x at 7 [kN],R_34 y at 7 [kN],"M_b at 3, N*m",k
+WIDE = """"H, mm",class,"v of E at 7, m/s","v of E at 7, angle, deg",R_34 x at 7 [kN],R_34 y at 7,"M_b at 3, N*m",k
 "414,5",II,"1,2",180,"1,2","-3,4",-20,–
 """
 YAML = """answers:
@@ -157,6 +157,7 @@ HEAD = "quantity,position,value\n"
          "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         (HEAD + "H,,1,5\n",
          "a row with more cells than the header is not counted: has it a decimal comma without quotes?"),
+        ('"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n', "R_34 at 7: the components have two units; found: 'N', 'kN'"),
         ("R_34 x at 7\n5\n", "R_34 at 7: one component is missing; found: x; allowed: x, y"),
         ("R_34 angle at 7\n5\n", "R_34 at 7: the size is missing; found: angle; allowed: size, angle"),
         ("student,quantity,value\nIvan,H,3\n", "the file names another student: 'Ivan'"),

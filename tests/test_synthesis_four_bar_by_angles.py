@@ -363,7 +363,7 @@ REFUSED = {
         "synthesis.choose: there is no solution of this number, or it has a defect\n"
         "  found:   2\n  allowed: 1; or choose: transmission",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
-        "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 to 1e+09 mm",
+        "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100":

@@ -282,7 +282,7 @@ REFUSED = [
      "900", "the nearest is "),
     (", l4: 100", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
      "100", "the nearest is "),
-    (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 to 1e+09 mm"),
+    (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
     (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
      "900", "the nearest is "),
     (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",

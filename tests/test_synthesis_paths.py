@@ -12,27 +12,32 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.least_squares import descend
-from tmm_cli.synthesis.optimal.many_starts import residuals
+from tmm_cli.synthesis.optimal.many_starts import Ends, residuals
+from tmm_cli.synthesis.optimal.outcome import outcome_of
 from tmm_cli.synthesis.optimal.settling import Settling
 from tmm_cli.synthesis.optimal.solver import best
-from tmm_cli.synthesis.reading import build, task_of
+from tmm_cli.synthesis.reading import task_of
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 SEMICIRCLE, ELLIPSE = "semicircle of 6 points, timed", "ellipse of 10 points"
 
 
-def prepared(name):
-    return Candidates(task_of(read_text(BY_NAME[name].text(), "x.yaml")))
+def prepared(name, **changed):
+    task = task_of(read_text(BY_NAME[name].text(), "x.yaml"))
+    return Candidates(replace(task, positions=36, generations=20, **changed))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _few_starts():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(many_starts, "SAMPLES", 1500)
+        patch.setattr(many_starts, "TOURNAMENT", ((60, 6), (24, 12), (12, 25)))
+        yield
 
 
 @pytest.fixture(scope="module")
 def found():
-    search = prepared(SEMICIRCLE)
-    seeds = []
-    for seed in (1, 2):
-        search.task = replace(search.task, seed=seed)
-        seeds.append(best(search))
-    return seeds
+    return [best(prepared(SEMICIRCLE, seed=seed)) for seed in (1, 2)]
 
 
 def test_seeds_agree_in_ten_digits_of_the_objective_and_in_the_lengths(found):
@@ -52,14 +57,34 @@ def test_where_a_coupler_point_and_the_frame_are_follows_linearly():
     assert np.all(search.evaluate(settle(x))[0] <= search.evaluate(x)[0])
 
 
-def test_the_answer_says_when_independent_starts_do_not_agree(monkeypatch):
-    monkeypatch.setattr(many_starts, "ROUNDS", 1)
-    monkeypatch.setattr(many_starts, "AGREED", 100)
-    outcome = build(read_text(BY_NAME[SEMICIRCLE].text(), "x.yaml")).synthesis.outcome
-    assert outcome.notes[0] == (
-        "not sure to be the least: independent starts of the search ended at different linkages; try another seed, for "
-        "example seed: 2"
+def test_starts_agree_where_enough_of_them_end_at_the_same_least():
+    def ends(*distances):
+        return Ends.of([(distance**2, None) for distance in distances])
+
+    assert ends(*[1.0] * 6, 1.2).agree
+    assert ends(*[1.0] * 5, *[1.005] * 20, 1.2) == Ends(26, same=5, near=25, met=False)
+    assert not ends(*[1.0] * 5, *[1.005] * 20, 1.2).agree
+    assert ends(1e-9, 1.0).agree  # the points are met
+
+
+def test_the_answer_says_when_independent_starts_do_not_agree(found):
+    search, apart = prepared(SEMICIRCLE), Ends(24, same=2, near=20, met=False)
+    assert not any("not sure" in note for note in outcome_of(search, found[0]).notes)
+    assert outcome_of(search, replace(found[0], ends=apart)).notes[0] == (
+        "not sure to be the least: of 24 independent starts 2 ended at it and 20 within 1 % of it; try another seed, "
+        "for example seed: 2"
     )
+
+
+def test_the_answer_says_when_the_search_was_cut_short():
+    def stop(at, of):
+        if (at, of) == (1, many_starts.ROUNDS):
+            raise KeyboardInterrupt
+
+    search = prepared(SEMICIRCLE, seed=2, progress=stop)
+    cut = best(search)
+    assert cut.evolved.stopped and cut.missed == 0
+    assert outcome_of(search, cut).notes[0] == "stopped by hand: the best candidate so far, polished"
 
 
 def test_slopes_of_residuals_are_those_of_the_sum_of_squares():

@@ -36,8 +36,9 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
     q = start + step * np.arange(-2, SCAN * number + 3)
     at = link_states(linkage, upto, q, 0, blank=False).placements[-1]
     residual = np.where(np.isfinite(at.residual), at.residual, -np.inf)
-    inner, rise = residual[1:-1], np.abs(np.diff(residual))
-    with np.errstate(invalid="ignore"):
+    inner = residual[1:-1]
+    with np.errstate(invalid="ignore"):  # of places where nothing is
+        rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
     found: list[float] = []
     for k in np.flatnonzero(near) + 1:

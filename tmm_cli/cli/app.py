@@ -16,7 +16,10 @@ from tmm_cli import __version__
 from tmm_cli.cli.common import BAD_INPUT, OK, say
 from tmm_cli.errors import _
 
-COMMANDS = ("run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis")
+COMMANDS = (
+    "run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis", "variants",
+    "grade",
+)  # fmt: skip
 GROUPS = ("bench",)  # commands that have commands of their own, in `app`
 
 

@@ -58,6 +58,21 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
 
 @app.command()
+def grading(
+    reduced: Reduced = False,
+    full: Annotated[bool, typer.Option("--full", help="A group of 100 000 students too.")] = False,
+    out: Out = None, as_json: Json = False,
+) -> None:  # fmt: skip
+    """Time and memory of grading a group, how they grow, and how often mistakes are named rightly.
+
+    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    """
+    from tmm_cli.bench.grading import measure
+
+    _finish("grading", measure(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
+
+
+@app.command()
 def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
     """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
     from tmm_cli.bench.chart_savings import charts

@@ -34,6 +34,14 @@ Settings = Annotated[
         "--set", metavar="NAME=VALUE", help="Another value of a parameter (may be repeated).", show_default=False
     ),
 ]
+Variants = Annotated[
+    str | None,
+    typer.Option(metavar="FILE", help="A table of variants of the task, CSV or XLSX.", show_default=False),
+]
+Variant = Annotated[
+    str | None,
+    typer.Option(metavar="N", help="This one of the table: its number, or the student's name.", show_default=False),
+]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
 
 
 def forces(
@@ -13,14 +13,18 @@ def forces(
     position: Position = None,
     digits: WithDigits = False,
     settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
     names = ("cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
-        from tmm_cli.cli.opening import opened
+        from tmm_cli.cli.opening import opened, variant_settings
         from tmm_cli.cli.reporting import report
 
-        return report(solve(opened(file, settings, position, digits), "forces", position), names, as_json, out, digits)
+        own = variant_settings(file, variants, variant, settings)
+
+        return report(solve(opened(file, own, position, digits), "forces", position), names, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

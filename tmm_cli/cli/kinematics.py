@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, WithDigits, each, say
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each, say
 from tmm_cli.errors import _
 
 Assemblies = Annotated[
@@ -30,19 +30,23 @@ def kinematics(
     of: Of = "",
     digits: WithDigits = False,
     settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
     names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
-        from tmm_cli.cli.opening import opened
+        from tmm_cli.cli.opening import opened, variant_settings
         from tmm_cli.cli.reporting import report
 
+        own = variant_settings(file, variants, variant, settings)
+
         if assemblies:
-            return _list_assemblies(file, as_json, out, position, settings)
+            return _list_assemblies(file, as_json, out, position, own)
         return report(
-            solve(opened(file, settings, position, digits), "kinematics", position, asked), names, as_json, out, digits
+            solve(opened(file, own, position, digits), "kinematics", position, asked), names, as_json, out, digits
         )
 
     each(files, work, as_json=as_json, out=out)

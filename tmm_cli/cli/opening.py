@@ -29,6 +29,23 @@ def opened(
     return problem
 
 
+def variant_settings(file: str, variants: str | None, variant: str | None, settings: Sequence[str] | None) -> list[str]:
+    """Settings that make one variant of a table out of a file; those that are given too. Raises ProblemError."""
+    given = list(settings or ())
+    if variants is None and variant is None:
+        return given
+    if variants is None or variant is None:
+        raise ProblemError(_("a table and which of its variants are wanted"), allowed="--variants FILE --variant 7")
+    from tmm_cli.grading.tables import read_table, variant_in  # few runs have a table
+    from tmm_cli.grading.task import read_task
+
+    try:
+        values = variant_in(read_table(variants, read_task(read_file(file))), variant)
+    except ProblemError as error:
+        raise (error if error.file else error.located(variants)) from None
+    return [*(f"{name}={text}" for name, text in values.items()), *given]
+
+
 def afford(
     problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: Sequence[int] | None = None
 ) -> None:

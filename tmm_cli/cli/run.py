@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Position, Settings, WithDigits, each, say
+from tmm_cli.cli.common import Files, Json, Position, Settings, Variant, Variants, WithDigits, each, say
 from tmm_cli.errors import _
 
 SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
@@ -21,17 +21,21 @@ def run(
     position: Position = None,
     digits: WithDigits = False,
     settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
     drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
 ) -> None:
     """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
 
     def work(file: str) -> int:
         from tmm_cli.analysis.spatial_chain import ChainResults
+        from tmm_cli.cli.opening import variant_settings
         from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
         from tmm_cli.results.output import write_results
         from tmm_cli.results.warnings import warnings
 
-        results = computed(file, "forces", position, settings=settings, digits=digits, drawings=drawings)
+        own = variant_settings(file, variants, variant, settings)
+        results = computed(file, "forces", position, settings=own, digits=digits, drawings=drawings)
         pictures: Iterable[tuple[str, bytes]] | None = None
         if drawings and not isinstance(results, ChainResults):
             from tmm_cli.draw import files as drawn

@@ -18,7 +18,8 @@ def schema(
 
         emit_json(result_schema())
     else:
+        from tmm_cli.grading.block import Blocks
         from tmm_cli.problem.json_schema import file_schema
         from tmm_cli.synthesis import TASKS, block
 
-        emit_json(file_schema(block(task).Shape for task in TASKS))
+        emit_json(file_schema((block(task).Shape for task in TASKS), Blocks))

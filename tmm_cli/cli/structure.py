@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, Settings, each, say
+from tmm_cli.cli.common import Files, Json, Out, Settings, Variant, Variants, each, say
 from tmm_cli.errors import _
 
 Drawings = Annotated[
@@ -25,15 +25,19 @@ def structure(
     drawings: Drawings = False,
     driver: Driver = None,
     settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
 ) -> None:
     """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
     names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
         from tmm_cli.analysis.spatial_chain import ChainResults
+        from tmm_cli.cli.opening import variant_settings
         from tmm_cli.cli.reporting import computed, report, write_pictures
 
-        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=settings, drawings=drawings)
+        own = variant_settings(file, variants, variant, settings)
+        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out)
         from tmm_cli.draw import files as drawn

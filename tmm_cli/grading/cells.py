@@ -5,10 +5,12 @@ from __future__ import annotations
 import codecs
 import csv
 import io
+import lzma
 import os
 import re
 import stat
 import zipfile
+import zlib
 from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
@@ -159,11 +161,7 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
                     longest = max(longest, *map(len, TEXT.split(content)))
             if cells * longest > COPIED * largest:
                 raise ProblemError(_("far more is packed in it than in a table"), allowed=_("shorter texts in cells"))
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError, EOFError, OSError) as error:
-        raise _damaged(error) from None
-    except Exception as error:
-        if isinstance(error, ProblemError) or type(error).__module__ not in ("zlib", "_lzma"):
-            raise
+    except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError) as error:
         raise _damaged(error) from None
 
 

@@ -14,7 +14,8 @@ LEAST = 3  # answers
 MOST_OF = 0.8  # of the answers in which the variants differ must fit the other one
 TWICE = 2.0  # times as many as the own variant does
 DIFFERENT = 0.5  # of what is allowed: variants whose values are nearer than that are alike, and tell nothing
-BLOCK = 200  # students compared with all others at once
+NEAR = 1000  # students before and after one in the table: who copies is in a group with whom he copies from
+BLOCK = 50  # students compared with those at once
 
 
 def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
@@ -22,28 +23,31 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     value, size, right, scale, allowed = _arrays(found)
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
-    suspects = np.flatnonzero(np.sum(there & ~own, axis=1) >= LEAST)
+    suspects = np.sum(there & ~own, axis=1) >= LEAST
     copied: dict[int, tuple[str, list[bool]]] = {}
-    for first in range(0, len(suspects), BLOCK):
-        rows = suspects[first : first + BLOCK]
-        room = DIFFERENT * (allowed * scale)[rows][:, None]
+    for first in range(0, len(found), BLOCK):
+        rows = first + np.flatnonzero(suspects[first : first + BLOCK])
+        low, high = max(0, first - NEAR), first + BLOCK + NEAR
+        near, room = right[low:high], DIFFERENT * (allowed * scale)[rows][:, None]
         with np.errstate(invalid="ignore"):
-            differs = there[rows][:, None] & (np.abs(right[None] - right[rows][:, None]) > room)
-        holds = differs & _fits(value[rows][:, None], size[rows][:, None], right[None], scale[None], allowed[None])
+            differs = there[rows][:, None] & (np.abs(near - right[rows][:, None]) > room)
+        holds = differs & _fits(value[rows][:, None], size[rows][:, None], near, scale[low:high], allowed[low:high])
         fits, most = np.sum(holds, axis=2), np.sum(differs, axis=2)
         mine = np.sum(differs & own[rows][:, None], axis=2)
         likely = np.where((fits >= np.maximum(LEAST, MOST_OF * most)) & (fits >= TWICE * mine), fits - mine, 0)
         for row, n in enumerate(rows.tolist()):
             other = int(np.argmax(likely[row]))
             if likely[row, other]:
-                copied[n] = found[other].student, holds[row, other].tolist()
+                copied[n] = found[low + other].student, holds[row, other].tolist()
     return [_told(marks, *copied[n]) if n in copied else marks for n, marks in enumerate(found)]
 
 
 def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
     """With the other's name, and without the mistakes that would explain what the other's variant does."""
-    own = [replace(mark, reasons=(), mistakes=()) if of_other and mark.state == "wrong" else mark
-           for mark, of_other in zip(marks.marks, explained, strict=True)]  # fmt: skip
+    own = [
+        replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
+        for mark, of_other in zip(marks.marks, explained, strict=True)
+    ]
     return replace(marks, marks=tuple(own), copied=other)
 
 

@@ -56,18 +56,18 @@ class Judged:
 class Variety:
     """What a task's variants are drawn from: thrown counts the candidates thrown away, by the reason.
 
-    Raises ProblemError, LinkageError where the file's own variant is not sound itself.
+    Raises ProblemError.
     """
 
     def __init__(self, task: Task) -> None:
-        self.task, self.free = task, choices(task)
+        self.task, self.faults = task, faults_of(task)
+        self.free = choices(task)
         self.names = tuple(choice.name for choice in self.free)
         self.dimensions = tuple(choice.dimension for choice in self.free)
         self.numbers = [numbers(task, choice) for choice in self.free]
         self.asked: tuple[Asked, ...] = task.asked if task.blocks.grading else ()
         own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
         self.own = np.array([own])
-        self.faults = faults_of(task)
         self.size = math.prod(len(choice.texts) for choice in self.free)
         self.thrown: Counter[str] = Counter()
         self.tried = 0

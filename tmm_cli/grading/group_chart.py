@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -17,7 +18,7 @@ from tmm_cli.grading.task import Task
 
 MOST, FEWEST = 10, 6  # bars that a panel has room for
 BAD = "#c4574b"
-LONGEST = 34  # characters of a name beside a bar
+LONGEST = 32  # characters of a line beside a bar
 STATES: dict[State, tuple[str, str]] = {
     "right": (_("right"), "#4c9a68"), "follows": (_("right given own"), "#a9d6b8"), "wrong": (_("wrong"), BAD),
     "missing": (_("missing"), "#d0d0d0"),
@@ -99,6 +100,6 @@ def _panel(axes: Any, title: str, grid: str = "x") -> None:
 
 def _names(axes: Any, names: Sequence[str], rows: int) -> None:
     """Beside the bars, from the top; bars of both panels are as thick."""
-    texts = [name if len(name) <= LONGEST else name[: LONGEST - 1] + "…" for name in names]
+    texts = [textwrap.fill(name, LONGEST, max_lines=2, placeholder="…") for name in names]
     axes.set_yticks(range(len(names)), texts, parse_math=False)
     axes.set_ylim(rows - 0.5, -0.5)

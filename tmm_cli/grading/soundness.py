@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli import inputs_of
-from tmm_cli.analysis.mechanism import Mechanism
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli import solve
 from tmm_cli.errors import _
 from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import angle, followers, named
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
@@ -27,11 +26,13 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 class Faults:
     """What would be wrong with a variant, by the measure of the file's own.
 
-    turns: of a full cycle; 0 where the driver does not turn fully. limits: largest pressure angles (rad): those that
-    are allowed, or that of the file's own variant where it goes beyond one that the file does not set.
+    turns: of a full cycle; 0 where the driver does not turn fully. strokes: how many its output has. limits: largest
+    pressure angles (rad): those that are allowed, or that of the file's own variant where it goes beyond one that the
+    file does not set.
     """
 
     turns: int
+    strokes: int
     limits: Mapping[Held, float]
 
     def of(self, family: Family) -> Real:
@@ -43,10 +44,11 @@ class Faults:
         else:
             q = low + (np.max(family.q, axis=1, keepdims=True) - low) * np.linspace(0, 1, SCAN + 1)
         states = link_states(linkage, family.kernels, q, 0)
+        alike = family.strokes is None or _strokes(family.strokes) == self.strokes
         with np.errstate(all="ignore"):
             found = [
                 (np.all(states.moving, axis=1), _("it cannot be assembled in all its positions")),
-                (family.sound, _("its output moves otherwise than that of the file")),
+                (family.sound & alike, _("its output moves otherwise than that of the file")),
                 *_margins(states),
                 *_slots(states),
                 *self._pressures(states),
@@ -65,15 +67,19 @@ class Faults:
 
 
 def faults_of(task: Task) -> Faults:
-    """Raises ProblemError, LinkageError."""
-    problem = task.problem.whole
-    mechanism = Mechanism(inputs_of(problem), mobile(problem.linkage))
+    """Raises ProblemError where the file's own variant cannot be moved."""
+    results = solve(task.problem, "kinematics")
+    mechanism, problem = results.mechanism, results.problem
     limits = {
         (one.link, one.pair): one.allowed if problem.limits_set[not one.slides] else max(one.allowed, one.largest)
         for one in mechanism.pressure
     }
     full = mechanism.driver_range.full and problem.linkage.driver.kind == "turn"
-    return Faults(mechanism.driver_range.turns if full else 0, limits)
+    return Faults(mechanism.driver_range.turns if full else 0, _strokes(mechanism.strokes), limits)
+
+
+def _strokes(strokes: Strokes | None) -> int:
+    return 0 if strokes is None else len(strokes.strokes)
 
 
 def _margins(states: LinkStates) -> Iterator[tuple[Real, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +17,18 @@ from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.results.text import csv_cell
 
+LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
 WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")
 WHICH = ("variant", "вариант", "varijanta", "no", "no.", "n", "№", "#", "br", "br.", "id")
 HEADING = re.compile(r"(.*?)\s*(?:,\s*(.+)|\[(.+)\]|\((.+)\))?")
 COMMA = re.compile(r"(?<![\d.,])(\d+),(\d+)(?![\d.,])")
 MINUS = str.maketrans("−–\u2012\u2011", "----", "\xa0\u202f")
-FORMULA = re.compile(r"'(?=[=+\-@\t\r])")  # what is written so that no spreadsheet runs it
+FORMULA = re.compile(r"\A'(?=[=+\-@\t\r])")  # what is written so that no spreadsheet runs it
 
 
 def read_table(path: Path | str, task: Task) -> VariantTable:
     """A table with a heading. Variants without a column for their students are numbered from 1. Raises ProblemError."""
-    rows = rows_of(path)
+    rows = rows_of(path, LARGEST, MOST_ROWS)
     try:
         return _table(rows, task)
     except ProblemError as error:
@@ -59,9 +60,10 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
     return dict(zip(table.names, table.rows[asked], strict=True))
 
 
-def csv_of(table: VariantTable) -> str:
-    """With the units in the heading where a column has one alone."""
-    return "".join(",".join(csv_cell(cell) for cell in row) + "\n" for row in _written(table))
+def csv_of(rows: Iterable[Sequence[str]]) -> bytes:
+    """Texts as CSV, with the mark by which spreadsheets know its letters."""
+    lines = (",".join(csv_cell(cell) for cell in row) for row in rows)
+    return ("\ufeff" + "".join(f"{line}\n" for line in lines)).encode()
 
 
 def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
@@ -83,11 +85,6 @@ def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
     return stream.getvalue()
 
 
-def sheet_of(table: VariantTable) -> list[list[str]]:
-    """Its rows with the heading."""
-    return _written(table)
-
-
 def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
     if n and k and re.fullmatch(r"-?\d+(\.\d+)?(e[-+]?\d+)?", cell):
         sheet.write_number(n, k, float(cell))
@@ -95,7 +92,8 @@ def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
         sheet.write_string(n, k, cell, form)
 
 
-def _written(table: VariantTable) -> list[list[str]]:
+def rows_of_table(table: VariantTable) -> list[list[str]]:
+    """Its rows with a heading, which has the unit where a column has one alone."""
     columns = []
     for k, name in enumerate(table.names):
         texts = [row[k] for row in table.rows.values()]

@@ -81,6 +81,11 @@ class Task:
             ).located(self.tree.file, self.tree)
         return self.blocks.grading
 
+    def revealing(self) -> Task:
+        """The same, the students being told what is right."""
+        rules = {**self.tree.data["grading"], "reveal": True}
+        return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
+
     @cached_property
     def problem(self) -> Problem | TaskProblem:
         """The file's own variant."""

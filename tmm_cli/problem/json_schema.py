@@ -11,8 +11,9 @@ from tmm_cli.problem.schema import File
 from tmm_cli.problem.schema_chain import SpatialFile
 
 
-def file_schema(tasks: Iterable[type[BaseModel]]) -> dict[str, Any]:
-    """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`."""
+def file_schema(tasks: Iterable[type[BaseModel]], blocks: type[BaseModel]) -> dict[str, Any]:
+    """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`; blocks: further
+    ones of a file, by their names."""
     definitions: dict[str, Any] = {}
 
     def schema(model: type[BaseModel]) -> dict[str, Any]:
@@ -22,6 +23,7 @@ def file_schema(tasks: Iterable[type[BaseModel]]) -> dict[str, Any]:
 
     planar = schema(File)
     planar["properties"]["synthesis"]["anyOf"] = [{"$ref": "#/$defs/Synthesis"}]
+    planar["properties"] |= schema(blocks)["properties"]
     definitions["SpatialFile"] = schema(SpatialFile)
     definitions["Synthesis"] = {"anyOf": [schema(task) for task in tasks]}
     return {

@@ -33,7 +33,15 @@ from tmm_cli.results.table import Table, table_of_words, with_unit
 
 def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation; verbose: places that each stage computes."""
-    problem = results.problem
+    yield from given(results.problem)
+    yield steps(results)
+    if verbose:
+        yield stages_table(results)
+    yield from skipped(results.problem)
+
+
+def given(problem: Problem) -> Iterable[Table]:
+    """The file in full."""
     if problem.synthesis is not None and problem.synthesis.names:
         yield parameters(problem.synthesis, problem.units)
     yield _points(problem)
@@ -48,10 +56,6 @@ def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
             "loads", _("Loads"), (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
             [_load(problem, load) for load in problem.linkage.loads],
         )  # fmt: skip
-    yield steps(results)
-    if verbose:
-        yield stages_table(results)
-    yield from skipped(problem)
 
 
 def _points(problem: Problem) -> Table:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Final
@@ -17,6 +17,7 @@ from tmm_cli.grading.exports import (
     xlsx,
 )
 from tmm_cli.grading.exports.book import Export, Gradebook
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import Staged, write_whole
 
 EXPORTS: Final[Mapping[str, Export]] = {
@@ -30,22 +31,31 @@ EXPORTS: Final[Mapping[str, Export]] = {
 }
 
 
-def write(folder: Path, book: Gradebook, formats: Collection[str] = tuple(EXPORTS)) -> None:
+def write(
+    folder: Path,
+    book: Gradebook,
+    formats: Collection[str] = tuple(EXPORTS),
+    say: Callable[[str], None] = lambda note: None,
+) -> None:
     """Write a gradebook: each file and each folder of files whole or not at all, and none before all are there.
 
-    Other files in the folder stay. Raises OSError.
+    A format that cannot be written here is left out, and `say` is told why. Other files in the folder stay. Raises
+    OSError.
     """
     whole: dict[str, bytes] = {}
     with ExitStack() as stack:
         staged: dict[str, Staged] = {}
         for name in formats:
-            for file, content in EXPORTS[name](book):
-                inner, between, rest = file.rpartition("/")
-                if not between:
-                    whole[file] = b"".join(p if isinstance(p, bytes) else p.encode() for p in content)
-                    continue
-                if inner not in staged:
-                    staged[inner] = stack.enter_context(Staged(folder / inner))
-                staged[inner].write(rest, content)
+            try:
+                for file, content in EXPORTS[name](book):
+                    inner, between, rest = file.rpartition("/")
+                    if not between:
+                        whole[file] = b"".join(p if isinstance(p, bytes) else p.encode() for p in content)
+                        continue
+                    if inner not in staged:
+                        staged[inner] = stack.enter_context(Staged(folder / inner))
+                    staged[inner].write(rest, content)
+            except ProblemError as error:
+                say(str(error))
     for file, data in whole.items():
         write_whole(folder / file, data)

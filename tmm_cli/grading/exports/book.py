@@ -8,7 +8,7 @@ import unicodedata
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Literal
 
 from tmm_cli.errors import _
@@ -19,7 +19,7 @@ from tmm_cli.results.files import folder_name
 
 STATES = {
     "right": _("right"),
-    "follows": _("right given your own earlier answers"),
+    "follows": _("right given yours"),
     "wrong": _("wrong"),
     "missing": _("no answer"),
 }
@@ -112,6 +112,7 @@ def _printed(unit: str) -> str:
     return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
 
 
+@lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
     """Points as people write them: 4, 3.5."""
     return f"{rounded(points):.10g}"

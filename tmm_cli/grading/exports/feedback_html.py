@@ -9,13 +9,14 @@ from tmm_cli.errors import _
 from tmm_cli.grading.exports.student_sheet import Sheet
 
 STYLE = """
-body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:60rem;margin:2rem auto;padding:0 1rem}
+body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:60rem;margin:2rem auto;padding:0 1rem;
+overflow-wrap:anywhere}
 h1{font-size:1.35rem;margin:0}h2{font-size:1.05rem;margin:1.6rem 0 .3rem}
-.who{margin:.2rem 0 1.2rem;overflow-wrap:anywhere}.who b{font-size:1.1rem}
+.who{margin:.2rem 0 1.2rem}.who b{font-size:1.1rem}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
 th,td{text-align:left;padding:.3rem .7rem .3rem 0;border-bottom:1px solid #ddd;vertical-align:top}
 th{border-bottom:2px solid #1a1a1a;font-weight:600}td:first-child,th:first-child{padding-left:.6rem}
-td{white-space:nowrap}td:nth-child(2),td:nth-last-child(3),td:last-child{white-space:normal;overflow-wrap:anywhere}
+td{white-space:nowrap}td:nth-child(2),td:nth-last-child(3),td:last-child{white-space:normal}
 td:first-child{border-left:4px solid #b3261e}.right td:first-child{border-left-color:#1d7a3a}
 .follows td:first-child{border-left-color:#c77700}.missing td:first-child{border-left-color:#bbb}
 .missing td{color:#767676}ul{padding-left:1.2rem;margin:.3rem 0}li{margin:.2rem 0}

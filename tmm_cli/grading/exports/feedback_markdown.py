@@ -9,7 +9,8 @@ from html import escape
 from tmm_cli.errors import _
 from tmm_cli.grading.exports.student_sheet import Sheet
 
-SIGNS = re.compile(r"([\\`*\[\]|#~]|(?<![^\W_])_|_(?![^\W_]))")  # of markup; a line within a word is none
+SIGNS = re.compile(r"([\\`*\[\]|#~])")
+LINE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")  # within a word it is no markup
 BETWEEN = "\x1f"  # cells
 
 
@@ -30,4 +31,5 @@ def _list(lines: Iterable[str]) -> str:
 
 def _plain(text: str) -> str:
     """A text with no markup in it, neither of Markdown nor of HTML."""
-    return SIGNS.sub(r"\\\1", escape(text, quote=False))
+    safe = SIGNS.sub(r"\\\1", escape(text, quote=False))
+    return LINE.sub(r"\\_", safe) if "_" in safe else safe

@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.errors import _
 from tmm_cli.grading.exports.book import Gradebook, rounded
 from tmm_cli.grading.exports.rows import Cell, finite, marks_header, marks_rows, reasons
 from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.statistics import tables
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column
 
@@ -32,8 +34,13 @@ def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
 
 
 def _workbook(book: Gradebook) -> bytes:
-    from xlsxwriter import Workbook  # an extra
-
+    """Raises ProblemError where nothing is installed that writes it."""
+    try:
+        from xlsxwriter import Workbook
+    except ImportError:
+        raise ProblemError(
+            _("marks.xlsx is written by xlsxwriter, which is not installed"), allowed="pip install 'tmm-cli[excel]'"
+        ) from None
     stream = io.BytesIO()
     with Workbook(stream, PLAIN) as workbook:
         workbook.set_properties({"created": WRITTEN, "title": "marks"})

@@ -168,9 +168,9 @@ def _given(cells: Cells) -> Given | None:
         if not {"x", "y"} <= cells.keys():
             raise ProblemError(_("one component is missing"), found=", ".join(cells), allowed="x, y")
         x, y = (_number(*cells[part]) for part in ("x", "y"))
-        if x.unit != y.unit:
+        if x.unit and y.unit and x.unit != y.unit:
             raise ProblemError(_("the components have two units"), found=f"{quote(x.unit)}, {quote(y.unit)}")
-        return Given(x.first, y.first, "components", x.unit, text=f"{x.text}; {y.text}")
+        return Given(x.first, y.first, "components", x.unit or y.unit, text=f"{x.text}; {y.text}")
     size = cells.get("size") or cells.get("")
     if size is None:
         raise ProblemError(_("the size is missing"), found=", ".join(cells), allowed="size, angle")
@@ -180,7 +180,7 @@ def _given(cells: Cells) -> Given | None:
             raise ProblemError(_("a direction is an angle"), found=quote(turn.unit), allowed="deg, rad")
         return Given(given.first, turn.first, "polar", given.unit, turn.unit, _("{size} at {angle}").format(
             size=given.text, angle=turn.text))  # fmt: skip
-    return replace(_number(*size), form="size") if "size" in cells else read_answer(*size)
+    return read_answer(*size)
 
 
 def _number(text: str, unit: str) -> Given:

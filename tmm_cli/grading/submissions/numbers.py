@@ -126,6 +126,7 @@ def checked_unit(text: str) -> str:
     return name
 
 
+@lru_cache(maxsize=1024)
 def _turns(unit: str) -> bool:
     return bool(unit) and parse_unit(unit).dimension == ANGLE
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from tmm_cli.synthesis.optimal.candidates import Candidates, reader
 from tmm_cli.synthesis.optimal.evolution import Evolved
+from tmm_cli.synthesis.optimal.many_starts import Ends
 from tmm_cli.synthesis.optimal.peaks import WINDOW
 from tmm_cli.synthesis.optimal.polish import Local, polish
 from tmm_cli.synthesis.optimal.quantities.base import Peak
@@ -25,7 +26,7 @@ SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less 
 class Best:
     """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
 
-    agree: whether several independent starts led to it, where there were such.
+    ends: of independent starts, where there were such.
     """
 
     x: Real
@@ -33,7 +34,12 @@ class Best:
     values: list[float]
     missed: float
     evolved: Evolved
-    agree: bool = True
+    ends: Ends | None = None
+
+    @property
+    def agree(self) -> bool:
+        """Whether independent starts led to it."""
+        return self.ends is None or self.ends.agree
 
 
 def exactly(candidates: Candidates, x: Real) -> list[float]:

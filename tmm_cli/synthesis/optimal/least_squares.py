@@ -53,7 +53,7 @@ def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
         at = x[going]
         rows, slopes = _differences(evaluate, at)
         tried = np.clip(damping[going, None] * np.array(DAMPINGS), LEAST, LARGEST)
-        ends = np.stack(_ends(evaluate, rows, slopes, at, tried), axis=1)
+        ends = _ends(evaluate, rows, slopes, at, tried)
         costs = evaluate(ends.reshape(-1, n), 1).cost().reshape(len(going), -1)
         each, best = np.arange(len(going)), np.argmin(costs, axis=1)
         better = costs[each, best] < cost[going] * (1 - GAIN)
@@ -63,18 +63,17 @@ def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
     return x, cost
 
 
-def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real) -> list[Real]:
-    """Where steps lead, one of each damping, and then the same with what residuals bend along it."""
-    straight, bent = [], []
-    for damping in dampings.T:
-        step = step_of(rows, slopes, x, damping)
-        ahead = evaluate(x + AHEAD * step, 1).off
-        bend = ((ahead - rows.off) / AHEAD - np.einsum("srn,sn->sr", slopes.off, step)) / AHEAD
-        known = np.all(np.isfinite(bend), axis=1, keepdims=True)
-        off = rows.off + np.where(known, bend, 0.0)
-        straight.append(np.clip(x + step, 0, 1))
-        bent.append(np.clip(x + step_of(Rows(off, rows.least), slopes, x, damping), 0, 1))
-    return [*straight, *bent]
+def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real) -> Real:
+    """Where steps lead, (s, 2 d, n): one of each damping (s, d), and the same with what residuals bend along it."""
+    rows, slopes = (Rows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
+    x = x[:, None]
+    step = step_of(rows, slopes, x, dampings)
+    ahead = evaluate((x + AHEAD * step).reshape(-1, x.shape[-1]), 1).off.reshape(*dampings.shape, -1)
+    bend = ((ahead - rows.off) / AHEAD - (slopes.off @ step[..., None])[..., 0]) / AHEAD
+    known = np.all(np.isfinite(bend), axis=-1, keepdims=True)
+    bent = step_of(Rows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
+    ends: Real = np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
+    return ends
 
 
 def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
@@ -94,28 +93,23 @@ def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
 
 
 def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
-    """The step of each start, (s, n), within bounds 0..1."""
-    s, n = x.shape
-    square = slopes.off.transpose(0, 2, 1) @ slopes.off
-    steep = np.einsum("sii->si", square)
-    square = (
-        square
-        + np.eye(n) * (np.reshape(damping, (-1, 1)) * (steep + 1e-6 * np.sum(steep, axis=1, keepdims=True)))[:, None]
-        + 1e-30 * np.eye(n)
-    )
-    down = -np.einsum("srn,sr->sn", slopes.off, rows.off)
-    one = np.broadcast_to(np.eye(n), (s, n, n))
-    kept = np.concatenate([slopes.least, one, -one], axis=1)  # kept @ step >= least
-    least = np.hstack([-rows.least, -x, x - 1])
-    weight = WEIGHT**2 * np.maximum(1.0, np.max(steep, axis=1))
-    step = np.zeros((s, n))
-    for k in range(PASSES):
-        broken = (np.einsum("srn,sn->sr", kept, step) < least) * weight[:, None] if k else np.zeros(least.shape)
-        pulled = kept * broken[:, :, None]
-        new = np.linalg.solve(
-            square + pulled.transpose(0, 2, 1) @ kept, (down + np.einsum("srn,sr->sn", pulled, least))[..., None]
-        )[..., 0]
-        if np.array_equal(new, step):
+    """The step of each start, (..., n), within bounds 0..1."""
+    n = x.shape[-1]
+    square = slopes.off.mT @ slopes.off
+    steep = np.einsum("...ii->...i", square)
+    floor = steep + 1e-6 * np.sum(steep, axis=-1, keepdims=True)
+    square = square + np.eye(n) * (np.asarray(damping)[..., None] * floor + 1e-30)[..., None]
+    down = -slopes.off.mT @ rows.off[..., None]
+    weight = WEIGHT**2 * np.maximum(1.0, np.max(steep, axis=-1))[..., None, None]
+    broken, beyond = np.zeros((*rows.least.shape, 1), dtype=bool), np.zeros((*x.shape, 1), dtype=bool)
+    edge = np.zeros(beyond.shape)
+    for __ in range(PASSES):
+        pulled, held = (slopes.least * (weight * broken)).mT, weight * beyond
+        pull = down - pulled @ rows.least[..., None] + held * edge
+        step = np.linalg.solve(square + pulled @ slopes.least + np.eye(n) * held, pull)
+        before, edge = (broken, beyond), np.clip(step, -x[..., None], 1 - x[..., None])
+        broken, beyond = slopes.least @ step < -rows.least[..., None], edge != step
+        if all(map(np.array_equal, before, (broken, beyond))):
             break
-        step = new
-    return step
+    found: Real = step[..., 0]
+    return found

@@ -19,9 +19,9 @@ from tmm_cli.synthesis.optimal.settling import Settling
 from tmm_cli.vectors import Real
 
 SAMPLES = 20_000  # of a round, of which the best and those that evolved start
-TOURNAMENT = ((200, 6), (64, 15), (24, 40), (8, 100))  # so many of them, and their steps
-ROUNDS, AGREED = 4, 6  # at most; starts that end at the same least
-SAME = 1e-3  # of an objective: the same least
+TOURNAMENT = ((400, 6), (160, 15), (24, 40), (8, 60))  # so many of them, and their steps: ranks say little at first
+ROUNDS, AGREED = 3, 6  # at most; starts that end at the same least
+SAME, NEAR = 1e-3, 1e-2  # of an objective: the same least; as good for most uses
 ZERO = 1e-7  # of the size of what is wanted: it is met
 CLOSER, LAST = 360, 100  # places and steps of the winners
 WINNERS = 4
@@ -29,17 +29,34 @@ BLOCK = 400  # variants at once
 
 
 @dataclass(frozen=True)
-class Found:
-    """starts: best first; reached: how many ended at the least; stopped: by hand."""
+class Ends:
+    """Where independent starts ended: how many, at the least, and within NEAR of it; met: nothing is less than it."""
 
-    starts: list[Real]
-    reached: int
-    stopped: bool
+    count: int
+    same: int
+    near: int
+    met: bool
+
+    @classmethod
+    def of(cls, won: Sequence[tuple[float, Real]]) -> Ends:
+        costs = np.array([cost for cost, __ in won])
+        least = np.min(costs)
+        same, near = (int(np.sum(costs <= least * (1 + share) ** 2)) for share in (SAME, NEAR))
+        return cls(len(costs), same, near, bool(least < ZERO**2))
 
     @property
     def agree(self) -> bool:
         """Whether another seed is likely to lead to the same."""
-        return self.reached >= AGREED and not self.stopped
+        return self.met or self.same >= AGREED
+
+
+@dataclass(frozen=True)
+class Found:
+    """starts: best first; ends: None where nothing was assembled; stopped: by hand."""
+
+    starts: list[Real]
+    ends: Ends | None
+    stopped: bool
 
 
 def fits(candidates: Candidates) -> bool:
@@ -61,18 +78,18 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
             x = _drawn(candidates, chance)
             x = np.vstack([*(evolved if k == 0 else ()), x[candidates.evaluate(x)[1] < LOST]])
             won += _round(candidates, evaluate, settle, x)
-            if _reached(won) >= AGREED:
+            if Ends.of(won).agree:
                 break
     except KeyboardInterrupt:
         stopped = True
     finally:
         progress(ROUNDS, ROUNDS)
     if not won:
-        return Found([], 0, stopped)
+        return Found([], None, stopped)
     won.sort(key=lambda one: one[0])
     closer = residuals(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
     last = _sorted(*descend(closer, np.array([x for __, x in won[:WINNERS]]), LAST))
-    return Found([x for __, x in last], _reached([*last, *won[WINNERS:]]), stopped)
+    return Found([x for __, x in last], Ends.of([*last, *won[WINNERS:]]), stopped)
 
 
 def _drawn(candidates: Candidates, chance: np.random.Generator) -> Real:
@@ -104,12 +121,6 @@ def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real
 def _sorted(x: Real, cost: Real) -> list[tuple[float, Real]]:
     """Best first."""
     return sorted(zip(cost.tolist(), x, strict=True), key=lambda one: one[0])
-
-
-def _reached(won: Sequence[tuple[float, Real]]) -> int:
-    """How many ended at the least; nothing is less than zero."""
-    least = min(cost for cost, __ in won)
-    return AGREED if least < ZERO**2 else sum(cost <= least * (1 + SAME) ** 2 for cost, __ in won)
 
 
 def residuals(candidates: Candidates) -> Evaluate:

@@ -51,9 +51,12 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     notes = []
     if evolved.stopped:
         notes.append(_("stopped by hand: the best candidate so far, polished"))
-    elif not found.agree:
-        notes.append(_("not sure to be the least: independent starts of the search ended at different linkages; try "
-                       "another seed, for example seed: {seed}").format(seed=task.seed + 1))  # fmt: skip
+    elif found.ends is not None and not found.ends.agree:
+        notes.append(_("not sure to be the least: of {count} independent starts {same} ended at it and {near} within "
+                       "{share:g} % of it; try another seed, for example seed: {seed}").format(
+            count=found.ends.count, same=found.ends.same, near=found.ends.near, share=100 * many_starts.NEAR,
+            seed=task.seed + 1,
+        ))  # fmt: skip
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
         notes.append(_("the objective is the same for all candidates: what was found only keeps the constraints"))

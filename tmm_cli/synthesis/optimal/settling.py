@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
 from tmm_cli.synthesis.optimal.least_squares import Rows, step_of
-from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
+from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, corners
 from tmm_cli.vectors import Real
 
 LINEAR = 1e-9  # of the motion: what second differences of something linear may be
@@ -48,7 +48,7 @@ class Settling:
         for __ in range(1 if self.objective.places else TURNS):
             off, own = first + np.einsum("vpk,vk->vp", slopes, found), slopes
             if not self.objective.places:
-                near = np.argmin(np.abs(off[:, :, None] - wanted), axis=1)
+                near = corners(off.real.copy(), off.imag.copy(), wanted).T
                 off = np.take_along_axis(off, near, axis=1)
                 own = np.take_along_axis(slopes, near[..., None], axis=1)
             rows = Rows(_real(off - wanted), np.zeros((len(x), 0)))

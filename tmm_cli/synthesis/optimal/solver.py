@@ -54,7 +54,7 @@ def best(candidates: Candidates) -> Best:
     if many and not evolved.stopped:
         found = many_starts.from_many(candidates, starts)
         led = _best_of(candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=found.stopped))
-        return replace(led, agree=found.agree)
+        return replace(led, ends=found.ends)
     return _best_of(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
 
 

@@ -15,10 +15,12 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import FIT, NEWTON, SIDE, peak, value
+from tmm_cli.synthesis.optimal.peaks import FIT, SIDE, peak, value
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
 from tmm_cli.vectors import Real
 
+AWAY = 1e100  # where a variant cannot be assembled
+FOOT_STEPS = 3  # of Newton's method from the nearest corner: it is off by half a step at most
 FOOT = 1e-3  # sine against the normal, above which the nearest place of a path is an end or a corner of it
 
 
@@ -164,26 +166,30 @@ def _across(place: Any, wanted: Real, closed: bool) -> Real:
     They change their sign where the path goes through a point, so that they are smooth there.
     """
     sets, __, count = place.shape
-    apart = np.abs(place[:, 0, :, None] - wanted)
-    near = np.argmin(np.where(np.isnan(apart), np.inf, apart), axis=1)
+    lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
+    near = corners(lead.real.copy(), lead.imag.copy(), wanted)
     middle = near if closed else np.clip(near, SIDE, count - 1 - SIDE)
-    corners = (middle[..., None] + np.arange(-SIDE, SIDE + 1)) % count
-    off = place[np.arange(sets)[:, None, None], :, corners] - wanted[:, None, None]  # (sets, points, corners, variants)
-    fit = off[..., 0] @ FIT
+    about = (np.arange(-SIDE, SIDE + 1)[:, None, None] + middle) % count  # (corners, points, sets)
+    off = place[np.arange(sets), :, about] - wanted[:, None, None]  # (corners, points, sets, variants)
+    fit = np.moveaxis(np.tensordot(FIT.T, off[..., 0], 1), 0, -1)
     u = (near - middle).astype(float)
     low, high = u - 1, u + 1
     if not closed:
         low, high = np.maximum(low, -middle), np.minimum(high, count - 1 - middle)
-    for __ in range(NEWTON):
+    for __ in range(FOOT_STEPS):
         at, along, bend = (value(fit, u, order) for order in range(3))
-        slope, curve = np.real(np.conj(at) * along), np.abs(along) ** 2 + np.real(np.conj(at) * bend)
+        slope, curve = _dot(at, along), _dot(along, along) + _dot(at, bend)
         u = np.clip(u - np.where(curve > 0, slope / curve, 0.0), low, high)
     at, along = value(fit, u), value(fit, u, 1)
-    end = np.abs(np.real(np.conj(at) * along)) > FOOT * np.abs(at) * np.abs(along)
+    end = np.abs(_dot(at, along)) > FOOT * np.abs(at) * np.abs(along)
     normal = np.where(end, at / np.abs(at), 1j * along / np.abs(along))
-    share = u[..., None] ** np.arange(2 * SIDE + 1) @ FIT.T  # of each corner
-    found: Real = np.real(np.conj(normal)[..., None] * np.einsum("spkv,spk->spv", off, share))
-    return found.transpose(0, 2, 1)
+    share = np.tensordot(FIT, np.cumprod([np.ones_like(u), *[u] * (2 * SIDE)], axis=0), 1)  # of each corner
+    found: Real = _dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
+    return found.transpose(1, 2, 0)
+
+
+def _dot(a: Any, b: Any) -> Any:
+    return a.real * b.real + a.imag * b.imag
 
 
 def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
@@ -192,18 +198,11 @@ def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
     Of the corner that is nearest, and of the sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    square, rows, corners = (x * x + y * y) / 2, np.arange(len(x)), x.shape[1]
-    near, work, other = np.empty((len(wanted), len(x)), dtype=int), np.empty_like(x), np.empty_like(x)
-    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
-        np.multiply(x, w.real, out=work)
-        np.subtract(square, work, out=work)
-        np.multiply(y, w.imag, out=other)
-        np.subtract(work, other, out=work)
-        np.argmin(work, axis=1, out=k)
+    near, rows, count = corners(x, y, wanted), np.arange(len(x)), x.shape[1]
     wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
     px, py = x[rows, near] - wx, y[rows, near] - wy
     best = px * px + py * py
-    after = np.where(near + 1 == corners, 0 if closed else near, near + 1)
+    after = np.where(near + 1 == count, 0 if closed else near, near + 1)
     for beside in (near - 1 if closed else np.maximum(near - 1, 0), after):
         sx, sy = x[rows, beside] - wx - px, y[rows, beside] - wy - py
         with np.errstate(all="ignore"):
@@ -211,3 +210,16 @@ def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
         best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
     found: Real = np.sqrt(best).T
     return found
+
+
+def corners(x: Real, y: Real, wanted: Real) -> Any:
+    """Of polygons (variants, corners), those that are nearest to points, (points, variants)."""
+    square, near = (x * x + y * y) / 2, np.empty((len(wanted), len(x)), dtype=int)
+    work, other = np.empty_like(x), np.empty_like(x)
+    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
+        np.multiply(x, w.real, out=work)
+        np.subtract(square, work, out=work)
+        np.multiply(y, w.imag, out=other)
+        np.subtract(work, other, out=work)
+        np.argmin(work, axis=1, out=k)
+    return near

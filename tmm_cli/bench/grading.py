@@ -1,0 +1,253 @@
+"""`tmm bench grading`: how long a group takes and how that grows, and how often mistakes are named rightly."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+import tmm_cli
+from tmm_cli.bench.groups import Group, family_of, group, write
+from tmm_cli.bench.measured import CLOCK, Measured, slack, words
+from tmm_cli.errors import _
+from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.draw_variants import CHUNK, Variety
+from tmm_cli.grading.following import following
+from tmm_cli.grading.own_answers import own_answer
+from tmm_cli.grading.sheet import Written, predicted
+from tmm_cli.grading.solution import solve
+from tmm_cli.results.table import Table
+
+STUDENTS, REDUCED_STUDENTS = (2_000, 10_000), (300,)
+MANY = 100_000  # students of a full run
+OF = 10_000  # that the targets are for
+PART = 1_000  # students made up at once
+SECONDS, BEGINNING = 60.0 / 10_000, 3.0  # s of a student; s that any run takes
+MEMORY, SOLVING, GROWTH = 1000.0, 5.0, 1.1  # MB of all processes; % of the processors' time; power of the students
+ONE, TWO = 0.2, 0.05  # of the students have a sheet with one mistake, with two
+SHEETS, REDUCED_SHEETS = 1000, 60
+CHAINS, REDUCED_CHAINS = 500, 40
+CANDIDATES, REDUCED_CANDIDATES, PER_SECOND = 10_000, 2_000, 10_000.0
+LOOKS = 0.05  # s between looks at the memory
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure, and the most or the least that it may be. wider: whether a reduced run has twice as much room."""
+
+    what: str
+    of: int
+    found: float
+    target: float | None = None
+    bound: Literal["most", "least"] = "most"
+    wider: bool = True
+
+    def missed(self, slack: float) -> str:
+        if self.target is None or math.isnan(self.found):
+            return ""
+        if self.bound == "most":
+            fails = self.found > self.target * slack
+        elif self.target <= 100:  # per cent: what is left to 100 may be as much more
+            fails = self.found < 100 - (100 - self.target) * slack
+        else:
+            fails = self.found < self.target / slack
+        if not fails:
+            return ""
+        told = _("{what}, of {of}: {found}, target {target:g}")
+        return told.format(what=self.what, of=self.of, found=f"{self.found:.4g}", target=self.target)
+
+
+@dataclass(frozen=True)
+class Grades(Measured):
+    """The whole measurement."""
+
+    figures: tuple[Figure, ...]
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        return tuple(filter(None, (figure.missed(slack(self.reduced)) for figure in self.figures)))
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        title = _("Grading a group of a six-bar with forces, 12 answers each, drawn to 1 %")
+        signs = {"most": "≤", "least": "≥"}
+        rows = [
+            (one.what, str(one.of), f"{one.found:.4g}",
+             "" if one.target is None else f"{signs[one.bound]} {one.target:.4g}")
+            for one in self.figures
+        ]  # fmt: skip
+        return (words("grading", title, (_("figure"), _("of"), _("found"), _("target")), rows),)
+
+
+def measure(*, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None) -> Grades:
+    """All figures; full: of 100 000 students too."""
+    sheets = REDUCED_SHEETS if reduced else SHEETS
+    figures: list[Figure] = []
+    made = group(sheets)
+    for count in range(3):
+        progress(_("diagnosis of {count} mistakes").format(count=count))
+        figures += diagnosed(made, count)
+    progress(_("following errors"))
+    figures.append(followed(group(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
+    progress(_("variants"))
+    figures.append(judged(REDUCED_CANDIDATES if reduced else CANDIDATES))
+    sizes = REDUCED_STUDENTS if reduced else (*STUDENTS, *[MANY] * full)
+    return Grades((*figures, *graded(sizes, progress)), reduced=reduced)
+
+
+def diagnosed(group: Group, count: int) -> Iterator[Figure]:
+    """Sheets with so many mistakes in: how many are explained by them, and how many by what was not made."""
+    students = range(len(group.family))
+    made = [group.mistakes(n, count) for n in students]
+    value = group.sheets(made)
+    written = Written(value, np.zeros(value.shape, dtype=bool))
+    claims = diagnose(group.family, group.right, written)
+    rightly = wrongly = beside = 0
+    for n in students:
+        own = {type(group.cases[c]) for c in made[n]}
+        hits = [bool(own & {type(case) for case in claim.alternatives}) for claim in claims.get(n, ())]
+        rightly += any(hits)
+        wrongly += bool(hits) and not any(hits)
+        beside += not all(hits)
+    share = 100 / len(students)
+    if count == 0:
+        fails = np.any(group.right.error(written) > group.right.allowed, axis=1)
+        yield Figure(_("right sheets with an answer marked wrong, %"), len(students), share * np.sum(fails), 0.0)
+        yield Figure(_("right sheets accused of a mistake, %"), len(students), share * wrongly, 0.0)
+        return
+    least, most = ((95.0, 1.0), (80.0, 2.0))[count - 1]
+    told = (_("sheets with one mistake, {how}, %"), _("sheets with two mistakes, {how}, %"))[count - 1]
+    yield Figure(told.format(how=_("named rightly")), len(students), share * rightly, least, "least")
+    yield Figure(told.format(how=_("named wrongly")), len(students), share * wrongly, most)
+    yield Figure(told.format(how=_("with another one named too")), len(students), share * (beside - wrongly))
+
+
+def followed(group: Group) -> Figure:
+    """Chains in which one answer is far off and all later ones are right given it: how many lose its points alone."""
+    right, chance = group.right, group.random
+    count = len(group.family)
+    drawn, source = group.drawn(right.value), np.full(count, -1)
+    motion = solve(group.family).motion
+    begins = [
+        k for k, one in enumerate(right.asked)
+        if own_answer(one.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
+    ]  # fmt: skip
+    for k, rows in zip(begins, np.array_split(np.arange(count), len(begins)), strict=True):
+        asked, part = right.asked[k], group.family.take(rows)
+        turn = np.exp(2j * np.pi * chance.random(len(rows)))
+        way = turn if asked.quantity.vector else np.sign(turn.real)
+        own = right.value[rows, k] + chance.uniform(0.2, 0.6, len(rows)) * right.scale[rows, k] * way
+        mistake = own_answer(asked.quantity, own[:, None], solve(part).motion, right.value[rows, k][:, None])
+        later = group.drawn(predicted(part, right.asked, [mistake] if mistake else []), rows)
+        same = [j for j, one in enumerate(right.asked) if one.position == asked.position]
+        drawn[rows[:, None], same] = later[:, same]
+        drawn[rows, k], source[rows] = own, k
+    written = Written(drawn, np.zeros(drawn.shape, dtype=bool))
+    follows = following(group.family, right, written, diagnose(group.family, right, written))
+    wrong = right.error(written) > right.allowed
+    alone = sum(
+        {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
+        for n in range(count)
+    )  # fmt: skip
+    told = _("chains that lose the points of one answer alone, %")
+    return Figure(told, count, 100 * alone / count, 100.0, "least")
+
+
+def judged(count: int) -> Figure:
+    """Candidates for variants judged as sound or not, in a second of one core."""
+    variety = Variety(group(1).task)
+    random = np.random.default_rng(1)
+    picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
+    variety.judged(picks[:CHUNK])
+    start = CLOCK()
+    for first in range(0, count, CHUNK):
+        variety.judged(picks[first : first + CHUNK])
+    per_second = count / (CLOCK() - start)
+    return Figure(_("candidates for variants judged in a second"), count, per_second, PER_SECOND, "least")
+
+
+def graded(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[Figure]:
+    """Groups of these sizes graded by the command, from files to files."""
+    times = []
+    for students in sizes:
+        progress(_("{students} students").format(students=students))
+        solving = 0.0
+        with tempfile.TemporaryDirectory() as folder:
+            for number in range(-(-students // PART)):
+                part = group(min(PART, students - PART * number), seed=number + 3)
+                write(part, part.sheets(_mixed(part)), Path(folder), PART * number)
+                start = CLOCK()
+                solve(family_of(part.task, part.table))
+                solving += CLOCK() - start
+            run = _command(Path(folder))
+        times.append(run.first + run.others)
+        limit = SECONDS * students + (BEGINNING if students < OF else 0)
+        yield Figure(_("graded with all outputs, s on two free cores"), students, run.first + run.others / 2, limit)
+        yield Figure(_("the same by the clock, beside other work, s"), students, run.seconds)
+        yield Figure(_("memory of all processes, MB"), students, run.memory, MEMORY if students <= OF else None)
+        yield Figure(
+            _("solving the variants, % of the time of processors"), students, 100 * solving / times[-1], SOLVING
+        )
+    for k in range(1, len(sizes)):
+        power = math.log(times[k] / times[k - 1]) / math.log(sizes[k] / sizes[k - 1])
+        yield Figure(_("time grows as the number of students to the power"), sizes[k], power, GROWTH)
+
+
+def _mixed(group: Group) -> list[tuple[int, ...]]:
+    """Mistakes of a group as groups are: most of the sheets have none."""
+    draws = group.random.random(len(group.family))
+    return [group.mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
+
+
+@dataclass
+class _Run:
+    """A command that runs: s by the clock, s of the processor for its first process and for the others, MB of all."""
+
+    seconds: float = math.nan
+    first: float = math.nan
+    others: float = 0.0
+    memory: float = math.nan
+
+
+def _command(folder: Path) -> _Run:
+    """`tmm grade` by two processes."""
+    call = ["-m", "tmm_cli", "grade", "task.yaml", "--variants", "variants.csv", "--submissions", "submissions"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(tmm_cli.__file__).parents[1])}
+    run, begun, start = _Run(), os.times(), time.perf_counter()
+    with (folder / "told.txt").open("wb") as told:
+        running = subprocess.Popen(
+            [sys.executable, *call, "--jobs", "2"], cwd=folder, env=environment, stdout=told, stderr=told
+        )
+        while running.poll() is None:
+            _look(run, running.pid)
+            time.sleep(LOOKS)
+    run.seconds, ended = time.perf_counter() - start, os.times()
+    if running.returncode:
+        raise RuntimeError((folder / "told.txt").read_text(encoding="utf-8", errors="replace")[-2000:])
+    every = ended.children_user + ended.children_system - begun.children_user - begun.children_system
+    run.first = run.seconds if math.isnan(run.first) else run.first
+    run.others = max(0.0, every - run.first)
+    return run
+
+
+def _look(run: _Run, process: int) -> None:
+    """What a running process takes, where the system tells."""
+    try:
+        own = Path(f"/proc/{process}")
+        run.first = sum(map(int, own.joinpath("stat").read_text().rpartition(")")[2].split()[11:13])) / os.sysconf(
+            "SC_CLK_TCK"
+        )
+        children = own.joinpath(f"task/{process}/children").read_text().split()
+        pages = sum(int(Path(f"/proc/{one}/statm").read_text().split()[1]) for one in (process, *children))
+        run.memory = float(np.fmax(run.memory, pages * os.sysconf("SC_PAGE_SIZE") / 2**20))
+    except (OSError, ValueError, AttributeError, IndexError):
+        pass  # it has ended, or there is no such place

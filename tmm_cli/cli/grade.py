@@ -1,0 +1,160 @@
+"""`tmm grade`: what the students of a group handed in is marked, what went wrong is explained."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, console, refusing, say
+from tmm_cli.errors import _
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+    from tmm_cli.grading.record import StudentMarks, Submission
+    from tmm_cli.grading.task import Task
+
+KEPT = ".graded"  # in the output folder: marks of earlier runs
+
+File = Annotated[str, typer.Argument(metavar="TASK", help="Problem file with a block `grading`.", show_default=False)]
+Variants = Annotated[
+    str | None, typer.Option(metavar="FILE", help="Table of the students' variants, CSV or XLSX.", show_default=False)
+]
+Submissions = Annotated[
+    str | None, typer.Option(metavar="PATH", help="A folder with a file of each, or one table.", show_default=False)
+]
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Write marks and feedback there.")]
+Reveal = Annotated[bool, typer.Option("--reveal", help="Tell the students what would have been right.")]
+Formats = Annotated[
+    str | None, typer.Option(metavar="NAMES", help="Write these alone, e.g. csv,moodle.", show_default=False)
+]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
+]
+Template = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write an empty answer sheet: .xlsx, .csv, .yaml", show_default=False),
+]
+
+
+def grade(
+    file: File, variants: Variants = None, submissions: Submissions = None, out: Folder = Path("marks"),
+    reveal: Reveal = False, formats: Formats = None, jobs: Jobs = None, scheduler: Scheduler = None,
+    template: Template = None,
+) -> None:  # fmt: skip
+    """Mark what the students of a group handed in; a second run marks only what has changed.
+
+    Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
+    """
+    with refusing():
+        from tmm_cli.grading.task import read_task
+        from tmm_cli.problem.reader import read_file
+
+        task = read_task(read_file(file))
+        if template is not None:
+            from tmm_cli.grading.submissions.template import write_template
+
+            write_template(task, template)
+            say(_("written: {files}").format(files=template))
+            raise typer.Exit(OK)
+        if variants is None or submissions is None:
+            say(_("error: --variants and --submissions are wanted, or --template"))
+            raise typer.Exit(BAD_INPUT)
+        raise typer.Exit(_graded(task, variants, submissions, out, reveal, formats, jobs, scheduler))
+
+
+def _graded(
+    task: Task, variants: str, submissions: str, out: Path, reveal: bool, formats: str | None, jobs: int | None,
+    scheduler: str | None,
+) -> int:  # fmt: skip
+    """Grade, write, show; the exit code. Raises ProblemError, OSError."""
+    from tmm_cli.cli.opening import introduce
+    from tmm_cli.grading.exports import EXPORTS, write
+    from tmm_cli.grading.exports.book import Gradebook
+    from tmm_cli.grading.run import graded
+    from tmm_cli.grading.statistics import tables
+    from tmm_cli.grading.submissions.read import read_submissions
+    from tmm_cli.grading.tables import read_table
+    from tmm_cli.grading.workers import cluster, processes
+    from tmm_cli.results.terminal import show
+
+    names = _chosen(formats, list(EXPORTS))
+    introduce(task.problem)
+    table = read_table(variants, task)
+    way = cluster(scheduler) if scheduler else processes(jobs or os.cpu_count() or 1)
+    with _bars() as bars, _stoppable() as stopped:
+        reading = bars.add_task(_("read"), total=len(table.rows))
+        handed = []
+        for one in read_submissions(submissions, task, table.rows):
+            handed.append(one)
+            bars.advance(reading)
+        place = {student: n for n, student in enumerate(table.rows)}
+        handed.sort(key=lambda one: place.get(one.student, len(place)))
+        grading = bars.add_task(_("graded"), total=len(handed))
+        marks = graded(task, table, handed, way, out / KEPT, lambda count: bars.advance(grading, count), stopped)
+    if len(marks) < len(handed):
+        told = _("stopped: {done} of {count} are graded; the next run takes them over, and grades the others")
+        say(told.format(done=len(marks), count=len(handed)))
+        return CHECK_FAILED
+    write(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names)
+    for found in tables(task, marks):
+        show(found, task.units, console())
+    return _verdict(handed, marks, out)
+
+
+def _chosen(formats: str | None, known: list[str]) -> list[str]:
+    """Names of formats. Raises ProblemError."""
+    from tmm_cli.problem.errors import ProblemError, nearest, quote
+
+    found = known if formats is None else [name.strip() for name in formats.split(",")]
+    for name in found:
+        if name not in known:
+            raise ProblemError(
+                _("--formats: there is no such format"), found=quote(name), allowed=",".join(known),
+                near=nearest(name, known),
+            )  # fmt: skip
+    return found
+
+
+def _bars() -> Progress:
+    """Progress on a terminal; elsewhere nothing."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    return Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty())
+
+
+@contextmanager
+def _stoppable() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed: what is in work comes to its end; pressed again, it ends the command at once."""
+    pressed = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        pressed.append(number)
+        signal.signal(signal.SIGINT, before)
+        say(_("stopping after the students who are in work"))
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield lambda: bool(pressed)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _verdict(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
+    """Say how many were graded; the exit code."""
+    both = list(zip(handed, marks, strict=True))
+    left = sum(one.unread or own.problems != one.problems for one, own in both)
+    none = sum(not (one.unread or one.answers or one.by_angle) for one, own in both if own.problems == one.problems)
+    told = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
+    say(told.format(folder=out, count=len(both) - none - left, none=none, left=left))
+    return CHECK_FAILED if left else OK

@@ -1,0 +1,107 @@
+"""`tmm variants`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tmm_cli.cli.common import console, progress, refusing, say
+from tmm_cli.errors import _
+
+if TYPE_CHECKING:
+    from tmm_cli.grading.draw_variants import Variety
+    from tmm_cli.grading.record import VariantTable
+    from tmm_cli.grading.task import Task
+
+TABLE = "variants.csv"
+
+File = Annotated[str, typer.Argument(metavar="TASK", help="Problem file (YAML), perhaps with a block `variants`.")]
+Count = Annotated[int, typer.Option(min=1, max=10_000, help="How many.")]
+Seed = Annotated[int, typer.Option(min=0, help="Another one gives others; the same one the same.")]
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of all that is written.")]
+Students = Annotated[
+    str | None,
+    typer.Option(metavar="FILE", help="A table with the students' names, instead of a count.", show_default=False),
+]
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME=FROM..TO:STEP", help="Free this parameter (may be repeated).", show_default=False),
+]
+
+
+def variants(
+    file: File, count: Count = 25, seed: Seed = 1, out: Folder = Path("variants"), students: Students = None,
+    vary: Vary = None,
+) -> None:  # fmt: skip
+    """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
+    with refusing():
+        from tmm_cli.grading.choices import with_vary
+        from tmm_cli.grading.draw_variants import Variety, draw, draw_for
+        from tmm_cli.grading.tables import read_students
+        from tmm_cli.grading.task import read_task
+        from tmm_cli.problem.errors import ProblemError
+        from tmm_cli.problem.reader import read_file
+
+        task = read_task(with_vary(read_file(file), vary or ()))
+        variety = Variety(task)
+        if students is None:
+            table = draw(variety, seed, count)
+        else:
+            listed = read_students(students)
+            before = read_students(out / TABLE) if (out / TABLE).exists() else ()
+            first = [name for name in before if name in listed]
+            table = draw_for(variety, seed, [*first, *sorted(set(listed) - set(first))])
+            count = len(listed)
+        _tell(variety, table)
+        if len(table.rows) < count:
+            raise ProblemError(
+                _("there are only {found} variants that are sound and unlike one another").format(
+                    found=len(table.rows)
+                ),
+                found=_("{count} are wanted").format(count=count), allowed=_("wider ranges, smaller steps"), file=file,
+            )  # fmt: skip
+        _write(task, Path(file).read_text(encoding="utf-8-sig"), table, out)
+
+
+def _tell(variety: Variety, table: VariantTable) -> None:
+    """What was drawn and thrown away."""
+    from tmm_cli.results.table import table_of_words
+    from tmm_cli.results.terminal import show
+
+    rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
+    told = _("{count} variants of {free}, drawn from {tried} candidates")
+    say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
+    if rows:
+        thrown = table_of_words("thrown", _("Thrown away"), (_("because"), _("candidates")), rows)
+        show(thrown, variety.task.units, console())
+
+
+def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
+    """All files at once, or none. Raises ProblemError, OSError."""
+    from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
+    from tmm_cli.grading.tables import csv_of, rows_of_table, xlsx_of
+    from tmm_cli.grading.task_sheets import TaskSheets
+    from tmm_cli.results.files import Staged
+
+    with Staged(out) as folder:
+        rows = rows_of_table(table)
+        folder.write(TABLE, [csv_of(rows)])
+        book = xlsx_of({"variants": rows})
+        if book is None:
+            say(_("note: no XLSX is written without xlsxwriter: pip install 'tmm-cli[excel]'"))
+        else:
+            folder.write("variants.xlsx", [book])
+        if task.blocks.grading is None:
+            say(_("note: the file has no block `grading`, so there is no answer key"))
+        else:
+            key = list(answer_key(task, table))
+            folder.write("key.csv", [csv_of([HEADER, *(line.cells(task) for line in key)])])
+            for sentence in idle_questions(key):
+                say(sentence)
+        sheets = TaskSheets(task, text, table)
+        for student in progress(list(table.rows)):
+            for name, content in sheets.of(student):
+                folder.write(name, [content])
+    say(_("written: {files}").format(files=out))

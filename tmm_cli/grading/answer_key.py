@@ -1,0 +1,82 @@
+"""The answer key of a group, for the teacher: what is right for each student, and what can tell nothing."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.grading.grade import numbers_of
+from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.sheet import right
+from tmm_cli.grading.task import Asked, Task
+from tmm_cli.quantities import NUMBER
+from tmm_cli.variants.family import families
+
+HEADER = ("student", "quantity", "position", "value", "direction, deg", "unit", "allowed", "allowed, %", "note")
+NOTHING = 1e-9  # of what is allowed: smaller values are zero but for rounding
+WIDE = 0.25  # of the largest value: whoever guesses is right
+
+
+@dataclass(frozen=True)
+class KeyLine:
+    """An answer of a student. value: SI; allowed: by how much it may be off, SI; share: of the largest value."""
+
+    student: str
+    asked: Asked
+    value: complex
+    allowed: float
+    share: float
+
+    @property
+    def idle(self) -> str:
+        """Why it can tell nothing, if so."""
+        if self.asked.quantity.against == "exact":
+            return ""
+        if self.share > WIDE:
+            return _("tells nothing: too much is allowed")
+        return _("tells nothing: zero passes") if abs(self.value) <= self.allowed else ""
+
+    def cells(self, task: Task) -> list[str]:
+        """By the header."""
+        quantity = self.asked.quantity
+        scale = task.units.factor(quantity.dimension)
+        value = self.value if abs(self.value) > NOTHING * self.allowed else 0
+        size = abs(value) if quantity.vector else value.real
+        direction = f"{math.degrees(cmath.phase(value)) % 360:.4g}" if quantity.vector and value else ""
+        unit = "" if quantity.dimension == NUMBER else task.units.symbol(quantity.dimension)
+        number = "" if self.asked.number is None else str(self.asked.number)
+        allowed = f"{self.allowed / scale:.3g}"
+        name = quantity.name
+        return [self.student, name, number, f"{size / scale + 0.0:.6g}", direction, unit, allowed,
+                f"{100 * self.share:.3g}", self.idle]  # fmt: skip
+
+
+def answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
+    """Student by student. Those whose mechanism cannot be solved have none. Raises ProblemError."""
+    students = list(table.rows)
+    dimensions, columns = numbers_of(task, table, students)
+    found: dict[int, list[KeyLine]] = {}
+    for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+        if isinstance(family, LinkageError):
+            continue
+        own = right(family, task.asked)
+        for n, row in enumerate(rows.tolist()):
+            found[row] = [
+                KeyLine(students[row], asked, complex(own.value[n, k]), float(own.allowed[n, k] * own.scale[n, k]),
+                        float(own.allowed[n, k]))
+                for k, asked in enumerate(task.asked)
+            ]  # fmt: skip
+    for row in range(len(students)):
+        yield from found.get(row, ())
+
+
+def idle_questions(lines: list[KeyLine]) -> Iterator[str]:
+    """What can tell nothing, a sentence each."""
+    students = len({line.student for line in lines})
+    found = Counter((line.asked.name, line.idle) for line in lines if line.idle)
+    for (name, why), count in found.items():
+        yield _("{asked}: {why}, for {count} of {all}").format(asked=name, why=why, count=count, all=students)

@@ -1,0 +1,208 @@
+"""What each student gets: a sheet with the scheme, the dimensions and what is asked, and a problem file to run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from html import escape
+from itertools import groupby
+
+import yaml
+
+from tmm_cli import structure_of
+from tmm_cli.draw.formats import png
+from tmm_cli.draw.task import task_picture
+from tmm_cli.errors import LinkageError, _
+from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.task import Asked, Task
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.quantities import KINDS, LENGTH, NUMBER, Dimension
+from tmm_cli.results.explain import given
+from tmm_cli.results.files import folder_name
+from tmm_cli.results.table import Table, table_of_words
+
+FOR_TEACHERS = ("variants", "grading")
+MEASURES = (LENGTH, *(kind.dimension for kind in KINDS.values()))
+PLAIN = re.compile(r"[\w.+\-*/^()° ]+")
+SIGNS = re.compile(r"([\\`*_\[\]|#~])")  # of markup
+STYLE = """
+body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:52rem;margin:2rem auto;padding:0 1rem}
+h1{font-size:1.35rem;margin:0}h2{font-size:1.05rem;margin:1.6rem 0 .3rem}.who{font-size:1.1rem;margin:.2rem 0 1rem}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums}
+th,td{text-align:left;padding:.25rem 1.2rem .25rem 0;border-bottom:1px solid #ddd}
+th{border-bottom:2px solid #1a1a1a}img{width:100%;margin:1rem 0}.note{color:#555;font-size:.87rem}
+@media print{body{margin:0;max-width:none;font-size:10.5pt}tr,li,img{break-inside:avoid}@page{margin:18mm}}
+"""
+SAFE = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+
+
+def file_names(students: Iterable[str]) -> dict[str, str]:
+    """A name of files for each student, without ending: no two alike on any system, none leads elsewhere."""
+    found: dict[str, str] = {}
+    taken = {"variants", "key"}
+    for student in students:
+        base = folder_name(_("variant-{number}").format(number=student) if student.isdigit() else student)
+        numbers = (base if n == 1 else f"{base}-{n}" for n in range(1, len(taken) + 2))
+        found[student] = next(name for name in numbers if name.casefold() not in taken)
+        taken.add(found[student].casefold())
+    return found
+
+
+class TaskSheets:
+    """The files of students. text: of the task's file. Methods raise ProblemError."""
+
+    def __init__(self, task: Task, text: str, table: VariantTable) -> None:
+        self.task, self.text, self.table = task, text, table
+        self.names, self.measures = file_names(table.rows), _measures(task)
+
+    def of(self, student: str) -> Iterator[tuple[str, bytes]]:
+        """A student's files by name."""
+        name, title = self.names[student], self.task.problem.title
+        who = _("Variant {number}").format(number=student) if student.isdigit() else student
+        values = dict(zip(self.table.names, self.table.rows[student], strict=True))
+        yield f"{name}.yaml", problem_text(self.text, values).encode()
+        results = structure_of(self.task.variant(values))
+        figure = task_picture(results)
+        picture = None if figure is None else png(figure)
+        if picture is not None:
+            yield f"{name}.png", picture
+        tables = [
+            _dimensions(self.task, values, self.measures),
+            *map(_told, given(results.problem)),
+            *_asked(self.task),
+        ]
+        yield f"{name}.md", _markdown(title, who, f"{name}.png" if picture else "", tables).encode()
+        yield f"{name}.html", _page(title, who, picture, tables).encode()
+
+
+def problem_text(text: str, values: Mapping[str, str]) -> str:
+    """The text of a file with other values of parameters, without the blocks that are the teacher's."""
+    tree = read_text(text, "")
+    ends = {}
+    for event in yaml.parse(text):
+        start, end = event.start_mark, event.end_mark
+        if isinstance(event, yaml.ScalarEvent) and start and end:
+            ends[start.line + 1, start.column + 1] = start.index, end.index
+    changes = []
+    for name, value in values.items():
+        mark = tree.marks["parameters", name]
+        place = ends[mark.line, mark.column]
+        changes.append((*place, value if PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)))
+    for first, last, value in sorted(changes, reverse=True):
+        text = text[:first] + value + text[last:]
+    return _without(text)
+
+
+def _without(text: str) -> str:
+    """Whole lines of the teacher's blocks are left out."""
+    tree = read_text(text, "")
+    lines = text.splitlines(keepends=True)
+    starts = sorted(mark.line for path, mark in tree.key_marks.items() if len(path) == 1)
+    for block in FOR_TEACHERS:
+        mark = tree.key_marks.get((block,))
+        if mark is not None and mark.column == 1:
+            end = next((line for line in starts if line > mark.line), len(lines) + 1)
+            lines[mark.line - 1 : end - 1] = [""] * (end - mark.line)
+    return "".join(lines)
+
+
+def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Dimension | None]) -> Table:
+    """All parameters of the variant."""
+    rows = []
+    for name, own in (task.tree.data.get("parameters") or {}).items():
+        text = values.get(name, str(own))
+        number, _space, unit = text.partition(" ")
+        measure = measures[name]
+        unit = unit or (task.units.symbol(measure) if measure else "")
+        rows.append((name, number, unit))
+    return table_of_words("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
+
+
+def _told(table: Table) -> Table:
+    """What concerns the mechanism, not the program."""
+    if table.name != "facts":
+        return table
+    rows = zip(*(column.values for column in table.columns), strict=True)
+    kept = [row for row in rows if row[0] in (_("driver"), _("gravity"), _("positions"))]
+    return table_of_words(table.name, _("Driver, positions"), [column.header for column in table.columns], kept)
+
+
+def _measures(task: Task) -> dict[str, Dimension | None]:
+    """What every parameter measures: a bare number what the file takes it for, a length before others."""
+    found: dict[str, Dimension | None] = {}
+    for name in task.tree.data.get("parameters") or {}:
+        (own,) = task.own((name,))
+        found[name] = own.dimension or next((d for d in MEASURES if _takes(task, name, own.value, d)), None)
+    return found
+
+
+def _takes(task: Task, name: str, value: float, dimension: Dimension) -> bool:
+    try:
+        task.make((name,), (dimension,), (task.units.si(value, dimension),))
+    except (ProblemError, LinkageError):
+        return False
+    return True
+
+
+def _asked(task: Task) -> Iterator[Table]:
+    if task.blocks.grading is None:
+        return
+    if task.rules.from_ == "either":
+        told = _("Positions are counted from {first}, the first one at either extreme position of the output.")
+    else:
+        told = _("Positions are counted from {first}.")
+    rows = []
+    for name, group in groupby(task.asked, lambda one: one.quantity.name):
+        every = list(group)
+        numbers = ", ".join(str(one.number) for one in every if one.number is not None)
+        rows.append((name, numbers, _unit(task, every[0]), f"{sum(one.points for one in every):.10g}"))
+    headers = (_("quantity"), _("at positions"), _("unit"), _("points"))
+    yield table_of_words("asked", _("What is asked"), headers, rows, (told.format(first=task.rules.count),))
+
+
+def _unit(task: Task, asked: Asked) -> str:
+    dimension = asked.quantity.dimension
+    return "" if dimension == NUMBER else task.units.symbol(dimension)
+
+
+def _markdown(title: str, student: str, picture: str, tables: Iterable[Table]) -> str:
+    def plain(text: str) -> str:
+        return SIGNS.sub(r"\\\1", escape(" ".join(text.split()), quote=False))
+
+    parts = [f"# {plain(title)}", f"**{plain(student)}**"]
+    if picture:
+        parts.append(f"![{plain(_('scheme'))}](<{picture}>)")
+    for table in tables:
+        rows = [[plain(column.header) for column in table.columns], ["---"] * len(table.columns)]
+        rows += [[plain(str(cell)) for cell in row] for row in zip(*(c.values for c in table.columns), strict=True)]
+        parts += [f"## {plain(table.title)}", "\n".join(f"| {' | '.join(row)} |" for row in rows)]
+        parts += map(plain, table.notes)
+    return "\n\n".join(parts) + "\n"
+
+
+def _page(title: str, student: str, picture: bytes | None, tables: Iterable[Table]) -> str:
+    """A page that stands alone, without scripts."""
+    body = [f'<h1>{escape(title)}</h1>\n<p class="who"><bdi>{escape(student)}</bdi></p>']
+    if picture is not None:
+        body.append(
+            f'<img alt="{escape(_("scheme"))}" src="data:image/png;base64,{base64.b64encode(picture).decode()}">'
+        )
+    for table in tables:
+        head = "".join(f"<th>{escape(column.header)}</th>" for column in table.columns)
+        rows = "\n".join(
+            "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>"
+            for row in zip(*(column.values for column in table.columns), strict=True)
+        )
+        body.append(f"<h2>{escape(table.title)}</h2>\n<table><tr>{head}</tr>\n{rows}\n</table>")
+        body += (f'<p class="note">{escape(note)}</p>' for note in table.notes)
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{SAFE}">'
+        f"<title>{escape(title)}: {escape(student)}</title><style>{STYLE}</style></head>\n<body>\n"
+        + "\n".join(body)
+        + "\n</body></html>\n"
+    )
