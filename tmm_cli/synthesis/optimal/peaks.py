@@ -31,7 +31,8 @@ def _near(y: Real, k: Real) -> tuple[Real, Real]:
 
 def value(c: Real, u: Real, order: int = 0) -> Real:
     """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
-    return _at(_derived(c, order), u)
+    found: Real = _at(_derived(c, order), u)
+    return found
 
 
 def _derived(c: Real, order: int) -> list[Real]:
@@ -58,7 +59,7 @@ def peak(y: Real) -> Real:
             u = np.minimum(np.maximum(u - np.where(bend < 0, _at(slopes, u) / bend, 0.0), -SIDE), SIDE)
             if np.array_equal(u, last):
                 break
-    found = np.maximum(value(c, u), most)
+    found: Real = np.maximum(value(c, u), most)
     return np.where((middle == top) & (np.abs(u) < SIDE), found, most)
 
 
