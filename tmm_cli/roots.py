@@ -11,7 +11,7 @@ from tmm_cli.vectors import Real
 
 SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
 DEGREE = 8  # of the polynomial that tells where an extreme lies
-FINER, ROUNDS = 16, 9  # times as fine each round: from a step of a scan to a place 1e-12 of a radian wide
+THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
 
 
 def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
@@ -74,11 +74,11 @@ def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real
 
 
 def least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:
-    """Place and value of the least of a function with one minimum: many places at once, what is by the best is kept."""
-    for _ in range(ROUNDS):
-        places = np.linspace(low, high, 2 * FINER + 1)
+    """Place and value of the least of a function with one minimum: nine places at once, the best third kept."""
+    for _ in range(THIRDS):
+        places = np.linspace(low, high, 9)
         best = int(np.argmin(function(places)))
-        low, high = places[max(best - 1, 0)], places[min(best + 1, 2 * FINER)]
+        low, high = places[max(best - 1, 0)], places[min(best + 1, 8)]
     middle = np.array([(low + high) / 2])
     return float(middle[0]), float(function(middle)[0])
 

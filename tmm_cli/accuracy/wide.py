@@ -5,7 +5,7 @@ In double-doubles, or coarsely in float64.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from tmm_cli.accuracy.margins import growth, slenderness
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.double_double import EPS, DoubleDouble, rounded
 from tmm_cli.groups.base import Closed
-from tmm_cli.groups.sequence import LinkStates, link_states
+from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.pressure import pressure_at
 from tmm_cli.kinematics.strokes import Strokes, Travel, output_place, output_slope
 from tmm_cli.tolerances import NO_PRESSURE, ROUNDOFF
@@ -44,9 +44,10 @@ class Wide:
         self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
         self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
 
-    def at(self, q: Real, order: int = 0) -> LinkStates:
-        """The links there."""
-        return link_states(self.linkage, self.kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
+    def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
+        """Some links there, and those they hang on."""
+        kernels = towards(self.kernels, links)
+        return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, places: Real) -> tuple[Real, Real]:
         """Growing distances from each place, the last bit first, and the places on both sides at them."""
@@ -55,18 +56,18 @@ class Wide:
         return steps, np.stack([there - steps, there + steps])
 
     def brackets(
-        self, places: Real, of: Callable[[LinkStates], Real], size: float | None = None
+        self, places: Real, of: Callable[[LinkStates], Real], links: Iterable[str], size: float | None = None
     ) -> tuple[Real, LinkStates, Real]:
         """The least distance from each place at which a function has different signs on both sides for sure, or inf.
 
-        With the links, at these places first, and how large the function may be there. size: its largest value; when
-        left out that over the driver's way.
+        With the links, at these places first, and how large the function may be there. links: those it is about. size:
+        its largest value; when left out that over the driver's way.
         """
         steps, both = self.sides(places)
         driver_range = self.results.mechanism.driver_range
         way = np.linspace(driver_range.start, driver_range.end, AROUND)
         with np.errstate(all="ignore"):
-            states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), 1)
+            states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
             there, values, along = np.split(rounded(of(states)), [len(places), len(places) + both.size])
         size = float(np.nanmax(np.abs(along))) if size is None else size
         below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
@@ -78,7 +79,8 @@ class Wide:
 
         inner: which of them are such; the others were asked for.
         """
-        bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link))
+        carrier = self.linkage.output_carrier(link)
+        bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
         bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(places))
         off = np.abs(rounded(output_place(states, link)[: len(places)] - runs))
         if self.linkage.output_swings(link):
@@ -105,7 +107,7 @@ class Wide:
         if not isinstance(kernel, Closed):
             return LEAST * span + 4 * ROUNDOFF * abs(place)
         steps, both = self.sides(np.array([place]))
-        inside, outside = self.at(both.ravel()).placed.reshape(both.shape)[::towards]
+        inside, outside = self.at(both.ravel(), kernel.group.links).placed.reshape(both.shape)[::towards]
         sure = float(_first(inside & ~outside, steps)[0])
         return (sure if np.isfinite(sure) else LEAST * span) + self.noise * span
 
@@ -119,7 +121,8 @@ class Wide:
             at = kernel.closed(states.poses, states.drives)
             return kernel.residual_rate(at, states.poses, states.first, states.drives)
 
-        return min(float(self.brackets(np.array([place]), closing, float(kernel.size))[0][0]), GUESS * span)
+        distance = self.brackets(np.array([place]), closing, kernel.group.links, float(kernel.size))[0]
+        return min(float(distance[0]), GUESS * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
         """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only.
@@ -129,7 +132,7 @@ class Wide:
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
-        states = self.at(self.kind(place) + step * np.arange(-2, 3))
+        states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
         driver_range, edge = self.results.mechanism.driver_range, 2 * GUESS * span
