@@ -82,6 +82,18 @@ def test_a_run_that_is_stopped_keeps_what_is_graded(course, monkeypatch):
     assert graded(course, "--formats", "csv").returncode == 0 and len(points(course)) == 12
 
 
+def test_two_processes_write_the_same_files(course, monkeypatch):
+    found = []
+    for jobs in (1, 2):
+        graded(course, "--formats", "csv,junit", "--jobs", jobs)
+        files = [course / "marks" / name for name in ("marks.csv", "answers.csv", "junit.xml")]
+        found.append([path.read_bytes() for path in files])
+        for path in files:
+            path.unlink()
+        monkeypatch.setattr(run, "CHUNK", 6)  # of which the group has two; they are graded already
+    assert found[0] == found[1]
+
+
 def test_what_would_be_right_is_told_where_the_teacher_wants_it(course):
     (course / "handed" / "S5.csv").write_text(RIGHT.format(H=1, v=1), encoding="utf-8")
     told = []
