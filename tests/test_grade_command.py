@@ -48,11 +48,12 @@ def test_all_are_graded_and_all_is_written(course):
 
 def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     (course / "handed" / "S3.csv").write_bytes(b"\0\1\2")
+    (course / "handed" / "S6.csv").write_text("my answers", encoding="utf-8")
     (course / "handed" / "stranger.csv").write_text(RIGHT.format(H=180, v=1), encoding="utf-8")
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
-    assert done.stderr.endswith("marks; graded: 10, without an answer: 1, could not be graded: 2\n")
-    assert "there is no variant of this student" in done.stdout
+    assert done.stderr.endswith("marks; graded: 9, without an answer: 2, could not be graded: 2\n")
+    assert "there is no variant of this student" in done.stdout and "there is no answer in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
 
