@@ -16,6 +16,7 @@ from tmm_cli.linkage import FRAME
 
 DIGITS = 60
 STEP, BEND = mp.mpf(10) ** -25, mp.mpf(10) ** -15  # of first and second differences
+KEPT = 3  # rounds of Newton's method with one Jacobian: each gives the digits of a double more
 STRIDE = 0.06  # rad or m/20 of the first driver, in one step of the walk
 
 
@@ -243,11 +244,13 @@ class Multibody:
         parts += [({d.base, d.link}, lambda *given: [self.driven(*given)], d) for d in self.it.drivers]
         for links, rows_of, part in parts:
             for j in (self.at_row[name] + k for name in links - {FRAME} for k in range(3)):
-                more, less = X.copy(), X.copy()
-                more[j] += self.step
-                less[j] -= self.step
-                ends = zip(rows_of(more, part, n), rows_of(less, part, n), strict=True)
-                slopes = [(one - other) / (2 * self.step) for one, other in ends]
+                here = X[j]
+                X[j] = here + self.step
+                more = rows_of(X, part, n)
+                X[j] = here - self.step
+                less = rows_of(X, part, n)
+                X[j] = here
+                slopes = [(one - other) / (2 * self.step) for one, other in zip(more, less, strict=True)]
                 for k, slope in enumerate(slopes, row):
                     J[k, j] = slope
             row += len(slopes)
@@ -264,11 +267,13 @@ class Multibody:
         drives = self.drives(self.time(place, n), n)
         q = [drive[0] for drive in drives]
         X = self.begun(place)
-        for _ in range(self.rounds):
+        for number in range(KEPT * self.rounds):
             missed = self.residuals(X, q)
             if mp.norm(missed, mp.inf) < mp.mpf(10) ** (8 - self.digits):
                 break
-            X = X - solved(self.jacobian(X), missed)
+            if number % KEPT == 0:
+                J = self.jacobian(X)
+            X = X - solved(J, missed)
         assert mp.norm(self.residuals(X, q), mp.inf) < mp.mpf(10) ** -40
         J = self.jacobian(X)
         asked = [mp.matrix(self.size, 1) for _ in range(2)]

@@ -37,4 +37,4 @@ def test_the_command_measures_all(monkeypatch):
     assert done.returncode in (0, 1), done.stderr  # 1: a target missed, as on a busy machine
     found = json.loads(done.stdout)
     assert (done.returncode == 0) == (not found["failures"])
-    assert len(found["figures"]) == 2 + 3 + 3 + 1 + 1 + 4
+    assert len(found["figures"]) == 2 + 3 + 3 + 1 + 1 + 5

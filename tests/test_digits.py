@@ -301,6 +301,13 @@ def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
     assert found.lengths["H"][0] == pytest.approx(2 * 0.06e-3), "H = 2 r"
 
 
+def test_a_largest_pressure_angle_goes_with_crank_and_rod_as_its_sine_their_ratio_says():
+    results = solve(load(str(ROOT / "problems" / "crank-slider.yaml")), "kinematics")
+    found = searched(results, lambda r: {"largest": np.array([r.pressure[0].largest])}, Wide(results), 0.001)
+    by_both = 2 * 1e-3 * np.tan(results.pressure[0].largest)
+    assert found.lengths["largest"][0] == pytest.approx(by_both, rel=1e-4)
+
+
 def test_an_end_of_the_way_moves_with_the_lengths_as_the_stretched_rod_and_rocker_say():
     a, b, c, d = 0.8, 0.7, 0.6, 1.0
     results = solve(build(read_text(BARRED, "barred.yaml")), "kinematics")

@@ -48,11 +48,12 @@ def test_all_are_graded_and_all_is_written(course):
 
 def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     (course / "handed" / "S3.csv").write_bytes(b"\0\1\2")
+    (course / "handed" / "S6.csv").write_text("my answers", encoding="utf-8")
     (course / "handed" / "stranger.csv").write_text(RIGHT.format(H=180, v=1), encoding="utf-8")
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
-    assert done.stderr.endswith("marks; graded: 10, without an answer: 1, could not be graded: 2\n")
-    assert "there is no variant of this student" in done.stdout
+    assert done.stderr.endswith("marks; graded: 9, without an answer: 2, could not be graded: 2\n")
+    assert "there is no variant of this student" in done.stdout and "there is no answer in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
 
@@ -80,6 +81,18 @@ def test_a_run_that_is_stopped_keeps_what_is_graded(course, monkeypatch):
     assert not (course / "marks" / "marks.csv").exists()
     monkeypatch.undo()
     assert graded(course, "--formats", "csv").returncode == 0 and len(points(course)) == 12
+
+
+def test_two_processes_write_the_same_files(course, monkeypatch):
+    found = []
+    for jobs in (1, 2):
+        graded(course, "--formats", "csv,junit", "--jobs", jobs)
+        files = [course / "marks" / name for name in ("marks.csv", "answers.csv", "junit.xml")]
+        found.append([path.read_bytes() for path in files])
+        for path in files:
+            path.unlink()
+        monkeypatch.setattr(run, "CHUNK", 6)  # of which the group has two; they are graded already
+    assert found[0] == found[1]
 
 
 def test_what_would_be_right_is_told_where_the_teacher_wants_it(course):

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from test_commands import tmm
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -42,6 +43,14 @@ def test_the_library_lines_run_and_give_what_their_comments_say(monkeypatch):
     exec(block("python", text=(ROOT / "tmm_cli/README.md").read_text(encoding="utf-8")), names)
     assert f"{names['results'].strokes.k:.3f}" == "1.511"
     assert names["batch"](names["results"].motion.q)["T.1"] == pytest.approx(names["results"].reactions.balance.moment)
+
+
+def test_the_teachers_command_runs_as_it_stands(tmp_path):
+    call = block("sh", 3).replace("\\\n", " ").splitlines()[-1].split()
+    done = tmm(*call[1:-1], tmp_path / "marks")
+    assert done.returncode == 1, "one of the made-up sheets is broken"
+    assert "graded: 11" in done.stderr and "could not be graded: 1" in done.stderr
+    assert {"marks.csv", "marks.xlsx", "feedback", "group.png"} <= {one.name for one in (tmp_path / "marks").iterdir()}
 
 
 @pytest.mark.parametrize("page", PAGES)

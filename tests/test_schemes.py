@@ -8,6 +8,7 @@ import math
 import random
 import re
 from collections import Counter
+from functools import cache
 from itertools import combinations, permutations
 
 import numpy as np
@@ -24,10 +25,13 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.schemes import schemes_table
 from tmm_cli.results.terminal import show
-from tmm_cli.schemes.chains import KinematicChain, chains
+from tmm_cli.schemes.chains import KinematicChain
+from tmm_cli.schemes.chains import chains as every_chain
 from tmm_cli.schemes.isomorphism import canonical
 from tmm_cli.schemes.schemes import MOST_SCHEMES, TooManySchemes, schemes
 from tmm_cli.structure.assur import analyse
+
+chains = cache(every_chain)
 
 MULTI_LINK = ("RRR", "III", "IV")  # every group of turning pairs with at most four links
 
@@ -210,7 +214,7 @@ def test_the_problem_of_a_class_ii_scheme_is_that_scheme_and_runs(scheme):
 @pytest.mark.parametrize("scheme", [*schemes(5, 1, ("III", "IV")), *schemes(7, 1, ("RRR", "III", "IV"))[69::20]],
                          ids=lambda s: s.formula)  # fmt: skip
 def test_the_problem_of_a_higher_scheme_has_its_structure(scheme, monkeypatch):
-    monkeypatch.setattr(scheme_files, "CANDIDATES", 4)  # poses: the best of few is not as good, the structure is one
+    monkeypatch.setattr(scheme_files, "FEW", 2)  # poses: the best of few is not as good, the structure is one
     problem = build(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
     structure = analyse(problem.linkage)
     assert structure.formula == scheme.formula

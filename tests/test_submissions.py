@@ -285,10 +285,10 @@ def test_a_position_by_its_crank_angle_is_that_of_the_students_variant(tmp_path)
 
 
 @pytest.mark.parametrize("kind", ["csv", "xlsx", "yaml"])
-def test_an_empty_sheet_asks_for_everything_and_says_nothing(kind, tmp_path):
+def test_an_empty_sheet_asks_for_everything_and_answers_nothing(kind, tmp_path):
     write_template(OWN, tmp_path / f"Ana.{kind}")
     found = read(tmp_path)["Ana"]
-    assert not found.answers and not found.problems
+    assert not found.answers and found.problems == (f"there is no answer in Ana.{kind}",)
 
 
 def filled(path):

@@ -114,6 +114,20 @@ def test_every_objective_is_what_is_measured_on_the_analysed_mechanism(name):
         assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
+def test_a_law_whose_first_angle_is_free_gives_back_the_linkage_that_it_was_read_off():
+    q = np.radians([20, 80, 140, 200])
+    runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
+    text = SLIDER.replace("e: [1, 80]}", "a0: [0 deg, 90 deg]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
+    problem = build(read_text(text.replace("OPTIONS", f"""
+  objective: {{of: law, link: 3, at: [a0, a0 + 60, a0 + 120, a0 + 180], values: {runs.tolist()}}}
+  generations: 20
+"""), "x.yaml"))  # fmt: skip
+    assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, np.radians(20)], rel=1e-8)
+    law = problem.synthesis.outcome.listings[1]
+    assert [row[0] for row in law.rows] == pytest.approx(q, rel=1e-8)
+    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+
+
 def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_another_seed():
     text = (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
     found = build(read_text(text.replace("objective:", "seed: 3\n  objective:"), "x.yaml")).synthesis.outcome

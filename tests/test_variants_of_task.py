@@ -21,6 +21,7 @@ grading:
             {of: M_b, at: [3, 7]}]
 """
 TABLE = VariantTable(("OA", "n1"), {"1": ("110", "82 rpm"), "2": ("105", "70 rpm"), "3": ("0.12 m", "90 rpm")})
+ITS_OWN = VariantTable(("OA",), {"1": ("110",)})
 
 
 def task():
@@ -43,9 +44,29 @@ def test_a_family_is_what_its_variants_are_one_by_one():
         assert abs(first.run[n, 0]) == pytest.approx(single.strokes.travel, rel=1e-14)
 
 
+@pytest.mark.parametrize("force", ["[F, 0]", "{angle: 0, against: stroke, table: [[OA, F], [300, 2*F], [500, 0]]}"])
+def test_loads_that_vary_are_those_of_the_variants_one_by_one(force):
+    text = SHAPER.read_text(encoding="utf-8").replace("OA: 110", "OA: 110\n  F: 1500").replace("[1500, 0]", force)
+    own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
+    table = VariantTable(("OA", "F"), {"1": ("110", "1500"), "2": ("105", "900"), "3": ("120", "-700")})
+    together = solved(family_of(own, table))
+    for n, row in enumerate(table.rows.values()):
+        single = solve(own.variant(dict(zip(table.names, row, strict=True))))
+        assert together.reactions.balance.moment[n] == pytest.approx(single.reactions.balance.moment, rel=1e-12)
+
+
 def test_bare_numbers_of_a_table_are_in_the_units_of_the_file():
     _, columns = numbers_of(task(), TABLE, ["1", "3"])
     assert columns == pytest.approx(np.array([[0.11, 82 * np.pi / 30], [0.12, 90 * np.pi / 30]]))
+
+
+def test_an_angle_is_judged_to_a_degree_or_two_however_little_the_link_swings():
+    own = read_task(read_text(SHAPER.read_text(encoding="utf-8") + "grading: {answers: [{of: phi of 3, at: 3}]}", "t"))
+    right = np.degrees(solve(own.problem).motion.link("3").angle[3])
+    key = ("phi of 3", 3)
+    sheets = [Submission("1", {key: Given(right + off, unit="deg")}) for off in (361, -1, 2.5, -4)]
+    states = [next(grade(own, ITS_OWN, [sheet])).marks[0].state for sheet in sheets]
+    assert states == ["right", "right", "wrong", "wrong"]
 
 
 def test_answers_are_judged_against_the_largest_value_of_the_cycle():

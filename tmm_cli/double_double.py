@@ -244,11 +244,13 @@ def _multiply(x: Any, y: Any) -> DoubleDouble:
         real, other = (y, x) if kinds[0] else (x, y)
         hi, lo = _real_product(real, (_planes(shape, other[0]), _planes(shape, other[1])))
         return DoubleDouble(_joined(hi), _joined(lo))
-    left = [_planes(shape, part.real, part.imag, part.real, part.imag) for part in x]
-    right = [_planes(shape, part.real, -part.imag, part.imag, part.real) for part in y]
-    hi, lo = _real_product((left[0], left[1]), (right[0], right[1]))
-    both = _add(DoubleDouble(hi[::2], lo[::2]), DoubleDouble(hi[1::2], lo[1::2]))
-    return DoubleDouble(_joined(both.hi), _joined(both.lo))
+    (a, rest_a), (b, rest_b) = x, y
+    left, right = _planes(shape, a.real, a.imag, a.real, a.imag), _planes(shape, b.real, -b.imag, b.imag, b.real)
+    products, errors = two_product(left, right)
+    total, error = two_sum(products[::2], products[1::2])
+    rest = a * rest_b + rest_a * b
+    error += errors[::2] + errors[1::2] + _planes(shape, rest)
+    return DoubleDouble(*map(_joined, fast_two_sum(total, error)))
 
 
 def _planes(shape: tuple[int, ...], *parts: Any) -> Any:
@@ -284,7 +286,9 @@ def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
 
 
 def _square(z: DoubleDouble) -> DoubleDouble:
-    return _add(_multiply(z.real, z.real), _multiply(z.imag, z.imag))
+    planes = DoubleDouble(_planes(z.shape, z.hi), _planes(z.shape, z.lo))
+    real, imag = _multiply(planes, planes)
+    return _add(real, imag)
 
 
 def _sqrt(x: DoubleDouble) -> DoubleDouble:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -146,7 +147,13 @@ class LoadTable:
     values: tuple[float, ...]
 
     def __call__(self, argument: Real) -> Real:
-        found: Real = np.interp(argument, self.arguments, self.values)
+        found: Real
+        if not any(np.ndim(x) for x in (*self.arguments, *self.values)):
+            found = np.interp(argument, self.arguments, self.values)
+            return found
+        found = self.values[0] + 0 * argument  # numbers of many variants, (variants, 1) each
+        for k, (start, end) in enumerate(pairwise(self.arguments)):
+            found = found + np.clip((argument - start) / (end - start), 0, 1) * (self.values[k + 1] - self.values[k])
         return found
 
 

@@ -151,9 +151,11 @@ class _Beside:
         of, close = _angle(pressure), AT_END * (driver_range.end - driver_range.start)
         for k, end in () if driver_range.full else enumerate((driver_range.start, driver_range.end)):
             if abs(pressure.place - end) <= close:
-                slopes, rates = self.by_end(k, of)
                 moved = _at_end(self.ends[k])
-                return moved, _at_end(rates + slopes[:, None] * moved) * (pressure.group not in self.stops(end))
+                if pressure.group in self.stops(end):
+                    return moved, np.zeros(len(self.data))
+                slopes, rates = self.by_end(k, of)
+                return moved, _at_end(rates + slopes[:, None] * moved)
         places, largest = self.extremes(np.array([pressure.place]), of)
         return places[0], largest[0]
 

@@ -39,34 +39,39 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
 
     mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
     """
-    values, told, data = of(results), Digits(mu=mu), lengths(results.linkage)
-    for key, value in values.items():
-        told.bound[key] = 2 * ROUNDOFF * np.abs(np.asarray(value, float))
-        told.lengths[key], told.paper[key] = np.zeros((2, *np.shape(value)))
+    values, data = of(results), lengths(results.linkage)
+    here = _row(values, values)
+    bound, share, paper = 2 * ROUNDOFF * np.abs(here), np.zeros(here.shape), np.zeros(here.shape)
     with np.errstate(all="ignore"):
         for found in found_in(results, wide):
             by = min(SHIFT, LARGE * found.bound)
-            moved = of(found.shifted(by)) if by else values
-            for key, value in values.items():
-                gap = _gap(moved, key, value)
-                told.bound[key] = told.bound[key] + np.where(gap > 0, gap * (found.bound / by if by else 0.0), 0.0)
+            gap = _gap(_row(of(found.shifted(by)), values), here) if by else np.zeros(here.shape)
+            bound = bound + np.where(gap > 0, gap * (found.bound / by if by else 0.0), 0.0)
         rates = {} if np.isnan(mu) or results.driver_range is None else responses(results, data)
         for k, length in enumerate(data if rates else ()):
             goes = {path: rate[k] for path, rate in rates.items() if rate[k]}
-            by = SHIFT / max(map(abs, goes.values()), default=np.inf)
-            moved = of(_shifted(results, {path: rate * by for path, rate in goes.items()})) if by else values
-            for key, value in values.items():
-                rate = _gap(moved, key, value) / (by or 1.0)
-                told.lengths[key] = told.lengths[key] + rate * SHARE * abs(length.value)
-                told.paper[key] = told.paper[key] + rate * PAPER * mu
-    return told
+            if goes:
+                by = SHIFT / max(map(abs, goes.values()))
+                moved = of(_shifted(results, {path: rate * by for path, rate in goes.items()}))
+                rate = _gap(_row(moved, values), here) / by
+                share, paper = share + rate * SHARE * abs(length.value), paper + rate * PAPER * mu
+    ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
+    told = [dict(zip(values, np.split(part, ends_of), strict=True)) for part in (bound, share, paper)]
+    return Digits(told[0], told[1], told[2], mu)
 
 
-def _gap(moved: Cells, key: Hashable, value: Real) -> Real:
-    """How far a number has moved; a full turn is no way, and what is not there any more has not moved."""
-    if key not in moved or np.shape(moved[key]) != np.shape(value):
-        return np.zeros(np.shape(value))
-    residual: Real = np.abs(np.asarray(moved[key], float) - np.asarray(value, float))
+def _row(moved: Cells, values: Cells) -> Real:
+    """All numbers in a row; what is not there any more has not moved."""
+    kept = (
+        moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
+        for key, value in values.items()
+    )
+    return np.concatenate([np.zeros(0), *(np.ravel(value) for value in kept)])
+
+
+def _gap(moved: Real, here: Real) -> Real:
+    """How far numbers have moved; a full turn is no way."""
+    residual: Real = np.abs(moved - here)
     return np.where(np.abs(residual - 2 * np.pi) < 1e-3, np.abs(residual - 2 * np.pi), residual)
 
 

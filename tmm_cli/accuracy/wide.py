@@ -5,7 +5,7 @@ In double-doubles, or coarsely in float64.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from tmm_cli.accuracy.margins import growth, slenderness
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.double_double import EPS, DoubleDouble, rounded
 from tmm_cli.groups.base import Closed
-from tmm_cli.groups.sequence import LinkStates, link_states
+from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.pressure import pressure_at
 from tmm_cli.kinematics.strokes import Strokes, Travel, output_place, output_slope
 from tmm_cli.tolerances import NO_PRESSURE, ROUNDOFF
@@ -42,10 +42,12 @@ class Wide:
         self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
         self.kind: Any = DoubleDouble if growth is None else np.asarray
         self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
+        self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
 
-    def at(self, q: Real, order: int = 0) -> LinkStates:
-        """The links there."""
-        return link_states(self.linkage, self.kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
+    def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
+        """Some links there, and those they hang on."""
+        kernels = towards(self.kernels, links)
+        return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, places: Real) -> tuple[Real, Real]:
         """Growing distances from each place, the last bit first, and the places on both sides at them."""
@@ -53,50 +55,51 @@ class Wide:
         there = self.kind(places)[:, None]
         return steps, np.stack([there - steps, there + steps])
 
-    def brackets(self, places: Real, of: Callable[[LinkStates], Real], size: float | None = None) -> Real:
+    def brackets(
+        self, places: Real, of: Callable[[LinkStates], Real], links: Iterable[str], size: float | None = None
+    ) -> tuple[Real, LinkStates, Real]:
         """The least distance from each place at which a function has different signs on both sides for sure, or inf.
 
-        size: its largest value; when left out that over the driver's way.
+        With the links, at these places first, and how large the function may be there. links: those it is about. size:
+        its largest value; when left out that over the driver's way.
         """
         steps, both = self.sides(places)
         driver_range = self.results.mechanism.driver_range
         way = np.linspace(driver_range.start, driver_range.end, AROUND)
         with np.errstate(all="ignore"):
-            values = rounded(of(self.at(np.concatenate([both.ravel(), way]), 1)))
-        size = float(np.nanmax(np.abs(values[both.size :]))) if size is None else size
-        values = values[: both.size].reshape(both.shape)
-        below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0)
-        return _first((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
+            states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
+            there, values, along = np.split(rounded(of(states)), [len(places), len(places) + both.size])
+        size = float(np.nanmax(np.abs(along))) if size is None else size
+        below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
+        distance = _first((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
+        return distance, states, np.abs(there) + self.noise * size
 
-    def turns(self, places: Real, link: str) -> Real:
-        """Of places where an output turns back."""
-        return self.brackets(places, lambda states: output_slope(states, link))
+    def turns(self, places: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
+        """Of places where an output turns back, and of where it is told to be then.
 
-    def runs(self, places: Real, bounds: Real, told: Real, link: str, swings: bool) -> Real:
-        """Of where an output is told to be at places of the driver that are known to these bounds."""
-        near = np.stack([places, places - bounds, places + bounds])
-        with np.errstate(all="ignore"):
-            off = np.abs(rounded(output_place(self.at(near.ravel()), link).reshape(near.shape) - told))
-        if swings:
+        inner: which of them are such; the others were asked for.
+        """
+        carrier = self.linkage.output_carrier(link)
+        bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
+        bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(places))
+        off = np.abs(rounded(output_place(states, link)[: len(places)] - runs))
+        if self.linkage.output_swings(link):
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
-        found: Real = 2 * np.max(off, axis=0, where=np.isfinite(off), initial=0.0) + 4 * (
-            ROUNDOFF + self.noise
-        ) * np.abs(told)
-        return found
+        off = np.nan_to_num(off) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
+        return bounds, 2 * off + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
         """Of the driver's places at the ends of strokes, and of where the output is then."""
-        places, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
-        bounds = self.turns(places, strokes.link)
-        return bounds, self.runs(places, bounds, lows, strokes.link, strokes.kind == "swing")
+        if strokes.link not in self.known:
+            places, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
+            self.known[strokes.link] = self.turns(places, lows, strokes.link)
+        return self.known[strokes.link]
 
     def travel(self, travel: Travel) -> tuple[Real, Real]:
         """Of the driver's places at the least and the largest run of an output, and of these runs."""
         places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(asked) < places) & (places < np.max(asked))
-        bounds = np.where(inner, self.turns(places, travel.link), 2 * ROUNDOFF * np.abs(places))
-        told = np.array([travel.low, travel.high])
-        return bounds, self.runs(places, bounds, told, travel.link, travel.kind == "swing")
+        return self.turns(places, np.array([travel.low, travel.high]), travel.link, inner)
 
     def end(self, place: float, towards: int, group: str, span: float) -> float:
         """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
@@ -104,7 +107,7 @@ class Wide:
         if not isinstance(kernel, Closed):
             return LEAST * span + 4 * ROUNDOFF * abs(place)
         steps, both = self.sides(np.array([place]))
-        inside, outside = self.at(both.ravel()).placed.reshape(both.shape)[::towards]
+        inside, outside = self.at(both.ravel(), kernel.group.links).placed.reshape(both.shape)[::towards]
         sure = float(_first(inside & ~outside, steps)[0])
         return (sure if np.isfinite(sure) else LEAST * span) + self.noise * span
 
@@ -118,7 +121,8 @@ class Wide:
             at = kernel.closed(states.poses, states.drives)
             return kernel.residual_rate(at, states.poses, states.first, states.drives)
 
-        return min(float(self.brackets(np.array([place]), closing, float(kernel.size))[0]), GUESS * span)
+        distance = self.brackets(np.array([place]), closing, kernel.group.links, float(kernel.size))[0]
+        return min(float(distance[0]), GUESS * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
         """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only.
@@ -128,7 +132,7 @@ class Wide:
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
-        states = self.at(self.kind(place) + step * np.arange(-2, 3))
+        states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
         driver_range, edge = self.results.mechanism.driver_range, 2 * GUESS * span

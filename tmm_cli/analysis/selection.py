@@ -71,7 +71,7 @@ def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) 
     known = mass_centres(linkage)
     points = named_points(linkage)
     chosen = [name for name in dict.fromkeys(names) if name not in points] if names else known
-    return {name: motion.point(*known[name]) for name in chosen if name in known}
+    return {name: motion.centre(known[name][0]) for name in chosen if name in known}
 
 
 def links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:

@@ -78,9 +78,9 @@ def _graded(
 ) -> int:  # fmt: skip
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
     from tmm_cli.cli.opening import introduce
-    from tmm_cli.grading.exports import EXPORTS, write
+    from tmm_cli.grading.exports import EXPORTS
     from tmm_cli.grading.exports.book import Gradebook
-    from tmm_cli.grading.run import graded
+    from tmm_cli.grading.run import graded, written
     from tmm_cli.grading.statistics import tables
     from tmm_cli.grading.submissions.read import read_submissions
     from tmm_cli.grading.tables import read_table
@@ -90,7 +90,8 @@ def _graded(
     names = _chosen(formats, list(EXPORTS))
     introduce(task.problem)
     table = read_table(variants, task)
-    way = cluster(scheduler) if scheduler else processes(jobs or os.cpu_count() or 1)
+    jobs = jobs or os.cpu_count() or 1
+    way = cluster(scheduler) if scheduler else processes(jobs)
     with _bars() as bars, _stoppable() as stopped:
         reading = bars.add_task(_("read"), total=len(table.rows))
         handed = []
@@ -105,7 +106,7 @@ def _graded(
         told = _("stopped: {done} of {count} are graded; the next run takes them over, and grades the others")
         say(told.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
-    write(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names)
+    written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
     for found in tables(task, marks):
         show(found, task.units, console())
     return _verdict(handed, marks, out)

@@ -49,10 +49,11 @@ class KeyLine:
         direction = f"{math.degrees(cmath.phase(value)) % 360:.4g}" if quantity.vector and value else ""
         unit = "" if quantity.dimension == NUMBER else task.units.symbol(quantity.dimension)
         number = "" if self.asked.number is None else str(self.asked.number)
-        allowed = f"{self.allowed / scale:.3g}"
+        exact = quantity.against == "exact"
+        allowed, share = ("", "") if exact else (f"{self.allowed / scale:.3g}", f"{100 * self.share:.3g}")
         name = quantity.name
-        return [self.student, name, number, f"{size / scale + 0.0:.6g}", direction, unit, allowed,
-                f"{100 * self.share:.3g}", self.idle]  # fmt: skip
+        value_text = f"{size / scale + 0.0:.6g}"
+        return [self.student, name, number, value_text, direction, unit, allowed, share, self.idle]
 
 
 def answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:

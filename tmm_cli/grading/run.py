@@ -5,20 +5,23 @@ Chunks do not depend on who grades them, so the gradebook is the same to the las
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from tmm_cli.errors import _
 from tmm_cli.grading.copies import with_copies
+from tmm_cli.grading.exports import write
+from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.grade import CHUNK, grade, ungraded
 from tmm_cli.grading.kept import keep, key_of, read_kept
 from tmm_cli.grading.record import StudentMarks, Submission, VariantTable
 from tmm_cli.grading.task import Task
-from tmm_cli.grading.workers import Way, here
+from tmm_cli.grading.workers import Way, here, processes
 from tmm_cli.problem.tree import Tree
 
-KEPT = ".graded"  # in the output folder
+SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the others
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,17 @@ def graded(
             keep(kept, own)
         seen(len(marks))
     return with_copies([found[key] for key in keys if key in found])
+
+
+def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) -> None:
+    """Write a gradebook; that of a large group in two processes, where there are more. Raises OSError."""
+    parts = [[name for name in formats if (name in SLOW) == slow] for slow in (True, False)]
+    parts = [part for part in parts if part]
+    if len(book.marks) <= CHUNK or len(parts) < 2:
+        write(folder, book, formats)
+        return
+    for _done in processes(jobs)([partial(write, folder, book, part) for part in parts], lambda: False):
+        pass
 
 
 def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Chunk:

@@ -58,7 +58,7 @@ class Right:
         gap = np.abs(written.value - wanted)
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
         gap = np.where(written.size, sizes, gap)
-        turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "turn"]
+        turns = [k for k, one in enumerate(self.asked) if one.quantity.against == "angle"]
         gap[..., turns] = np.abs(np.remainder(gap[..., turns] + np.pi, 2 * np.pi) - np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             share: Real = gap / self.scale
@@ -131,8 +131,8 @@ def _scales(asked: Sequence[Asked], solution: Solution) -> Real:
 def _scale(quantity: Quantity, solution: Solution) -> Real:
     """What errors of a quantity are shares of, (variants,)."""
     values = values_of(quantity, solution)
-    if quantity.against in ("turn", "exact"):
-        return np.full(len(values), 2 * np.pi if quantity.against == "turn" else 1.0)
+    if quantity.against in ("angle", "exact"):
+        return np.ones(len(values))
     if quantity.against == "range":
         return np.asarray(np.nanmax(values, axis=1) - np.nanmin(values, axis=1))
     return np.asarray(np.nanmax(np.abs(values), axis=1))

@@ -81,6 +81,10 @@ class Task:
             ).located(self.tree.file, self.tree)
         return self.blocks.grading
 
+    def __reduce__(self) -> tuple[type[Task], tuple[Tree]]:
+        """What it found is found again in another process."""
+        return Task, (self.tree,)
+
     def revealing(self) -> Task:
         """The same, the students being told what is right."""
         rules = {**self.tree.data["grading"], "reveal": True}

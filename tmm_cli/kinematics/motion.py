@@ -6,10 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from tmm_cli.double_double import rounded
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states
 from tmm_cli.groups.state import Drives
@@ -70,7 +72,20 @@ class Motion(LinkStates):
 
     def point(self, link: str, local: complex) -> Point:
         """Motion of a point given in the axes of a link (m)."""
+        if local is self.linkage.links[link].centre:  # where weights and forces of inertia act
+            return self.centre(link)
         return self._finest(lambda motion: motion._point(link, local))
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, ...], Any]:
+        """Motions of what was asked for by name: tables, result.json, forces and energy ask for the same."""
+        return {}
+
+    def _once(self, kind: str, name: str, of: Callable[[], Record]) -> Record:
+        if (kind, name) not in self._known:
+            self._known[kind, name] = of()
+        found: Record = self._known[kind, name]
+        return found
 
     def _finest(self, of: Callable[[Motion], Record]) -> Record:
         """What is asked of the motion, from its finer one where there is one."""
@@ -86,12 +101,14 @@ class Motion(LinkStates):
     def named(self, point: str) -> Point:
         """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
         there = [link for link in self.linkage.carriers(point) if link in self.poses]
-        return self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
+        return self._once(
+            "point", point, lambda: self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
+        )
 
     def _sway(self, link: str, point: str) -> float:
         """Size of the terms that a point's acceleration is the sum of."""
         first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
-        terms = np.abs(second.a) + (np.abs(second.e) + first.w**2) * arm
+        terms = np.abs(rounded(second.a)) + (np.abs(rounded(second.e)) + rounded(first.w) ** 2) * rounded(arm)
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
     def named_on(self, link: str, point: str) -> Point:
@@ -100,16 +117,25 @@ class Motion(LinkStates):
 
     def centre(self, link: str) -> Point:
         """Motion of a centre of mass."""
-        return self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre))
+        return self._once(
+            "centre", link,
+            lambda: self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
+        )  # fmt: skip
 
     def link(self, name: str) -> Turning:
         """Turning of a link."""
-        w1, e1 = self.first[name].w, self.second[name].e
-        return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+
+        def turning() -> Turning:
+            w1, e1 = self.first[name].w, self.second[name].e
+            return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+
+        return self._once("link", name, turning)
 
     def slide(self, slide: Slide) -> Sliding:
         """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
-        return self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+        return self._once(
+            "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+        )
 
     def _slide(self, slide: Slide) -> Sliding:
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]

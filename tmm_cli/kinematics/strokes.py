@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -299,8 +300,9 @@ def _working(linkage: Linkage, forward: float, back: float, resists: float) -> t
     return 1, "the forward one"
 
 
-def resisted(linkage: Linkage, link: str | None) -> float:
-    """The sign of the output's run that the loads of the working stroke resist; 0 when they tell nothing."""
+def resisted(linkage: Linkage, link: str | None) -> Any:
+    """The sign of the output's run that the loads of the working stroke resist, of each variant where the loads differ
+    (variants, 1); 0 when they tell nothing."""
     for slide in linkage.slides:
         if {slide.carrier, slide.runner} == {FRAME, link}:
             along = np.exp(1j * slide.direction)
@@ -308,13 +310,13 @@ def resisted(linkage: Linkage, link: str | None) -> float:
                 along = -along
             push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
                        if x.link == link and x.working_stroke_only)  # fmt: skip
-            return -float(np.sign(push))
+            return -np.sign(push)
     moment = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
-    return -float(np.sign(moment))
+    return -np.sign(moment)
 
 
-def _mean(load: Load) -> float:
-    return float(np.mean(load.table.values)) if load.table else 1.0
+def _mean(load: Load) -> Any:
+    return sum(load.table.values) / len(load.table.values) if load.table else 1.0
 
 
 def places(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:

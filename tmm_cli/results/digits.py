@@ -208,11 +208,11 @@ def _scale(mu: float) -> str:
 
 def _mu(results: Results) -> float:
     """Scale (m a mm) at which the mechanism fits on a sheet with all its trajectories."""
-    motion, linkage = at_positions(results, results.closely(DENSE)), results.linkage
+    motion, linkage = at_positions(results, results.closely(DENSE), 0), results.linkage
     places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
     for name in linkage.moving:
         for point in linkage.links[name].points:
-            places += [complex(x) for x in motion.named(point).x if np.isfinite(x)]
+            places += [complex(x) for x in motion.spot(point) if np.isfinite(x)]
     return sheet_scale(places)[1]
 
 

@@ -15,10 +15,11 @@ Form = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 
 def canonical(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> Form:
     """The form of a simple graph on the vertices 0 .. len(colours) - 1; an edge joins two of them and has a kind."""
+    beyond = 2 * max(len(colours), *colours) + 2  # all colours that there can be: one number tells kind and colour
     beside: list[list[tuple[int, int]]] = [[] for _ in colours]
     for (i, j), kind in edges.items():
-        beside[i].append((kind, j))
-        beside[j].append((kind, i))
+        beside[i].append((kind * beyond, j))
+        beside[j].append((kind * beyond, i))
     return min(_forms(list(colours), colours, beside, edges))
 
 
@@ -52,7 +53,7 @@ def _refine(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int
     count = 0
     while True:
         keys = [
-            (colour, tuple(sorted((kind, colours[other]) for kind, other in near)))
+            (colour, *sorted([kind + colours[other] for kind, other in near]))
             for colour, near in zip(colours, beside, strict=True)
         ]
         rank = {key: k for k, key in enumerate(sorted(set(keys)))}

@@ -65,7 +65,7 @@ class OneByOne:
                 rows.append(self._one(tuple(row.tolist()), places))
             except LinkageError:
                 rows.append({})
-        lost = np.full(places.count, np.nan)
+        lost = np.full(self.driver_range(columns[:1]).at(places).shape[1], np.nan)
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
     def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:

@@ -44,7 +44,7 @@ class Taped:
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
         if isinstance(self.start, TracedNumber):
             raise NoTapeError
-        own = any(isinstance(end, TracedNumber) for end in varied.ends or ())
+        own = any(isinstance(place, TracedNumber) for place in (*(varied.ends or ()), *varied.asked))
         self.ends = record(self._ends, *[1] * len(first)) if own else None
         self.program = self._program(wanted, forces, own)
 
@@ -63,11 +63,11 @@ class Taped:
         return whole.only(*(name for name in whole.outputs if name not in CHECKS))
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Where the driver's range begins and ends in each variant, as its numbers say."""
-        ends = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)]).ends or ()
+        """Where the driver's range begins and ends in each variant, and the places asked about, as its numbers say."""
+        varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
-            name: end.stand if isinstance(end, TracedNumber) else end
-            for name, end in zip(("low", "high"), ends, strict=True)
+            str(k): place.stand if isinstance(place, TracedNumber) else place
+            for k, place in enumerate((*(varied.ends or ()), *varied.asked))
         }
 
     def driver_range(self, columns: Real) -> DriverRanges:
@@ -75,7 +75,10 @@ class Taped:
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), 1, self.start)
         found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
-        variant = replace(self.variant, ends=(found["low"], found["high"]))
+        ranged = 0 if self.variant.ends is None else 2
+        places = [found[str(k)] for k in range(ranged + len(self.variant.asked))]
+        variant = replace(self.variant, asked=tuple(places[ranged:]))
+        variant = replace(variant, ends=(places[0], places[1])) if ranged else variant
         return DriverRanges.of(variant, len(columns), 1, self.start)
 
     def without(self, part: str) -> Taped:

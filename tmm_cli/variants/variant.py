@@ -24,12 +24,14 @@ class NoTapeError(ValueError):
 class Variant:
     """A linkage, the positions that its file asks for, and where its driver goes.
 
-    ends: from and to (rad or m); None: it turns on and on, and all comes round again.
+    ends: from and to (rad or m); None: it turns on and on, and all comes round again. asked: places of its driver that
+    a task asks about.
     """
 
     linkage: Linkage
     request: Request = field(default_factory=Request)
     ends: tuple[Any, Any] | None = None
+    asked: tuple[Any, ...] = ()
 
     @property
     def accelerated(self) -> bool:
@@ -59,39 +61,43 @@ Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be
 
 @dataclass(frozen=True)
 class Places:
-    """Where variants are wanted: at shares of their driver ranges, then at places of the driver (rad or m), for all."""
+    """Where variants are wanted: at shares of their driver ranges, then at the places that each is asked about, then at
+    places of the driver (rad or m), for all.
+    """
 
     shares: Real
     driver: Real
-
-    @property
-    def count(self) -> int:
-        return len(self.shares) + len(self.driver)
+    asked: bool = False
 
 
 @dataclass(frozen=True)
 class DriverRanges:
-    """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again."""
+    """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again; asked:
+    places (variants, n).
+    """
 
     low: Real
     span: Real
     closed: bool
+    asked: Real
 
     @classmethod
     def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
         """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
         ones = np.ones((variants, 1))
+        asked = np.hstack([np.zeros((variants, 0)), *(np.reshape(place, (-1, 1)) * ones for place in variant.asked)])
         if variant.ends is None:
             sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
             low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
-            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True)
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, asked)
         low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
-        return cls(low, high - low, False)
+        return cls(low, high - low, False, asked)
 
     def at(self, places: Places) -> Real:
         """Places of the driver, (variants, places)."""
         fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
-        return np.concatenate([self.low + places.shares * self.span, fixed], axis=1)
+        asked = self.asked if places.asked else self.asked[:, :0]
+        return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
 
 
 def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:

@@ -58,7 +58,7 @@ class Answer:
 OF = {
     "largest": _("the largest value in the cycle"),
     "range": _("the whole way"),
-    "turn": _("a full turn"),
+    "angle": _("a radian"),
     "exact": "",
 }
 

@@ -16,7 +16,7 @@ UNSAID = "†"  # marks answers without a unit
 SHARES = {
     "largest": _("Errors are shares of the largest value of a quantity in the cycle."),
     "range": _("Errors of places are shares of the whole way."),
-    "turn": _("Errors of angles are shares of a full turn."),
+    "angle": _("Errors of angles are shares of a radian: 1 % is 0.57 degrees."),
 }
 
 

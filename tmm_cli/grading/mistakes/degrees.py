@@ -33,4 +33,4 @@ class Degrees(Mistake):
         yield from (cls(180 / np.pi), cls(np.pi / 180))
 
     def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
-        return values * self.factor if quantity.dimension.angle and quantity.against != "turn" else values
+        return values * self.factor if quantity.dimension.angle and quantity.against != "angle" else values

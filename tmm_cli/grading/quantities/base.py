@@ -23,9 +23,9 @@ class Quantity:
 
     read: its values in SI, (variants, positions), complex where it is a vector; (variants, 1) where it belongs to the
     mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size in the cycle, its range
-    there (of a place), a full turn (of an angle, which is taken modulo 360 degrees), or nothing (it is exact, as a
-    class is). thing: the link, point or pair that it is of; on: the
-    link on which a reaction acts.
+    there (of a place), a radian (of an angle, taken modulo 360 degrees: the end of a link is then off by that share of
+    its length), or nothing (it is exact, as a class is). thing: the link, point or pair that it is of; on: the link on
+    which a reaction acts.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Quantity:
     read: Callable[[Solution], Any]
     vector: bool = False
     whole: bool = False
-    against: Literal["largest", "range", "turn", "exact"] = "largest"
+    against: Literal["largest", "range", "angle", "exact"] = "largest"
     thing: str = ""
     on: str = ""
 

@@ -42,14 +42,14 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         put(Quantity(f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True,
                      thing=point))  # fmt: skip
     for link in linkage.moving:
-        put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="turn", thing=link))
+        put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="angle", thing=link))
         put(Quantity(f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_link, link, "omega"), thing=link))
         put(Quantity(f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"),
                      thing=link))  # fmt: skip
         if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link):
             slides = linkage.slides_on_frame(link)
             put(Quantity(f"s of {link}", "places", place_dimension("slide" if slides else "turn"),
-                         partial(_run, link), against="range" if slides else "turn", thing=link))  # fmt: skip
+                         partial(_run, link), against="range" if slides else "angle", thing=link))  # fmt: skip
     for slide in linkage.slides:
         name = f"{slide.runner} on {slide.carrier}"
         put(Quantity(f"v of {name}", "velocities", SPEED, partial(_slide, slide.name, "v"), thing=slide.runner))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import unicodedata
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from tmm_cli.errors import _
@@ -94,7 +95,10 @@ class _Reader:
                 if other in self.students:
                     continue
             own += entries
-        return self.answers.submission(student, own, problems)
+        read = self.answers.submission(student, own, problems)
+        if read.answers or read.by_angle or read.problems:
+            return read
+        return replace(read, problems=(_("there is no answer in {file}").format(file=clean(path.name)),))
 
     def table(self, path: Path) -> Iterator[Submission]:
         """Of all students in one table; a sheet in YAML is that of one. Raises ProblemError."""

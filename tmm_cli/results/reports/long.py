@@ -26,7 +26,7 @@ def long_table(
     columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
     for same in zip(*things, strict=True):
         parts = [np.nan if values is None else values for __, values, __ in same]
-        stacked = np.stack([np.broadcast_to(part, (count,)) for part in parts], axis=1)
+        stacked = np.stack([p if np.shape(p) == (count,) else np.broadcast_to(p, (count,)) for p in parts], axis=1)
         header, __, dimension = same[0]
         columns.append(Column(header, stacked.ravel(), dimension))
     return Table(name, title, tuple(columns), long=True, notes=(note,) if note else ())

@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from copy import copy
+from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
@@ -17,7 +19,7 @@ from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals import mobility
 from tmm_cli.problem.schema_parts import Name, Strict, Value, Vector
 from tmm_cli.problem.tree import Path
-from tmm_cli.problem.units import PhysicalValue
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, KINDS, LENGTH
 from tmm_cli.synthesis.blocks import Block, OfTheFile
@@ -48,7 +50,9 @@ class Quality(Strict):
     links: list[Name] = Field(default_factory=list, max_length=100, description="of length: of these alone")
     through: list[Vector] = Field(default_factory=list, max_length=200, description="wanted points of the path")
     values: list[Value] = Field(default_factory=list, max_length=200, description="wanted angles or runs of the link")
-    at: list[Value] = Field(default_factory=list, max_length=200, description="angles of the crank for them")
+    at: list[Value] = Field(
+        default_factory=list, max_length=200, description="angles of the crank for them, varied ones too"
+    )
     relative: bool = Field(default=False, description="law: from the first value on")
     norm: Literal["least squares", "largest"] = "least squares"
 
@@ -110,8 +114,12 @@ def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
     for k, parameter in enumerate(parameters):
         for end in (parameter.low, parameter.high):
             files.variant([*middles[:k], end, *middles[k + 1 :]])
-    constraints = tuple(_constraint(given, middle, sense, n) for n, given in enumerate(shape.constraints))
-    objective, target = _quantity(shape.objective, middle, sense, ("objective",)), shape.objective.target
+    constraints = tuple(
+        _constraint(given, middle, sense, n, files.places(given, ("constraints", n), middles, middle))
+        for n, given in enumerate(shape.constraints)
+    )
+    places = files.places(shape.objective, ("objective",), middles, middle)
+    objective, target = _quantity(shape.objective, middle, sense, ("objective",), places), shape.objective.target
     if target is not None:
         target = sense.number(target, KINDS[_kind(objective, middle)].dimension, ("objective", "target"))
     return Task(
@@ -128,20 +136,34 @@ class _Files:
     ) -> None:  # fmt: skip
         self.parameters, self.names, self.file_with = parameters, shape.names, file_with
         self.units, self.varied = sense.units, VariedUnits(sense.units)
+        self.own = sense.parameters
         self.over: Any = None
+        self.goals: list[tuple[Path, Quality]] = [(("objective",), shape.objective)]
+        self.goals += [(("constraints", n), given) for n, given in enumerate(shape.constraints)]
 
     def plain(self, numbers: Sequence[Any]) -> Problem:
         """Raises OfTheFile."""
+        return self.file_with(*self._given(numbers))
+
+    def _given(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
         found = {
             self.names.get(p.name, p.name): PhysicalValue(x, KINDS[p.kind].dimension)
             for p, x in zip(self.parameters, numbers, strict=True)
         }
-        return self.file_with(found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units)
+        return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
+
+    def places(self, given: Quality, path: Path, numbers: Sequence[Any], variant: Variant) -> tuple[Any, ...]:
+        """Those of the driver that a quantity is asked at; they may rest on what varies. Raises ProblemError."""
+        found, units = self._given(numbers)
+        sense = ValueReader({**self.own, **found}, units)
+        return tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
 
     def variant(self, numbers: Sequence[Any]) -> Variant:
         """Raises OfTheFile, which tells the numbers that the file is refused with, and ProblemError."""
         try:
-            return driven(self.plain(numbers), self.over)
+            variant = driven(self.plain(numbers), self.over)
+            asked = (self.places(given, path, numbers, variant) for path, given in self.goals)
+            return replace(variant, asked=tuple(chain.from_iterable(asked)))
         except OfTheFile as error:
             refused, told = copy(error.error), []
             for p, number in zip(self.parameters, numbers, strict=True):
@@ -174,9 +196,11 @@ def _check_mobility(variant: Variant) -> None:
         ) from None  # fmt: skip
 
 
-def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int) -> task.Constraint:
+def _constraint(
+    given: Constraint, variant: Variant, sense: ValueReader, n: int, places: tuple[Any, ...]
+) -> task.Constraint:
     path: Path = ("constraints", n)
-    quantity = _quantity(given, variant, sense, path)
+    quantity = _quantity(given, variant, sense, path, places)
     dimension = KINDS[_kind(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
@@ -196,7 +220,7 @@ def _kind(quantity: Goal, variant: Variant) -> str:
     return quantity.kind(variant.linkage, mobile(variant.linkage).solved)
 
 
-def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path) -> Goal:
+def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, places: tuple[Any, ...]) -> Goal:
     linkage, kind, name = variant.linkage, QUANTITIES[given.of], ""
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
     for key in given.model_fields_set & others:
@@ -220,7 +244,6 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path) 
     if given.values:
         dimension = ANGLE if linkage.output_swings(name) else LENGTH
         wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
-    places = tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
     if len(places) != len(wanted) and (places or given.values):
         raise ProblemError(
             _("as many angles as {key} are wanted").format(key=kind.given), path=(*path, "at"),

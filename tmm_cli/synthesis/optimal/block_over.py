@@ -75,16 +75,16 @@ def _ends(problem: Problem, over: Over) -> Ends:
     return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # about the sketch, whose assembly it has
 
 
-def place_of(value: Any, variant: Variant, sense: ValueReader, path: Path) -> float:
+def place_of(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
     """A place on the driver's way, whole turns away where that brings it there. Raises ProblemError."""
     driver = variant.linkage.driver
-    place = float(sense.number(value, _dimension(driver), path))
+    place: Any = sense.number(value, _dimension(driver), path)
     if variant.ends is None:
         return place
     low, high = (float(end) for end in variant.ends)
     slack = 1e-9 * (high - low)
     if driver.kind == "turn" and not low - slack <= place <= high + slack:
-        place += 2 * np.pi * np.ceil((low - slack - place) / (2 * np.pi))
+        place = place + 2 * np.pi * np.ceil(float(low - slack - place) / (2 * np.pi))
     if not low - slack <= place <= high + slack:
         raise _not_there(path, value, driver, (low, high), sense.units)
     return place

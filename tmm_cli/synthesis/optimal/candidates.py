@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -15,7 +16,7 @@ from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import Sketch
 from tmm_cli.synthesis.optimal.checks import check, first_of, one_sense
-from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Over
+from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over
 from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
 from tmm_cli.synthesis.optimal.task import Constraint, Task, near
 from tmm_cli.variants.one_by_one import OneByOne, variants_of
@@ -83,8 +84,7 @@ class Candidates:
         )  # fmt: skip
         own = self.own_places(self.count + self.jumps)
         self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
-        wanted = np.concatenate([np.zeros(0), *(np.array(quantity.places) for quantity in self.quantities)])
-        self.places = Places(self.over(self.count), self.with_sketch(wanted))
+        self.places = Places(self.over(self.count), self.with_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -125,6 +125,12 @@ class Candidates:
         """Where a quantity has places of its own, after so many shares."""
         ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
+
+    def quantity(self, n: int, numbers: Real) -> Goal:
+        """A quantity with its places in the candidate of these numbers (SI), on which they may rest."""
+        first, own = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
+        asked = self.task.make(numbers.tolist()).asked[first : first + len(own.places)]
+        return replace(own, places=tuple(map(float, asked)))
 
     def with_sketch(self, driver: Real) -> Real:
         """Places of the driver, and that of the sketch, where it counts."""

@@ -12,6 +12,7 @@ from tmm_cli.errors import _
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.evolution import Evolved
+from tmm_cli.synthesis.optimal.quantities.base import Goal
 from tmm_cli.synthesis.record import Listing
 from tmm_cli.tolerances import NO_VIOLATION
 from tmm_cli.variants.variant import Places
@@ -63,15 +64,16 @@ def reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
         found: Real = candidates.run(two, places)[f"{n}.{key}"][0]
         return found
 
-    return (_law if candidates.quantities[n].of == "law" else _path)(candidates, n, read)
+    quantity = candidates.quantity(n, candidates.numbers(x))
+    return (_law if quantity.of == "law" else _path)(candidates, n, quantity, read)
 
 
 def _name(candidates: Candidates, n: int) -> str:
     return f"{candidates.quantities[n].of}-{n}" if n else candidates.quantities[n].of
 
 
-def _law(candidates: Candidates, n: int, read: Read) -> tuple[Listing, Diagram]:
-    quantity, swings = candidates.quantities[n], candidates.overs[n].swings
+def _law(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Listing, Diagram]:
+    swings = candidates.overs[n].swings
     at, wanted = np.array(quantity.places), np.array(quantity.wanted)
     low, high = float(np.min(at)), float(np.max(at))
     if candidates.closed:
@@ -103,8 +105,8 @@ def _law(candidates: Candidates, n: int, read: Read) -> tuple[Listing, Diagram]:
     return Listing(_name(candidates, n), _("Wanted law and what is reached"), columns, rows), drawn
 
 
-def _path(candidates: Candidates, n: int, read: Read) -> tuple[Listing, Diagram]:
-    quantity, wanted = candidates.quantities[n], np.array(candidates.quantities[n].wanted)
+def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Listing, Diagram]:
+    wanted = np.array(quantity.wanted)
 
     def spots(places: Places) -> Vector:
         found: Vector = read(places, "px") + 1j * read(places, "py")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -106,7 +106,7 @@ def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callab
             own.append((what, float(first), slice(at, at + WINDOW)))
             at += WINDOW
         parts.append(own)
-    places = Places(np.concatenate([*blocks, np.zeros(1)]), candidates.places.driver)
+    places = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
     exact = [own or slice(at, at + 1) for own in candidates.own_places(at + 1)]
 
     def pieces(some: Real) -> list[Real]:

@@ -28,9 +28,10 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     ends = task.make(found.numbers.tolist()).ends
     ends = None if ends is None else (float(ends[0]), float(ends[1]))
     demands = [Demand(Assembles.text, 1.0, "number", partial(crank_turns, ends=ends), asked=False)]
-    for n, quantity in enumerate(candidates.quantities):
+    for n in range(len(candidates.quantities)):
         if n == 1:  # it goes its way
             continue
+        quantity = candidates.quantity(n, found.numbers)
         constraint = candidates.constraints[n - 1] if n else None
         asked = constraint is not None and constraint.equal
         value = constraint.least if constraint is not None and asked else found.values[n]

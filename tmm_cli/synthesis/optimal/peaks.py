@@ -31,22 +31,36 @@ def _near(y: Real, k: Real) -> tuple[Real, Real]:
 
 def value(c: Real, u: Real, order: int = 0) -> Real:
     """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
-    found: Real = FACTORS[order][-1] * c[..., -1]
-    for power in range(2 * SIDE - 1, order - 1, -1):
-        found = found * u + FACTORS[order][power] * c[..., power]
+    found: Real = _at(_derived(c, order), u)
+    return found
+
+
+def _derived(c: Real, order: int) -> list[Real]:
+    """Coefficients of a derivative, that of the highest power first."""
+    return [FACTORS[order][power] * c[..., power] for power in range(2 * SIDE, order - 1, -1)]
+
+
+def _at(coefficients: list[Real], u: Real) -> Real:
+    found, *rest = coefficients
+    for coefficient in rest:
+        found = found * u + coefficient
     return found
 
 
 def peak(y: Real) -> Real:
     """The largest value within a window; (variants,)."""
-    c, middle = _near(y, np.argmax(y, axis=1))
+    top, most = np.argmax(y, axis=1), np.max(y, axis=1)
+    c, middle = _near(y, top)
+    slopes, bends = _derived(c, 1), _derived(c, 2)
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
         for _ in range(NEWTON):
-            bend = value(c, u, 2)
-            u = np.clip(u - np.where(bend < 0, value(c, u, 1) / bend, 0.0), -SIDE, SIDE)
-    found: Real = np.maximum(value(c, u), np.max(y, axis=1))
-    return np.where((middle == np.argmax(y, axis=1)) & (np.abs(u) < SIDE), found, np.max(y, axis=1))
+            bend, last = _at(bends, u), u
+            u = np.minimum(np.maximum(u - np.where(bend < 0, _at(slopes, u) / bend, 0.0), -SIDE), SIDE)
+            if np.array_equal(u, last):
+                break
+    found: Real = np.maximum(value(c, u), most)
+    return np.where((middle == top) & (np.abs(u) < SIDE), found, most)
 
 
 def zero(y: Real) -> Real:
