@@ -175,6 +175,15 @@ def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["one.json", "out"]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no devices among files")
+def test_a_device_is_not_replaced_by_a_file(tmp_path):
+    os.mkfifo(tmp_path / "device")
+    (tmp_path / "one.json").symlink_to("device")
+    with pytest.raises(FileExistsError, match="this is no file but a device"):
+        write_whole(tmp_path / "one.json", b"{}")
+    assert (tmp_path / "device").is_fifo()
+
+
 def test_what_a_run_still_writes_is_left_alone(tmp_path):
     other = tmp_path / f".out.new-{os.getppid()}"
     run_of(other, "a.csv")

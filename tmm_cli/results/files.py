@@ -47,6 +47,8 @@ def write_whole(path: Path, content: bytes) -> None:
     path = Path(os.path.realpath(path))
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():  # a device of the system would be gone after the renaming
+        raise FileExistsError(errno.EEXIST, _("this is no file but a device"), str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     for left in _left(path, "new"):
         left.unlink(missing_ok=True)
