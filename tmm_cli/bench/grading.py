@@ -167,11 +167,11 @@ def judged(count: int) -> Figure:
     variety = Variety(group(1).task)
     random = np.random.default_rng(1)
     picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
-    variety.judged(picks[:CHUNK])
-    start = CLOCK()
-    for first in range(0, count, CHUNK):
-        variety.judged(picks[first : first + CHUNK])
-    per_second = count / (CLOCK() - start)
+    per_second = 0.0
+    for first in range(0, count, CHUNK):  # the least time of a candidate: what else the machine does adds to it
+        start = CLOCK()
+        found = variety.judged(picks[first : first + CHUNK])
+        per_second = max(per_second, len(found.why) / (CLOCK() - start))
     return Figure(_("candidates for variants judged in a second"), count, per_second, PER_SECOND, "least")
 
 
