@@ -160,6 +160,9 @@ HEAD = "quantity,position,value\n"
         ('"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n', "R_34 at 7: the components have two units; found: 'N', 'kN'"),
         ("R_34 x at 7\n5\n", "R_34 at 7: one component is missing; found: x; allowed: x, y"),
         ("R_34 angle at 7\n5\n", "R_34 at 7: the size is missing; found: angle; allowed: size, angle"),
+        # minutes, were there several ways of dividing the blanks between the commas
+        (HEAD + f'"H{", " * 28}[",,1\n',
+         f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s"),
         ("student,quantity,value\nIvan,H,3\n", "the file names another student: 'Ivan'"),
         ("student,quantity,value\n../Ivan,H,3\n", "the file names another student: '∕Ivan'"),
     ],

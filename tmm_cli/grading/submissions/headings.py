@@ -17,7 +17,7 @@ Part = Literal["", "x", "y", "size", "angle"]
 PARTS: tuple[Part, ...] = get_args(Part)[1:]
 
 _POSITION = r"(?:(?:phi|φ) *= *)?[+-]?\d+(?:[.,]\d+)?(?: *(?:deg|rad|°|град|рад)\b\.?|°)?"
-_REST = re.compile(rf"(?:[ ,]+(x|y|size|angle))?(?: +at +({_POSITION}))?((?: *,[^,\[\]]*)*)(?: *\[([^\[\]]*)\])?")
+_REST = re.compile(rf"(?:[ ,]+(x|y|size|angle))?(?: +at +({_POSITION}))?(?: *((?:,[^,\[\]]*)+))?(?: *\[([^\[\]]*)\])?")
 _PLACE = re.compile(r"(?:(phi|φ) *= *)?(.*)")
 
 
