@@ -68,6 +68,7 @@ def test_a_number_is_read_in_every_spelling(text, number, unit):
         ("1.2 kN at 34 deg", (1.2, 34.0, "polar", "kN", "deg")),
         ("1200 N, 34°", (1200.0, 34.0, "polar", "N", "°")),
         ("1200 N ∠ -34", (1200.0, -34.0, "polar", "N", "")),
+        ("1200 Н под углом -34°", (1200.0, -34.0, "polar", "Н", "°")),
         ("1200; 0.6 rad", (1200.0, 0.6, "polar", "", "rad")),
         ("R = 5 N, phi = 34", (5.0, 34.0, "polar", "N", "")),
     ],

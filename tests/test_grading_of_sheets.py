@@ -13,6 +13,7 @@ from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
 from tmm_cli.grading.grade import grade
 from tmm_cli.grading.mistakes.other_zero import OtherZero
+from tmm_cli.grading.mistakes.sense import Sense
 from tmm_cli.grading.own_answers import own_answer
 from tmm_cli.grading.record import Given, Submission, VariantTable
 from tmm_cli.grading.sheet import Written, predicted
@@ -102,6 +103,15 @@ def test_the_sheet_of_another_variant_is_named_to_the_teacher():
     found = with_copies(list(grade(TASK, TABLE, [Submission(n, sheet(r)) for n, r in zip(NAMES, rows, strict=True)])))
     assert [marks.copied for marks in found] == ["", "", "", NAMES[5], "", "", "", ""]
     assert not any("student 5" in reason for mark in found[3].marks for reason in mark.reasons)
+
+
+def test_a_crank_turned_the_wrong_way_has_its_loads_in_the_same_part_of_the_turn():
+    text = SHAPER.read_text(encoding="utf-8")
+    table = VariantTable(("OA", "n1"), {"1": ("110", "82 rpm"), "2": ("105", "70 rpm")})
+    given = family_of(read_task(read_text(text + ASKED, "t")), table)
+    other = family_of(read_task(read_text(text.replace("turns: ccw", "turns: cw") + ASKED, "t")), table)
+    moment = [solve(one).reactions.balance.moment for one in (OtherZero(True).family(Sense(True).family(given)), other)]
+    assert moment[0] == pytest.approx(moment[1], rel=1e-12)
 
 
 def test_positions_may_be_counted_from_either_extreme_position():

@@ -11,6 +11,7 @@ from tmm_cli.grading.grade import grade, numbers_of
 from tmm_cli.grading.record import Given, Submission, VariantTable
 from tmm_cli.grading.solution import solve as solved
 from tmm_cli.grading.task import read_task
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.variants.family import families
 
@@ -76,3 +77,16 @@ def test_answers_are_judged_against_the_largest_value_of_the_cycle():
     assert [states[key] for key in given] == ["right", "right", "wrong"]
     assert {mark.reading for mark in marks.marks if mark.key == ("H", None)} == {"mm"}
     assert marks.points == 2 and none.problems == ("there is no variant of this student",)
+
+
+def test_a_quantity_that_is_none_is_refused_with_one_name_of_each_kind():
+    own = read_task(read_text(SHAPER.read_text(encoding="utf-8") + "grading: {answers: [{of: Mb, at: 3}]}", "t.yaml"))
+    with pytest.raises(ProblemError) as caught:
+        assert own.asked
+    assert str(caught.value) == (
+        "t.yaml:38:26: grading.answers[0].of: there is no such quantity\n  found:   'Mb'\n"
+        "  allowed: e.g. W, class, n, p1, p2, H, k, x of E, y of E, v of E, a of E, phi of 1, omega of 1, "
+        "epsilon of 1, s of 1, v of 2 on 3, a of 2 on 3, Coriolis of 2 on 3, U of 1, M of 1, R_01, arm of R_32, M_b, "
+        "F_b\n"
+        "  did you mean 'M_b'?"
+    )

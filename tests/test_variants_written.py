@@ -15,7 +15,7 @@ from tmm_cli.grading.answer_key import answer_key, idle_questions
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.tables import read_students, read_table
-from tmm_cli.grading.task_sheets import problem_text
+from tmm_cli.grading.task_sheets import meaning, problem_text
 from tmm_cli.problem.errors import ProblemError
 
 NAMES = ["=cmd|A1", "<script>alert(1)</script>", "../../etc/passwd", "Иванов Иван"]
@@ -46,6 +46,14 @@ def test_every_student_has_a_sheet_and_a_problem_that_is_his_variant(written):
     page = (out / "Иванов_Иван.md").read_text(encoding="utf-8")
     assert f"| OA | {values['OA']} | mm |" in page and "| v of E | 3, 7 | m/s | 2 |" in page
     assert (out / "Иванов_Иван.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_sheet_says_what_every_name_stands_for_and_how_vectors_are_answered(written):
+    page = (written[0] / "Иванов_Иван.md").read_text(encoding="utf-8")
+    assert "| M\\_b | 3 | N\\*m | 1 | balancing moment on the driver, positive counterclockwise |" in page
+    assert "3.6 at 34 deg" in page
+    assert all(map(meaning, task().quantities))
+    assert meaning("v of 2 on 3") != meaning("v of E") and meaning("M of 3") != meaning("M_b")
 
 
 def test_names_run_nothing_and_lead_nowhere(written):

@@ -120,9 +120,11 @@ class Task:
     def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Asked]:
         quantity = self.quantities.get(rule.of)
         if quantity is None:
+            one_of_each = {_kind(name): name for name in reversed(self.quantities)}.values()
             raise ProblemError(
                 _("there is no such quantity"), path=(*path, "of"), found=quote(rule.of),
-                allowed=", ".join(self.quantities), near=nearest(rule.of, self.quantities),
+                allowed=_("e.g. {names}").format(names=", ".join(reversed(one_of_each))),
+                near=nearest(rule.of, self.quantities),
             )  # fmt: skip
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
@@ -209,3 +211,9 @@ def read_task(tree: Tree) -> Task:
     task = Task(tree)
     task.blocks  # noqa: B018  refuses what is wrong in them
     return task
+
+
+def _kind(name: str) -> tuple[str, bool]:
+    """What names of the same quantity of other things have in common."""
+    kind, _of, thing = name.partition(" of ")
+    return ("R" if kind.startswith("R_") else kind), " on " in thing

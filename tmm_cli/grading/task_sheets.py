@@ -28,6 +28,33 @@ FOR_TEACHERS = ("variants", "grading")
 MEASURES = (LENGTH, *(kind.dimension for kind in KINDS.values()))
 PLAIN = re.compile(r"[\w.+\-*/^()° ]+")
 SIGNS = re.compile(r"([\\`*_\[\]|#~])")  # of markup
+MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
+    "W": _("mobility"),
+    "class": _("class of the mechanism"),
+    "n": _("number of moving links"),
+    "p1": _("number of pairs of one freedom"),
+    "p2": _("number of pairs of two freedoms"),
+    "H": _("stroke of the output"),
+    "psi": _("swing of the output"),
+    "k": _("time of the working stroke over that of the idle one"),
+    "x": _("from the frame's origin"),
+    "y": _("from the frame's origin"),
+    "v": _("velocity, a vector"),
+    "a": _("acceleration, a vector"),
+    "phi": _("from the x axis to the link, from its first point to its second; counterclockwise"),
+    "s": _("place along the guide, from the point that it goes through; angle of what swings"),
+    "omega": _("angular speed, positive counterclockwise"),
+    "epsilon": _("angular acceleration, positive counterclockwise"),
+    "v on": _("of the one link along its guide on the other"),
+    "a on": _("of the one link along its guide on the other"),
+    "Coriolis": _("Coriolis acceleration, a vector"),
+    "U": _("force of inertia, a vector"),
+    "M": _("couple of inertia, positive counterclockwise"),
+    "R": _("force of the first link on the second, a vector"),
+    "arm": _("where this force acts, from the point that slides, along the guide"),
+    "M_b": _("balancing moment on the driver, positive counterclockwise"),
+    "F_b": _("balancing force on the driver"),
+}
 STYLE = """
 body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:52rem;margin:2rem auto;padding:0 1rem}
 h1{font-size:1.35rem;margin:0}h2{font-size:1.05rem;margin:1.6rem 0 .3rem}.who{font-size:1.1rem;margin:.2rem 0 1rem}
@@ -158,9 +185,21 @@ def _asked(task: Task) -> Iterator[Table]:
     for name, group in groupby(task.asked, lambda one: one.quantity.name):
         every = list(group)
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
-        rows.append((name, numbers, _unit(task, every[0]), f"{sum(one.points for one in every):.10g}"))
-    headers = (_("quantity"), _("at positions"), _("unit"), _("points"))
-    yield table_of_words("asked", _("What is asked"), headers, rows, (told.format(first=task.rules.count),))
+        points = f"{sum(one.points for one in every):.10g}"
+        rows.append((name, numbers, _unit(task, every[0]), points, meaning(name)))
+    headers = (_("quantity"), _("at positions"), _("unit"), _("points"), _("what it is"))
+    notes = [told.format(first=task.rules.count)]
+    if any(one.quantity.vector for one in task.asked):
+        notes.append(_("Vectors are answered with size and direction, counterclockwise from x, or with components: "
+                       "3.6 at 34 deg; (1.2; -3.4)."))  # fmt: skip
+    yield table_of_words("asked", _("What is asked"), headers, rows, notes)
+
+
+def meaning(name: str) -> str:
+    """What a quantity is, for a student who has not seen its name yet."""
+    kind, _of, thing = name.partition(" of ")
+    kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind
+    return MEANINGS.get(kind) or MEANINGS.get(kind.partition("_")[0], "")
 
 
 def _unit(task: Task, asked: Asked) -> str:

@@ -34,7 +34,7 @@ _BEHIND = re.compile(r" *([^\W\d_]|[°%]|1 */|$)")  # what may follow a number: 
 _NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)\b.*", re.IGNORECASE)
 _DATE = re.compile(r"\d{4}-\d\d-\d\d.*|\d\d:\d\d:\d\d.*")
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]](.*)")
-_DIRECTION = re.compile(r"\bat\b|∠")
+_DIRECTION = re.compile(r"\bat\b|∠|\bпод углом\b")
 _LABEL = re.compile(r"([^\W\d]\w*) *= *")
 _LABELLED = re.compile(r"[ ,;]+(?=[^\W\d]\w* *=)")
 _BETWEEN = re.compile(r", +|(?<=[^\d ]),")
