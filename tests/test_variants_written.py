@@ -15,7 +15,7 @@ from tmm_cli.grading.answer_key import answer_key, idle_questions
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.tables import read_students, read_table
-from tmm_cli.grading.task_sheets import meaning, problem_text
+from tmm_cli.grading.task_sheets import TaskSheets, meaning, problem_text
 from tmm_cli.problem.errors import ProblemError
 
 NAMES = ["=cmd|A1", "<script>alert(1)</script>", "../../etc/passwd", "Иванов Иван"]
@@ -72,6 +72,13 @@ def test_names_run_nothing_and_lead_nowhere(written):
 def _rows(path):
     with path.open(encoding="utf-8-sig", newline="") as stream:
         return list(csv.reader(stream))
+
+
+def test_a_name_does_not_turn_the_writing_of_a_sheet_round():
+    own, text = task(), SHAPER.read_text(encoding="utf-8") + ASKED
+    sheets = TaskSheets(own, text, VariantTable(("OA",), {"\u202eanA": ("110",)}))
+    pages = [page.decode() for name, page in sheets.of("\u202eanA") if name.endswith((".md", ".html"))]
+    assert all("\ufffdanA" in page and "\u202e" not in page for page in pages)
 
 
 def test_the_key_has_every_answer_of_every_student(written):

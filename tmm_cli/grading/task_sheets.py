@@ -16,6 +16,7 @@ from tmm_cli.draw.formats import png
 from tmm_cli.draw.task import task_picture
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.shown import shown
 from tmm_cli.grading.task import Asked, Task
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -88,7 +89,7 @@ class TaskSheets:
     def of(self, student: str) -> Iterator[tuple[str, bytes]]:
         """A student's files by name."""
         name, title = self.names[student], self.task.problem.title
-        who = _("Variant {number}").format(number=student) if student.isdigit() else student
+        who = _("Variant {number}").format(number=student) if student.isdigit() else shown(student)
         values = dict(zip(self.table.names, self.table.rows[student], strict=True))
         yield f"{name}.yaml", problem_text(self.text, values).encode()
         results = structure_of(self.task.variant(values))
