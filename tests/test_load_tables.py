@@ -2,7 +2,10 @@
 
 import blocks
 import pytest
-from test_commands import tmm
+from test_commands import ROOT, tmm
+
+from tmm_cli import load
+from tmm_cli.results.explain import given
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -64,3 +67,10 @@ def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
         "  found:   crank turn\n"
         "  allowed: size: one value\n"
     )
+
+
+def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
+    *_, told = given(load(str(ROOT / "problems/toggle-press.yaml")))
+    rows = list(zip(*(column.values for column in told.columns), strict=True))
+    assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
+    assert told.title == "press against the stroke" and told.notes == ("Its direction is 90 deg.",)

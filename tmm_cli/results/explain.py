@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Driver, Load, Mesh, Spring
+from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
     ANGLE,
@@ -29,6 +29,8 @@ from tmm_cli.quantities import (
 from tmm_cli.results.reports.synthesis import parameters
 from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, steps
 from tmm_cli.results.table import Table, table_of_words, with_unit
+from tmm_cli.structure.assur import analyse
+from tmm_cli.structure.naming import output_link
 
 
 def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
@@ -56,6 +58,9 @@ def given(problem: Problem) -> Iterable[Table]:
             "loads", _("Loads"), (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
             [_load(problem, load) for load in problem.linkage.loads],
         )  # fmt: skip
+        for load in problem.linkage.loads:
+            if load.table is not None:
+                yield _tabulated(problem, load, load.table)
 
 
 def _points(problem: Problem) -> Table:
@@ -136,6 +141,23 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
     return load.name, load.link, place, size, load.when
+
+
+def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
+    """The rows of a load's table; of a force, its direction too."""
+    linkage, measure = problem.linkage, ANGLE
+    if table.against == "stroke":
+        link = output_link(linkage, analyse(linkage).groups)
+        measure = ANGLE if link is None or linkage.output_swings(link) else LENGTH
+    rows = [
+        (show(problem, at, measure), show(problem, size, FORCE if load.force else MOMENT))
+        for at, size in zip(table.arguments, table.values, strict=True)
+    ]
+    direction = show(problem, np.angle(load.force), ANGLE)
+    notes = (_("Its direction is {direction}.").format(direction=direction),) if load.force else ()
+    title = _("{load} against the {against}").format(load=load.name, against=table.against)
+    name = f"load_table_{linkage.loads.index(load) + 1}"
+    return table_of_words(name, title, (table.against, _("size")), rows, notes)
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:
