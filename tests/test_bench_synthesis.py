@@ -34,7 +34,7 @@ FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
 def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_72_positions():
     assert text(SEARCHED) == (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
     search = prepared(SEARCHED)
-    assert (len(search.low), len(search.constraints) - 1, search.places.count) == (
+    assert (len(search.low), len(search.constraints) - 1, len(search.places.shares)) == (
         5,
         3,
         72,

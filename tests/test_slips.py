@@ -128,14 +128,14 @@ def test_one_guide_one_position_and_one_place_need_no_list() -> None:
     assert build(read_text(FOUR_BAR + "positions: {at: 90}\n", "x.yaml")).request.places == (np.pi / 2,)
 
 
-def test_what_is_asked_of_a_search_cannot_rest_on_what_it_varies() -> None:
+def test_a_place_that_a_search_varies_is_an_angle() -> None:
     task = "synthesis: {task: optimal, vary: {l: [80, 120], a0: [0, 90]}, objective: {of: path, point: B, at: [a0], "
     text = FOUR_BAR.replace("length: 100", "length: l") + task + "through: [[250, 190]]}}\n"
     with pytest.raises(ProblemError) as caught:
         task_of(read_text(text, "x.yaml"))
     assert str(caught.value) == (
-        "x.yaml:9:100: synthesis.objective.at[0]: this rests on what the synthesis finds\n  found:   'a0'\n"
-        "  allowed: numbers, and parameters that do not"
+        "x.yaml:9:100: synthesis.objective.at[0]: an angle is wanted here\n  found:   'a0', a length (45 mm)\n"
+        "  allowed: an angle, e.g. 30 deg or 0.5 rad"
     )
 
 

@@ -148,7 +148,7 @@ class LoadTable:
 
     def __call__(self, argument: Real) -> Real:
         found: Real
-        if not any(np.ndim(x) for x in (*self.arguments, *self.values)):
+        if not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values)):
             found = np.interp(argument, self.arguments, self.values)
             return found
         found = self.values[0] + 0 * argument  # numbers of many variants, (variants, 1) each

@@ -56,7 +56,8 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
                 rate = _gap(_row(moved, values), here) / by
                 share, paper = share + rate * SHARE * abs(length.value), paper + rate * PAPER * mu
     ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
-    told = [dict(zip(values, np.split(part, ends_of), strict=True)) for part in (bound, share, paper)]
+    # of nothing an array is still one part
+    told = [dict(zip(values, np.split(part, ends_of), strict=False)) for part in (bound, share, paper)]
     return Digits(told[0], told[1], told[2], mu)
 
 
