@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.grading.quantities import quantities
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution, solve
 from tmm_cli.grading.task import Asked
-from tmm_cli.quantities import ANGULAR_ACCELERATION
+from tmm_cli.groups.base import Closed
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+)
 from tmm_cli.variants.family import Family
 from tmm_cli.variants.stack import changed, numbers
 from tmm_cli.vectors import Real, Vector
@@ -104,8 +115,10 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     scale = _scales(asked, solution)
     places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
     there = [replace(one, position=places.index(one.position or 0)) for one in asked]
-    nearby = _nearby(family.changed(family.linkage, family.q[:, places]))
-    change = np.array([np.abs(predicted(other, there) - value) for other in nearby]) / STEP
+    close = family.changed(family.linkage, family.q[:, places])
+    change = np.abs(np.concatenate([
+        predicted(other, there).reshape(-1, *value.shape) - value for other in _nearby(close)
+    ])) / STEP  # fmt: skip
     with np.errstate(divide="ignore", invalid="ignore"):
         response = np.sqrt(np.sum(change**2, axis=0)) / scale
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
@@ -115,17 +128,28 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
 
 
 def _scales(asked: Sequence[Asked], solution: Solution) -> Real:
-    """Of all that is asked; what is zero all the cycle is measured against the largest of its kind in the mechanism."""
+    """Of all that is asked; what is zero all the cycle is measured against what is usual in such a mechanism."""
     found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
-    rest = quantities(solution.family.linkage, solution.family.structure).values()
-    for dimension in {one.quantity.dimension for one in asked if one.quantity.against in ("largest", "range")}:
-        own = [k for k, one in enumerate(asked) if one.quantity.dimension == dimension]
-        sizes = [_scale(other, solution) for other in rest if other.dimension == dimension]
-        if dimension == ANGULAR_ACCELERATION:  # all may turn evenly
-            sizes.append(np.nanmax(solution.motion.rate**2, axis=1))
-        largest = np.max(sizes, axis=0)[:, None]
-        found[:, own] = np.where(found[:, own] > NOTHING * largest, found[:, own], largest)
+    usual = _usual(solution)
+    for k, one in enumerate(asked):
+        if one.quantity.against in ("largest", "range"):
+            size = usual[one.quantity.dimension]
+            found[:, k] = np.where(found[:, k] > NOTHING * size, found[:, k], size)
     return found
+
+
+def _usual(solution: Solution) -> dict[Dimension, Real]:
+    """How large quantities of each kind may be, (variants,): from the longest link, the driver's speed, the loads."""
+    motion, loads = solution.motion, solution.reactions.applied
+    size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
+    rate = np.maximum(np.nanmax(np.abs(motion.rate), axis=1), NOTHING)
+    turn = rate if motion.linkage.driver.kind == "turn" else rate / size
+    force = np.maximum(sum(np.nanmax(np.abs(load.force), axis=1) for load in loads), NOTHING)
+    moment = size * force + sum(np.nanmax(np.abs(load.moment), axis=1) for load in loads)
+    return {
+        LENGTH: size, SPEED: size * turn, ACCELERATION: size * turn**2, ANGULAR_SPEED: turn,
+        ANGULAR_ACCELERATION: turn**2, FORCE: force, MOMENT: moment, NUMBER: np.ones(1), ANGLE: np.ones(1),
+    }  # fmt: skip
 
 
 def _scale(quantity: Quantity, solution: Solution) -> Real:
@@ -138,14 +162,25 @@ def _scale(quantity: Quantity, solution: Solution) -> Real:
     return np.asarray(np.nanmax(np.abs(values), axis=1))
 
 
-def _nearby(family: Family) -> list[Family]:
-    """The family with the lengths of one link after the other a little longer, and with the driver a little on."""
-    found = []
-    for link in family.linkage.links:
-        lengths = {
-            path: value * (1 + STEP) for path, value in numbers(family.linkage)
-            if path.startswith(f"links.{link}.points.") and np.any(value != 0)
-        }  # fmt: skip
-        if lengths:
-            found.append(family.changed(changed(family.linkage, lengths)))
-    return [*found, family.changed(family.linkage, family.q + STEP)]
+def _nearby(family: Family) -> Iterator[Family]:
+    """The family with the lengths of one link after the other a little longer, and with the driver a little on.
+
+    All of them as one family, the variants again and again, where its groups are in closed form; else each.
+    """
+    of = {
+        link: [path for path, value in numbers(family.linkage)
+               if path.startswith(f"links.{link}.points.") and np.any(value != 0)]
+        for link in family.linkage.links
+    }  # fmt: skip
+    links = [link for link, paths in of.items() if paths]
+    if all(isinstance(kernel, Closed) and kernel.plain for kernel in family.kernels):
+        which = np.repeat(np.arange(len(links) + 1), len(family))[:, None]
+        parts = [(which, family.take(np.tile(np.arange(len(family)), len(links) + 1)))]
+    else:
+        parts = [(np.array(k), family) for k in range(len(links) + 1)]
+    for which, part in parts:
+        found = dict(numbers(part.linkage))
+        lengths = {path: found[path] * np.where(which == k, 1 + STEP, 1.0)
+                   for k, link in enumerate(links) for path in of[link]}  # fmt: skip
+        q = part.q + np.where(which == len(links), STEP, 0.0)
+        yield part.changed(changed(part.linkage, lengths), q)

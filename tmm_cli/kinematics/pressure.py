@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import DEAD, NO_PRESSURE
+from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -145,7 +145,7 @@ def find_pressure(
                 angles = angle(scan, kernel, scan.placements[number], lead)
                 if not np.any(np.isfinite(angles)):
                     continue
-                k = int(np.nanargmax(angles))
+                k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of those that are equal
                 place, value = float(q[k]), float(angles[k])
                 if value > 0:
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
