@@ -2,40 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
-
-import numpy as np
+from dataclasses import dataclass
 
 from tmm_cli.errors import _
-from tmm_cli.grading.mistakes.base import Mistake
-
-if TYPE_CHECKING:
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.kinematics.motion import Motion
-    from tmm_cli.variants.family import Family
+from tmm_cli.grading.mistakes.no_inertia import NoInertia
 
 
 @dataclass(frozen=True)
-class NoCouple(Mistake):
+class NoCouple(NoInertia):
     """Of one link, or of all."""
-
-    link: str = ""
 
     name = _("couple of inertia left out")
     sentence = _("The couple of inertia J epsilon was left out.")
-
-    @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
-        links = family.linkage.links
-        own = [name for name in family.linkage.moving if np.any(links[name].inertia != 0)]
-        yield from (cls(name) for name in own)
-        if len(own) > 1:
-            yield cls()
-
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        return tuple(
-            replace(load, moment=load.moment * 0) if load.kind == "inertia" and self.link in ("", load.link) else load
-            for load in loads
-        )
+    part, of = "moment", "inertia"

@@ -25,17 +25,18 @@ class NoInertia(Mistake):
 
     name = _("inertia force left out")
     sentence = _("The inertia force m a_S was left out.")
+    part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:
         links = family.linkage.links
-        own = [name for name in family.linkage.moving if np.any(links[name].mass != 0)]
+        own = [name for name in family.linkage.moving if np.any(getattr(links[name], cls.of) != 0)]
         yield from (cls(name) for name in own)
         if len(own) > 1:
             yield cls()
 
     def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
         return tuple(
-            replace(load, force=load.force * 0) if load.kind == "inertia" and self.link in ("", load.link) else load
-            for load in loads
-        )
+            replace(load, **{self.part: getattr(load, self.part) * 0})
+            if load.kind == "inertia" and self.link in ("", load.link) else load for load in loads
+        )  # fmt: skip
