@@ -14,7 +14,7 @@ from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
-from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.draw.symbols import MEASURED, mass_centre
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
@@ -69,8 +69,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
             at = sheet.on(scene.place(link, complex(own.centre)))
             point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
             if point is None:
-                sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
-                sheet.circle(at, 0.25, face=DARK, z=6.3)
+                mass_centre(sheet, at)
                 belongs(sheet, scene, link, at)
             if centre in names:
                 continue
