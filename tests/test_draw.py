@@ -129,8 +129,8 @@ def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_
     moments = abs(results.reactions.balance.moment)
     assert [here.k for here in detailed(results)] == [moments.argmax()]
     assert list(remarks(results)) == [
-        f"note: the file names no positions in detail, position {moments.argmax()} is drawn in full: the balancing moment is "
-        f"largest there, {moments.max():.4g} N*m"
+        f"note: no positions.detail in the file, drawn in full is position {moments.argmax()}, of the largest "
+        f"balancing moment: {moments.max():.4g} N*m"
     ]
 
 

@@ -51,16 +51,14 @@ def remarks(results: Results) -> Iterable[str]:
 def _chosen(results: Results, k: int) -> str:
     number, size = results.numbers[k], float(balancing(results)[k])
     if size == 0:
-        return _("note: the file names no positions in detail, position {number} is drawn in full").format(
-            number=number
-        )
+        return _("note: no positions.detail in the file, drawn in full is position {number}").format(number=number)
     turns = results.linkage.driver.kind == "turn"
     units, dimension = results.problem.units, MOMENT if turns else FORCE
     told = f"{units.from_si(size, dimension):.4g} {units.symbol(dimension)}"
     return (
-        _("note: the file names no positions in detail, position {number} is drawn in full: the balancing moment is "
-          "largest there, {size}")
+        _("note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing moment: "
+          "{size}")
         if turns
-        else _("note: the file names no positions in detail, position {number} is drawn in full: the balancing force is "
-               "largest there, {size}")
+        else _("note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing "
+               "force: {size}")
     ).format(number=number, size=told)  # fmt: skip
