@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
@@ -156,11 +157,7 @@ def detailed(results: Results) -> list[Position]:
     """The positions in detail that could be computed."""
     motion = results.motion
     assert motion is not None
-    wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
-    return [
-        Position(results, motion, k) for k, n in enumerate(results.numbers)
-        if n in wanted and motion.moving[k] and not results.locked[k]
-    ]  # fmt: skip
+    return [Position(results, motion, k) for k in in_detail(results)]
 
 
 def position(here: Position) -> Iterable[tuple[str, Figure]]:
