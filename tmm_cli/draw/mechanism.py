@@ -98,9 +98,8 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        hull = by_points(sheet, scene, link).hull
-        if hull:
-            sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
+        for edge in by_points(sheet, scene, link).edges:
+            sheet.line(edge, colour, width, z=z, blocks=False)
 
 
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:

@@ -10,19 +10,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.draw.actuators import cylinder, cylinders, driver_name, springs
-from tmm_cli.draw.forms import Form, by_pairs, by_points
+from tmm_cli.draw.actuators import Cylinder, cylinders, driver_name, springs
+from tmm_cli.draw.forms import Form, Line, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.scene import BEYOND, Scene
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
 from tmm_cli.draw.symbols import (
     STRUCTURAL,
-    Line,
     Look,
     body,
     box,
     guide,
-    rails,
     sliding_arrow,
     support,
     support_side,
@@ -31,10 +29,10 @@ from tmm_cli.draw.symbols import (
 from tmm_cli.draw.wheels import CHAIN, CamShape, contact
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Slide
+from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair
 
-OVER, OVER_SLOT = 10.0, 7.0  # mm: how far the axis of a guide, and a slot, goes on beyond the way of its stone
+OVER = 10.0  # mm: how far the axis of a guide goes on beyond the way of its stone
 GREY = "#404040"
 
 
@@ -53,15 +51,11 @@ def render(
     """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
     drawn = Rendered(forms)
-    driven = cylinders(scene.linkage) if look.measured else {}
+    driven = cylinders(scene.linkage)
     rods = [edge for form in forms.values() for edge in form.edges]
     for pair in pairs:
-        if pair.slide is None or pair.name in driven:
-            continue
-        if pair.slide.carrier == FRAME:
+        if pair.slide is not None and pair.slide.carrier == FRAME:
             _guide(sheet, scene, pair, look, rods)
-        elif look.measured:
-            _way(sheet, scene, pair.slide, look)
     for pair in pairs:
         if not pair.lower:
             _higher(sheet, scene, pair, look, hue)
@@ -71,7 +65,9 @@ def render(
         if pair.slide is None:
             continue
         if pair.name in driven:
-            drawn.cylinders[pair.name] = cylinder(sheet, scene, pair.slide)
+            found = Cylinder.of(sheet, scene, pair.slide)
+            found.draw(sheet, hue)
+            drawn.cylinders[pair.name] = (found.back + found.front) / 2
         else:
             slider(sheet, scene, pair, look, hue[pair.slide.runner])
     if look.measured:
@@ -87,17 +83,6 @@ def render(
         if not look.measured:
             sheet.label(FRAME, end, 9, DARK, "italic")
     return drawn
-
-
-def _way(sheet: Sheet, scene: Scene, slide: Slide, look: Look) -> None:
-    """The slot of a link that has no bar along its guide, along the whole way on it."""
-    if len(scene.linkage.links[slide.carrier].points) > 1:
-        return
-    along, (low, high), here = scene.along(slide), scene.way(slide), scene.run(slide)
-    stone = sheet.on(scene.place(slide.runner, slide.at))
-    start = border(stone, stone + ((low - here) / sheet.mu - OVER_SLOT) * along, *sheet.field)
-    end = border(stone, stone + ((high - here) / sheet.mu + OVER_SLOT) * along, *sheet.field)
-    rails(sheet, start, end, look.stone[1])
 
 
 def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Line]) -> None:
@@ -196,8 +181,6 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
                 hue[driver.link],
             )
         else:
-            ends = [end - at for line in drawn.forms[driver.link].lines for end in line]
-            if look.measured:
-                ends = [end - at for end in drawn.forms[driver.link].hull]
+            ends = [end - at for edge in drawn.forms[driver.link].edges for end in edge]
             arm = max(ends, key=abs, default=1 + 0j)
             turning_arrow(sheet, at, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), hue[driver.link])

@@ -10,13 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.draw.forms import Form
+from tmm_cli.draw.forms import Form, Line
 from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
 from tmm_cli.draw.sheet import DARK, Sheet, hatch
 from tmm_cli.vectors import Vector, cross, dot, unit
 
-Line = tuple[complex, complex]
 WELD = 3.2  # mm: leg of a rigid corner's mark
 CLEAR = 3.2  # mm about the number on a plate
 GAP = 0.5  # mm between a box and its rails
@@ -80,7 +79,7 @@ def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
     for start, end in form.lines:
         # a guide goes behind its stone, a link that is only hinged to a stone comes in front of it
         behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in form.boxes)
-        sheet.line([start, end], colour, look.bar, z=3 if behind or look.measured else 4.5, blocks=False)
+        sheet.line([start, end], colour, look.bar, z=3 if behind else 4.5, blocks=False)
         if abs(end - start) > ON_LINE:
             for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
