@@ -11,7 +11,7 @@ from higher import PROBLEMS
 
 from tmm_cli import draw, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.actuators import BARREL, cylinder, springs
+from tmm_cli.draw.actuators import BARREL, Cylinder, springs
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.draw.wheels import contact, extent, outline
@@ -172,21 +172,18 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
     results = solved("cylinder")
     slide = results.linkage.slides[0]
     runs = results.motion.slide(slide).run
-    heads = []
+    runs_of_piston = []
+    sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
     for k in range(len(runs)):
-        sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
         here = scene(results, k)
-        middle, along = cylinder(sheet, here, slide), here.along(slide)
-        corners = sheet.axes.patches[-1].get_xy()
-        length = max(abs(complex(*c) - middle) for c in corners)
-        (x, y) = next(line for line in sheet.axes.lines if line.get_linewidth() == 2.4).get_data()
-        head = complex(np.mean(x), np.mean(y))
-        assert abs(cross(along, head - middle)) < 1e-9 and abs(head - middle) < length
-        assert abs(complex(x[0], y[0]) - head) < BARREL
-        end = sheet.on(results.motion.named("A").x[k])
-        assert dot(along, end - middle) > length - BARREL  # the rod comes out of it
-        heads.append(dot(along, head - sheet.on(here.place("1", 0j))))
-    assert np.all(np.diff(heads) > 0)
+        found, along = Cylinder.of(sheet, here, slide), here.along(slide)
+        length, run, end = (dot(along, place - found.back) for place in (found.front, found.piston, found.end))
+        assert 0 < run < length - BARREL / 2
+        assert end > length + BARREL  # the rod comes out of it
+        assert all(abs(cross(along, place - found.back)) < 1e-9 for place in (found.front, found.piston, found.end))
+        assert found.end == pytest.approx(sheet.on(results.motion.named("A").x[k]))
+        runs_of_piston.append(run)
+    assert np.all(np.diff(runs_of_piston) > 0)
 
 
 def test_a_spring_is_drawn_from_end_to_end():

@@ -11,21 +11,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.draw.actuators import Cylinder, cylinders, driver_name, springs
+from tmm_cli.draw.fixed import guide, support, support_side
 from tmm_cli.draw.forms import Form, Line, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.scene import BEYOND, Scene
+from tmm_cli.draw.rigid import rigid
+from tmm_cli.draw.scene import BEYOND, Scene, spread
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
-from tmm_cli.draw.symbols import (
-    STRUCTURAL,
-    Look,
-    body,
-    box,
-    guide,
-    sliding_arrow,
-    support,
-    support_side,
-    turning_arrow,
-)  # fmt: skip
+from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, sliding_arrow, turning_arrow
 from tmm_cli.draw.wheels import CHAIN, CamShape, contact
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
@@ -38,9 +30,10 @@ GREY = "#404040"
 
 @dataclass
 class Rendered:
-    """What was drawn of the links, and the middles of the cylinders (mm) by their sliding pair."""
+    """What was drawn of the links, in which scene; the middles of the cylinders (mm) by their sliding pair."""
 
     forms: Mapping[str, Form]
+    scene: Scene
     cylinders: dict[str, complex] = field(default_factory=dict)
 
 
@@ -49,8 +42,10 @@ def render(
     leads: Sequence[Pair] = (),
 ) -> Rendered:  # fmt: skip
     """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
+    if look.measured:
+        scene = spread(sheet, scene, links)
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
-    drawn = Rendered(forms)
+    drawn = Rendered(forms, scene)
     driven = cylinders(scene.linkage)
     rods = [edge for form in forms.values() for edge in form.edges]
     for pair in pairs:
@@ -61,6 +56,9 @@ def render(
             _higher(sheet, scene, pair, look, hue)
     for link, form in forms.items():
         body(sheet, form, hue[link], look)
+        for pair in pairs:
+            if not pair.lower and link in (pair.i, pair.j):
+                rigid(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
     for pair in pairs:
         if pair.slide is None:
             continue
@@ -155,10 +153,12 @@ def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:
 
 
 def spot(sheet: Sheet, scene: Scene, pair: Pair, look: Look) -> complex:
-    """Where the name of a pair belongs: its hinge, the end of its box, or that of its guide on the frame."""
+    """Where the name of a pair belongs: its hinge, the end of its box, guide on the frame or cylinder."""
     at = sheet.on(scene.at(pair))
     if pair.slide is None:
         return at
+    if pair.name in cylinders(scene.linkage):
+        return Cylinder.of(sheet, scene, pair.slide).front
     beyond = BEYOND if pair.slide.carrier == FRAME else 0.0
     return at - scene.along(pair.slide) * (look.box[0] / 2 + beyond)
 
@@ -169,7 +169,7 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
         if driver.link not in drawn.forms:
             continue
         pair = scene.structure.driving_pair(driver)
-        at = sheet.on(scene.at(pair))
+        at = sheet.on(drawn.scene.at(pair))
         if pair.slide is not None:
             along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
             sliding_arrow(
