@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
@@ -80,7 +81,7 @@ def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
 
 
 def box(
-    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: str = "-"
+    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: Style = "-"
 ) -> None:
     """A slider or stone; dashed where it is only what a lead is joined to."""
     length, width = size
@@ -102,21 +103,23 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> c
     height, half = look.support
     foot = at + height * out
     low, high = foot - half * side, foot + half * side
-    sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-    low, high = low - 1.6 * side, high + 1.6 * side
-    sheet.line([low, high], DARK, 1.2, z=2.7)
+    with sheet.on_layer("supports"):
+        sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
+        low, high = low - 1.6 * side, high + 1.6 * side
+        sheet.line([low, high], DARK, 1.2, z=2.7)
     hatch(sheet, low, high, out)
     return high
 
 
 def rails(
-    sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: str = "-", *, fixed: bool
+    sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: Style = "-", *, fixed: bool
 ) -> None:
     """Two lines along the way of a box of this width; hatched where they are the frame's."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + GAP)
-        sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
+        with sheet.on_layer("supports" if fixed else sheet.layer):
+            sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
         if fixed:
             hatch(sheet, start + shift, end + shift, side)
 
