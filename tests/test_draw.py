@@ -9,7 +9,7 @@ from models import PARALLELOGRAM
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
-from tmm_cli.draw import files, sheets
+from tmm_cli.draw import files, remarks, sheets
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.labels import Ground, Label, extent
@@ -122,3 +122,26 @@ def test_every_sheet_is_written_in_every_format():
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
     stems = [stem for stem, _ in sheets(solve(build(read_text(PARALLELOGRAM, "x.yaml"))))]
     assert "velocity-01" in stems and "velocity-00" not in stems
+
+
+def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_drawn_in_full_and_named():
+    results = solve(shaper((", detail: [3]", "")))
+    moments = abs(results.reactions.balance.moment)
+    assert [here.k for here in detailed(results)] == [moments.argmax()]
+    assert list(remarks(results)) == [
+        f"note: no positions.detail in the file, drawn in full is position {moments.argmax()}, of the largest "
+        f"balancing moment: {moments.max():.4g} N*m"
+    ]
+
+
+def test_positions_that_the_file_names_are_drawn_in_full_and_nothing_is_said():
+    results = solve(shaper(("detail: [3]", "detail: [3, 5]")))
+    assert [here.k for here in detailed(results)] == [3, 5]
+    assert not list(remarks(results))
+
+
+def test_where_nothing_acts_the_position_after_the_first_is_drawn_in_full():
+    text = SHAPER.read_text(encoding="utf-8")
+    text = (text[: text.index("masses:")] + text[text.index("output:") :]).replace(", detail: [3]", "")
+    (here,) = detailed(solve(build(read_text(text, "light.yaml"))))
+    assert here.k == 1
