@@ -208,7 +208,7 @@ def test_symbols_shrink_where_pairs_are_near_one_another():
     circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
     o, a = sorted(circles, key=lambda c: c.centre.real)[:2]
     assert o.radius < STRUCTURAL.hinge
-    assert math.dist(o.center, a.center) > o.radius + a.radius
+    assert abs(o.centre - a.centre) > o.radius + a.radius
     legible(figure)
 
 
