@@ -40,9 +40,10 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> c
     height, half = look.support
     foot = at + height * out
     low, high = foot - half * side, foot + half * side
-    sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-    low, high = foot - GROUND * half * side, foot + GROUND * half * side
-    sheet.line([low, high], DARK, 1.2, z=2.7)
+    with sheet.on_layer("supports"):
+        sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
+        low, high = foot - GROUND * half * side, foot + GROUND * half * side
+        sheet.line([low, high], DARK, 1.2, z=2.7)
     hatch(sheet, low, high, out)
     return high
 
@@ -55,7 +56,8 @@ def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[
         covered = [run for rod in rods if (run := _covered(rod, rail, along, side)) is not None]
         for low, high in free_runs(-reach, reach, covered):
             start, end = rail + low * along, rail + high * along
-            sheet.line([start, end], DARK, 1.0, z=2.5)
+            with sheet.on_layer("supports"):
+                sheet.line([start, end], DARK, 1.0, z=2.5)
             hatch(sheet, start, end, side)
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
@@ -113,7 +113,7 @@ def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     return sheet
 
 
-def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
@@ -159,7 +159,7 @@ def detailed(results: Results) -> list[Position]:
     return [Position(results, motion, k) for k in in_detail(results)]
 
 
-def position(here: Position) -> Iterable[tuple[str, Figure]]:
+def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions

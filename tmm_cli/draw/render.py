@@ -42,6 +42,14 @@ def render(
     leads: Sequence[Pair] = (),
 ) -> Rendered:  # fmt: skip
     """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
+    with sheet.on_layer("links"):
+        return _render(sheet, scene, links, pairs, look, hue, leads)
+
+
+def _render(
+    sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
+    leads: Sequence[Pair],
+) -> Rendered:  # fmt: skip
     if look.measured:
         scene = spread(sheet, scene, links)
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
@@ -93,7 +101,8 @@ def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Li
         (low, high), here = scene.way(slide), scene.run(slide)
         start, end = at + ((low - here) / sheet.mu - OVER) * along, at + ((high - here) / sheet.mu + OVER) * along
         axis = [border(at, start, *sheet.field), border(at, end, *sheet.field)]
-        sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
+        with sheet.on_layer("construction"):
+            sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
         return
     low_side = -1j * along if (1j * along).imag > 0 else 1j * along
     reach = (look.box[0] / 2 + BEYOND) * along

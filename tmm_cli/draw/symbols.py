@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
@@ -100,7 +101,7 @@ def weld(sheet: Sheet, at: complex, one: complex, other: complex, colour: str, h
 
 
 def box(
-    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: str = "-"
+    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: Style = "-"
 ) -> None:
     """A slider or stone; dashed where it is only what a lead is joined to."""
     length, width = size
@@ -116,7 +117,7 @@ def box(
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
 
 
-def rails(sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: str = "-") -> None:
+def rails(sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: Style = "-") -> None:
     """Two lines along the way of a box of this width."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
