@@ -20,13 +20,26 @@ Kind = Literal[
 
 
 @dataclass(frozen=True)
+class Symbol:
+    """A letter with its indices, as formulas have it: a, BA below, n above."""
+
+    letter: str
+    below: str = ""
+    above: str = ""
+
+
+@dataclass(frozen=True)
 class NamedVector:
-    """A vector from start to end (SI), and what a student calls it."""
+    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+
+    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    """
 
     name: str
     start: complex
     end: complex
     kind: Kind
+    symbol: Symbol = Symbol("")
 
     @property
     def value(self) -> complex:
@@ -35,10 +48,11 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan; `ends` are its lettered points (the pole among them)."""
+    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
 
     vectors: tuple[NamedVector, ...]
     ends: Mapping[str, complex] = field(default_factory=dict)
+    corners: Mapping[str, complex] = field(default_factory=dict)
 
     @property
     def size(self) -> float:
