@@ -1,4 +1,4 @@
-"""Drawings; matplotlib is imported here and nowhere else. A new sheet is a function in a file here and a line below."""
+"""Drawings: recorded first, then written in any format. A new sheet is a function in a file here and a line below."""
 
 from __future__ import annotations
 
