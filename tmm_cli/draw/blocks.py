@@ -62,16 +62,17 @@ class Block:
             yield self._shape(parts)
 
     def _shape(self, parts: int) -> Shape:
-        columns = [max(width(cell, CELL * POINT) for cell in column) for column in zip(*(r.cells for r in self.rows), strict=True)]
+        columns = [
+            max(width(cell, CELL * POINT) for cell in column)
+            for column in zip(*(r.cells for r in self.rows), strict=True)
+        ]
         across = sum(columns) + GUTTER * max(len(columns) - 1, 0)
         beside = list(split(self.rows, parts))
         wide = max([width(note, NOTE * POINT) for note in self.notes] + [len(beside) * (across + APART) - APART])
         rows = max((len(part) for part in beside), default=0)
         under = LINE * len(self.notes)
         size = complex(wide + 2 * EDGE, EDGE + under + ROW * rows + (1.0 if rows and under else 0.0))
-        texts = [
-            Written(complex(EDGE, size.imag - 3.5 - LINE * k), note, NOTE) for k, note in enumerate(self.notes)
-        ]
+        texts = [Written(complex(EDGE, size.imag - 3.5 - LINE * k), note, NOTE) for k, note in enumerate(self.notes)]
         lines = []
         for number, part in enumerate(beside):
             left = EDGE + number * (across + APART)
@@ -101,7 +102,7 @@ def split(rows: Sequence[Row], parts: int) -> Iterator[list[Row]]:
 
 
 def corners(low: complex, high: complex, size: complex) -> Vector:
-    """Lower left corners for a block in a field: its corners, then places along its edges; none where it is too small."""
+    """Places for a block in a field, of its lower left corner: corners of the field, then along its edges."""
     room = high - low - size
     if min(room.real, room.imag) < 0:
         return np.zeros(0, complex)

@@ -10,8 +10,7 @@ from itertools import count
 import numpy as np
 
 from tmm_cli.draw.blocks import Block, corners, covered
-from tmm_cli.draw.sheet import ground_of
-from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, ROUND, extent
+from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of
 from tmm_cli.vectors import Vector
 
 ALONG = (0.5, 0.0, 1.0, 0.25, 0.75)  # of what is free beside the figure, across and up: where it is put
@@ -22,7 +21,7 @@ SPOTS = 40  # points that stand for a line
 
 @dataclass
 class Figure:
-    """What goes on a sheet: places in SI with the room (mm) that they need about them, and how far (mm) they are off."""
+    """What goes on a sheet: places (SI), how far (mm) it is off them, and the room (mm) that it needs about it."""
 
     places: list[Vector] = field(default_factory=list)
     off: list[Vector] = field(default_factory=list)

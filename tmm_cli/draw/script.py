@@ -28,7 +28,7 @@ def plain(words: Words) -> str:
 
 
 def pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
-    """Pieces of a text of this size: where the left end of each is from that of the whole, its letters and their size."""
+    """Pieces of a text of this size: how far each is off the left end of the whole, its letters, and their size."""
     at = 0.0
     for part in parts(words):
         if isinstance(part, str):
