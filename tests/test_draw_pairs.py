@@ -19,6 +19,7 @@ from tmm_cli.draw.wheels import contact, extent, outline
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
+from tmm_cli.plans.record import Symbol
 from tmm_cli.plans.velocity import letters, velocity_plan
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -244,14 +245,14 @@ def test_normal_and_tangential_parts_lead_from_end_to_end(name):
     for first, second in zip(parts[::2], parts[1::2], strict=True):
         assert first.end == second.start
         for end in (first.start, second.end):
-            assert min(abs(end - e) for e in ends) < 1e-9 * plan.size, (first.name, second.name)
+            assert min(abs(end - e) for e in ends) < 1e-9 * plan.size, (first.symbol, second.symbol)
 
 
 def test_under_a_piston_the_parts_start_where_the_cylinder_is_hinged_to_a_moving_link():
     motion = solved("two cylinders").motion
     plan = acceleration_plan(motion, 3)
-    normal = next(v for v in plan.vectors if v.name == "n(d5c)")
-    tangential = next(v for v in plan.vectors if v.name == "t(d5c)")
+    normal = next(v for v in plan.vectors if v.symbol == Symbol("a", "D5C", "n"))
+    tangential = next(v for v in plan.vectors if v.symbol == Symbol("a", "D5C", "τ"))
     assert normal.start == pytest.approx(plan.ends["c"])
     assert tangential.end == pytest.approx(plan.ends["d5"])
     arm = motion.named("D").x[3] - motion.named("C").x[3]

@@ -13,6 +13,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
@@ -40,11 +41,13 @@ class Position:
         """velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
-    def sheet(self, title: str, places: Iterable[complex], pad: float = PAD, **words: str) -> Sheet:
-        """A sheet for places (SI). {caption} in its title: which position it is and where the driver stands."""
+    def sheet(
+        self, title: str, places: Iterable[complex] = (), pad: float = PAD, room: Room | None = None, **words: str
+    ) -> Sheet:
+        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
         place = place_of_driver(self.results, float(self.motion.q[self.k]))
         caption = _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
-        return Sheet(self.results.problem.title, title.format(caption=caption, **words), places, pad=pad)
+        return Sheet(self.results.problem.title, title.format(caption=caption, **words), places, pad=pad, room=room)
 
 
 def place_of_driver(results: Results, q: float) -> str:
