@@ -1,4 +1,4 @@
-"""Drawings; matplotlib is imported here and nowhere else. A new sheet is a function in a file here and a line below."""
+"""Drawings: recorded first, then written in any format. A new sheet is a function in a file here and a line below."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from tmm_cli.draw.formats import files as every_format
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.mechanism import all_positions, detailed, position
-from tmm_cli.draw.plans import forces, lever, motion_plans
+from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.plans import forces, lever
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.mechanism import Position
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, ground_of
-from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, round_scale
+from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
 
 TEXT, LINE, ROW = 8.0, 4.4, 4.0  # points of letters; mm of a line, of a row
 LETTER = 1.62  # mm: a letter of a line, on the average

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from matplotlib.figure import Figure
-
 from tmm_cli.draw.acting import Forces, arms, extent
 from tmm_cli.draw.beneath import Beneath, above
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.equations import table_of_arms, table_of_forces, written
 from tmm_cli.draw.mechanism import Position, measured
 from tmm_cli.draw.scene import Scene
@@ -20,7 +19,7 @@ from tmm_cli.plans.record import extent as extent_of
 MOST = 12  # arms on one sheet
 
 
-def group_loads(here: Position) -> Iterable[tuple[str, Figure]]:
+def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     """A sheet for each group and each driving link; another one for equations whose arms would crowd the first."""
     if here.results.reactions is None:
         return
@@ -48,7 +47,7 @@ def _letters(equation: MomentEquation) -> set[str]:
     return {t.letter for t in equation.terms if t.letter}
 
 
-def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Figure:
+def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Drawing:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
     scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render, slider
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
@@ -41,9 +42,12 @@ class Position:
         """velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
-    def sheet(self, title: str, places: Iterable[complex], pad: float = PAD, **words: str) -> Sheet:
-        """A sheet for places (SI). {caption} in its title: which position it is and where the driver stands."""
-        return Sheet(self.results.problem.title, title.format(caption=self.caption, **words), places, pad=pad)
+    def sheet(
+        self, title: str, places: Iterable[complex] = (), pad: float = PAD, room: Room | None = None, **words: str
+    ) -> Sheet:
+        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
+        subject = title.format(caption=self.caption, **words)
+        return Sheet(self.results.problem.title, subject, places, pad=pad, room=room)
 
     @property
     def caption(self) -> str:
@@ -110,9 +114,8 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        hull = by_points(sheet, scene, link).hull
-        if hull:
-            sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
+        for edge in by_points(sheet, scene, link).edges:
+            sheet.line(edge, colour, width, z=z, blocks=False)
 
 
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
@@ -126,7 +129,7 @@ def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     return sheet
 
 
-def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
@@ -172,7 +175,7 @@ def detailed(results: Results) -> list[Position]:
     return [Position(results, motion, k) for k in in_detail(results)]
 
 
-def position(here: Position) -> Iterable[tuple[str, Figure]]:
+def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions
