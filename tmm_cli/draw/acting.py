@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.draw.annotations import beside, dimension
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.labels import STEP
 from tmm_cli.draw.mechanism import LOAD_MM, couple
 from tmm_cli.draw.sheet import COLOURS, Sheet
@@ -40,7 +41,7 @@ class Forces:
             else:
                 self._force(at, one.force / abs(one.force), one.name, colour, "--" if one.kind == "inner" else "-")
 
-    def _force(self, at: complex, along: complex, name: str, colour: str, style: str) -> None:
+    def _force(self, at: complex, along: complex, name: str, colour: str, style: Style) -> None:
         start = at
         if self._covered(at, -along) + 3 < self._covered(at, along):
             start = at - LOAD_MM * along
