@@ -1,7 +1,10 @@
-"""Sheets of forces: groups under their loads with arms and equations of moments."""
+"""Sheets of forces: groups under their loads with arms and equations of moments; force plans with their tables."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
+import numpy as np
 import pytest
 from models import PROBLEMS
 from test_draw import plain
@@ -11,11 +14,14 @@ from tmm_cli.draw.acting import ARM
 from tmm_cli.draw.beneath import Beneath, Table
 from tmm_cli.draw.drawing import Area, Line
 from tmm_cli.draw.equations import written
+from tmm_cli.draw.force_plans import forces, lanes, table
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.mechanism import detailed
 from tmm_cli.draw.script import plain as line
 from tmm_cli.draw.sheet import INERTIA, LOAD, REACTION
+from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.moments import loaded_parts
+from tmm_cli.plans.record import NamedVector
 
 
 def sheets_of(name, kind):
@@ -86,3 +92,57 @@ def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
     one, wide, narrow = (Beneath((), (table,)).height(width) for width in (20.0, 270.0, 60.0))
     assert wide < narrow < one
     assert Beneath(("x " * 200,)).height(100.0) > 4 * Beneath(("x ",)).height(100.0) / 2
+
+
+@pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])
+def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
+    here = detailed(solve(load(PROBLEMS / f"{name}.yaml"), "forces"))[0]
+    for plan in force_plans(here.results.reactions, here.k):
+        rows = [row.cells for row in table(plan, 7.5) if not row.head]
+        vectors = [*plan.plan.vectors, *plan.full]
+        assert [line(cells[0]) for cells in rows] == [line(vector.symbol) for vector in vectors]
+        for (__, size, length, angle), vector in zip(rows, vectors, strict=True):
+            value = abs(vector.value)
+            assert float(size) == pytest.approx(value, rel=6e-4, abs=1e-9)
+            assert float(length) == pytest.approx(value / 7.5, abs=0.051)
+            if angle:
+                off = vector.value / value * np.exp(-1j * np.radians(float(angle.rstrip("°"))))
+                assert abs(off - 1) < np.radians(0.051)
+
+
+def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
+    here = detailed(solve(load(PROBLEMS / "shaper.yaml"), "forces"))[0]
+    reactions = here.results.reactions
+    found = {v.name: v.value for plan in force_plans(reactions, here.k) for v in plan.full}
+    wanted = {f"R{r.by}{r.on}": complex(r.force[here.k]) for r in reactions.all if r.tangential is not None}
+    assert set(found) == {"R₃₄", "R₁₂", "R₀₃"} and len(wanted) == 3
+    for pair, value in {"34": found["R₃₄"], "12": found["R₁₂"], "03": found["R₀₃"]}.items():
+        assert value == pytest.approx(wanted[f"R{pair}"], rel=1e-12)
+
+
+def test_vectors_of_a_polygon_that_is_a_line_are_drawn_side_by_side():
+    """Forces along one line: 300 N up, 100 N down twice, 100 N down; all but the first would lie on it."""
+    up, down = (
+        [NamedVector("", 0j, 300j, "load")],
+        [NamedVector("", 300j - 100j * n, 200j - 100j * n, "load") for n in range(3)],
+    )
+    aside = lanes([*up, *down], 300.0)
+    assert aside[0] == 0 and len({abs(off) for off in aside[1:]}) == 1 and abs(aside[1]) > 3
+    square = [0j, 1 + 0j, 1 + 1j, 1j, 0j]
+    assert lanes([NamedVector("", a, b, "load") for a, b in pairwise(square)], 1.0) == [0, 0, 0, 0]
+
+
+def test_engine_s_forces_on_one_line_are_spread_apart():
+    for stem, sheet in sheets_of("engine-four", forces).items():
+        shafts = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "vectors" and m.style == "-"]
+        for n, one in enumerate(shafts):
+            for other in shafts[:n]:
+                assert not lie_together(one, other), stem
+
+
+def lie_together(one, other):
+    """Whether two lines on paper (mm) share more than two millimetres, one on the other."""
+    along = (one[-1] - one[0]) / abs(one[-1] - one[0])
+    across = [abs((p - one[0]).imag * along.real - (p - one[0]).real * along.imag) for p in (other[0], other[-1])]
+    runs = sorted(((p - one[0]) * along.conjugate()).real for p in (other[0], other[-1]))
+    return max(across) < 0.5 and min(runs[1], abs(one[-1] - one[0])) - max(runs[0], 0) > 2

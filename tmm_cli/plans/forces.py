@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
@@ -14,11 +14,15 @@ Part = tuple[Symbol, complex, Kind]
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group."""
+    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group.
+
+    full: reactions whose parts the polygon has, from the start of the first part to the end of the other.
+    """
 
     links: tuple[str, ...]
     plan: Plan
     driving: bool = False
+    full: tuple[NamedVector, ...] = ()
 
     @property
     def equation(self) -> str:
@@ -60,7 +64,15 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
     symbol = reaction_symbol(inner.pair.other(b), b)
     joined = NamedVector(symbol.name, corner - force, corner, "inner", symbol)
-    return ForcePlan((a, b), Plan((*plan.vectors, joined)))
+    full = [*_full(first, plan.vectors[:2]), *_full(last, plan.vectors[-2:])]
+    return ForcePlan((a, b), Plan((*plan.vectors, joined)), full=tuple(full))
+
+
+def _full(reaction: Reaction, parts: Sequence[NamedVector]) -> Iterable[NamedVector]:
+    """A reaction of which these are the parts."""
+    if reaction.tangential is not None:
+        symbol = reaction_symbol(reaction.by, reaction.on)
+        yield NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
 
 def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
