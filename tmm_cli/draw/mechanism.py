@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.render import Rendered, arrows, render
+from tmm_cli.draw.render import Rendered, arrows, render, slider
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
-from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.draw.symbols import MEASURED, mass_centre
+from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import PAD, balance_name
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import PAD, balance_symbol
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
 
@@ -39,11 +44,18 @@ class Position:
         """velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
-    def sheet(self, title: str, places: Iterable[complex], pad: float = PAD, **words: str) -> Sheet:
-        """A sheet for places (SI). {caption} in its title: which position it is and where the driver stands."""
+    def sheet(
+        self, title: str, places: Iterable[complex] = (), pad: float = PAD, room: Room | None = None, **words: str
+    ) -> Sheet:
+        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
+        subject = title.format(caption=self.caption, **words)
+        return Sheet(self.results.problem.title, subject, places, pad=pad, room=room)
+
+    @property
+    def caption(self) -> str:
+        """Which position it is and where the driver stands."""
         place = place_of_driver(self.results, float(self.motion.q[self.k]))
-        caption = _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
-        return Sheet(self.results.problem.title, title.format(caption=caption, **words), places, pad=pad)
+        return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
 def place_of_driver(results: Results, q: float) -> str:
@@ -54,23 +66,29 @@ def place_of_driver(results: Results, q: float) -> str:
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 
-def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
+def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = ()) -> Rendered:
     """One position to scale with its symbols, names of points and centres of mass, numbers of links.
 
-    mark: of the position, after the names of moving points.
+    mark: of the position, after the names of moving points. links: only these, without what they are joined to.
     """
     linkage = scene.linkage
-    moving = linkage.moving_points
-    drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
-    names = {p: [p + mark if p in moving else p] for link in linkage.moving for p in linkage.links[link].points}
-    for link in linkage.moving:
+    moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK)
+    apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
+    inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
+    drawn = render(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
+    for pair in apart:
+        if not pair.lower:
+            draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
+        elif pair.slide is not None and pair.slide.runner in links:
+            slider(sheet, scene, pair, MEASURED, DARK)
+    names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
+    for link in shown:
         own, centre = linkage.links[link], f"S{link}"
         if np.any(own.mass != 0):
             at = sheet.on(scene.place(link, complex(own.centre)))
             point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
             if point is None:
-                sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
-                sheet.circle(at, 0.25, face=DARK, z=6.3)
+                mass_centre(sheet, at)
                 belongs(sheet, scene, link, at)
             if centre in names:
                 continue
@@ -98,9 +116,8 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        hull = by_points(sheet, scene, link).hull
-        if hull:
-            sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
+        for edge in by_points(sheet, scene, link).edges:
+            sheet.line(edge, colour, width, z=z, blocks=False)
 
 
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
@@ -114,7 +131,7 @@ def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     return sheet
 
 
-def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
@@ -157,14 +174,10 @@ def detailed(results: Results) -> list[Position]:
     """The positions in detail that could be computed."""
     motion = results.motion
     assert motion is not None
-    wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
-    return [
-        Position(results, motion, k) for k, n in enumerate(results.numbers)
-        if n in wanted and motion.moving[k] and not results.locked[k]
-    ]  # fmt: skip
+    return [Position(results, motion, k) for k in in_detail(results)]
 
 
-def position(here: Position) -> Iterable[tuple[str, Figure]]:
+def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions
@@ -184,11 +197,11 @@ def position(here: Position) -> Iterable[tuple[str, Figure]]:
         if abs(force) > 0:
             if load.kind == "load":
                 belongs(sheet, scene, load.link, at)
-            unscaled(sheet, taken, at, force, load.name, colour)
+            unscaled(sheet, taken, at, force, load_symbols(load)[0], colour)
         if moment != 0:
             radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
             coupled.append(at)
-            couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
+            couple(sheet, at, np.sign(moment), colour, load_symbols(load)[1], radius)
     if reactions is not None:
         _balance(sheet, reactions, k)
         sheet.note(_("loads without scale"))
@@ -199,7 +212,7 @@ def position(here: Position) -> Iterable[tuple[str, Figure]]:
 def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
     for balance in reactions.balances:
         turns = balance.kind == "moment" and balance.moment is not None
-        name = balance_name(balance.driver.link, len(reactions.balances) > 1, turns=turns)
+        name = balance_symbol(balance.driver.link, len(reactions.balances) > 1, turns=turns)
         if turns:
             pivots = [f.at for f in reactions.frames if f.on == balance.driver.link]
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
@@ -209,7 +222,7 @@ def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
 
 
 def unscaled(
-    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: str, colour: str
+    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: Words, colour: str
 ) -> None:
     """A force without scale; longer where it would hide others, taken, from the same place and in its direction."""
     along = force / abs(force)
@@ -220,7 +233,7 @@ def unscaled(
     sheet.label(name, end, 9, colour)
 
 
-def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:
+def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
     """A couple as an open circle with an arrow head in its sense."""
     if sense == 0:
         return

@@ -1,92 +1,28 @@
-"""Sheets of the velocity plan, the acceleration plan, the force plans and the lever."""
+"""Sheets of the lever."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position, unscaled
-from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, scale_text
 from tmm_cli.errors import _
-from tmm_cli.plans.acceleration import POLE, acceleration_plan
-from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import NamedVector, balance_name
-from tmm_cli.plans.velocity import velocity_plan
+from tmm_cli.plans.record import balance_name
 
 
-def motion_plans(here: Position) -> Iterable[tuple[str, Figure]]:
-    """Velocity plan and acceleration plan of a position, with the parts of each link."""
-    for name, plan_of, title, pole, symbol, unit in (
-        ("velocity", velocity_plan, _("Velocity plan. {caption}"), "p", "v", "m/s/mm"),
-        ("acceleration", acceleration_plan, _("Acceleration plan. {caption}"), POLE, "a", "m/s^2/mm"),
-    ):
-        plan = plan_of(here.motion, here.k)
-        sheet = here.sheet(title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
-        for vector in plan.drawn():
-            # of points of mass a thin ray is enough: the letters say the rest
-            mass = vector.kind == "absolute" and vector.name[len(pole) :].startswith("s")
-            width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
-            sheet.arrow(sheet.on(vector.start), sheet.on(vector.end), THIN if mass else COLOURS[vector.kind], width)
-        for vector in plan.drawn():
-            if vector.kind not in ("absolute", "relative") and abs(vector.value) / sheet.mu > 2.5:
-                sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
-        _letters(sheet, plan.ends, pole)
-        if plan.size == 0:
-            sheet.note(_("everything is at rest"))
-        sheet.note(scale_text(symbol, sheet.mu, unit))
-        yield here.stem(name), sheet.finish()
-
-
-def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
+def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
     for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
 
 
-def forces(here: Position) -> Iterable[tuple[str, Figure]]:
-    """A sheet for the polygon of each group and of the driving link."""
-    if here.results.reactions is None:
-        return
-    for plan in force_plans(here.results.reactions, here.k):
-        title = _("Force plan of link {links}. {caption}")
-        if plan.driving:
-            title = _("Force plan of the driving link {links}. {caption}")
-        elif len(plan.links) > 1:
-            title = _("Force plan of links {links}. {caption}")
-        places = [p for v in plan.plan.vectors for p in (v.start, v.end)]
-        sheet = here.sheet(title, places, links=", ".join(plan.links))
-        sheet.note(scale_text("F", sheet.mu, "N/mm"))
-        drawn = plan.plan.drawn()
-        for vector in drawn:
-            _force(sheet, vector)
-        small = [v.name for v in plan.plan.vectors if v not in drawn]
-        if small:
-            sheet.note(_("zero: {names}").format(names=", ".join(small)))
-        for line, text in enumerate(textwrap.wrap(plan.equation, 105 if sheet.paper[0] < 250 else 150, max_lines=2)):
-            sheet.text(complex(12, 8 - 4.5 * line), text, 9, colour="#404040")
-        kind = "links" if len(plan.links) > 1 else "link"
-        yield safe("-".join([here.stem("forces"), kind, *plan.links])), sheet.finish()
-
-
-def _force(sheet: Sheet, vector: NamedVector) -> None:
-    start, end = sheet.on(vector.start), sheet.on(vector.end)
-    colour = COLOURS[vector.kind]
-    if vector.kind == "inner":
-        sheet.line([start, end], colour, 1.0, "--", 4)
-        sheet.arrow(start + (end - start) * 0.92, end, colour, 1.0)
-    else:
-        sheet.arrow(start, end, colour, 1.6)
-        sheet.circle(end, 0.45, DARK, DARK, 0.3, 6)
-    sheet.label(vector.name, (start + end) / 2, 10, colour)
-
-
-def lever(here: Position) -> Iterable[tuple[str, Figure]]:
+def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The turned velocity plan with its forces; arms are thin lines from the pole."""
     results = here.results
     if results.lever is None:
@@ -111,7 +47,7 @@ def lever(here: Position) -> Iterable[tuple[str, Figure]]:
             sheet.line([sheet.on(0j), foot], THIN, 0.6, ":", 2)
             sheet.line([foot, at], THIN, 0.5, "--", 2)
         unscaled(sheet, taken, at, force.force, force.name, COLOURS["inertia" if force.name in inertial else "load"])
-    _letters(sheet, plan.ends, "p")
+    letter_points(sheet, plan.ends, "p")
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:

@@ -1,4 +1,4 @@
-"""Symbols of a mechanism, each in one place: links, hinges, stones, guides, supports, centres of mass, arrows.
+"""Symbols of a mechanism, each in one place: links, rigid corners, stones, rails, centres of mass, arrows.
 
 A look says how large and how bold they are: as measured drawings have them, or as structural schemes do.
 """
@@ -10,15 +10,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
-from tmm_cli.draw.sheet import DARK, Sheet, hatch
+from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.vectors import cross, dot, unit
 
 WELD = 3.2  # mm: leg of a rigid corner's mark
 CLEAR = 3.2  # mm about the number on a plate
 GAP = 0.5  # mm between a box and its rails
+MASS = 1.4  # mm: radius of a centre of mass
 FREE = "#6a6a6a"  # what a lead would be joined to
 PALETTE = ("#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#b86a00", "#00757d", "#8a3b5c", "#5f6b00", "#3d4a5c")
 CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
@@ -59,6 +61,14 @@ def tint(colour: str, share: float = 0.16) -> str:
     return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in parts)
 
 
+def mass_centre(sheet: Sheet, at: complex) -> None:
+    """A centre of mass: a circle with two dark quarters."""
+    sheet.circle(at, MASS, "white", DARK, 0.8, 6.2)
+    for first in (0.0, np.pi):
+        arc = at + MASS * unit(first + np.linspace(0, np.pi / 2, 9))
+        sheet.area([at, *(complex(p) for p in arc)], DARK, "none", 0.0, 6.3, blocks=False)
+
+
 def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
     """A link as bars and plates."""
     if len(form.hull) > 2:
@@ -67,20 +77,31 @@ def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
     for start, end in form.lines:
         # a guide goes behind its stone, a link that is only hinged to a stone comes in front of it
         behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in form.boxes)
-        sheet.line([start, end], colour, look.bar, z=3 if behind or look.measured else 4.5, blocks=False)
+        sheet.line([start, end], colour, look.bar, z=3 if behind else 4.5, blocks=False)
         if abs(end - start) > ON_LINE:
             for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
                 sheet.ground.line(start + shift, end + shift)
     for at, one, other in form.welds:
-        if min(abs(one), abs(other)) > 0.5:
-            reach = WELD + (look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0)
-            legs = [min(reach, abs(leg)) * leg / abs(leg) for leg in (one, other)]
-            sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
+        weld(
+            sheet,
+            at,
+            one,
+            other,
+            colour,
+            look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0,
+        )
+
+
+def weld(sheet: Sheet, at: complex, one: complex, other: complex, colour: str, hidden: float = 0.0) -> None:
+    """The mark of a rigid corner between two legs; a circle of the radius `hidden` (mm) covers its tip."""
+    if min(abs(one), abs(other)) > 0.5:
+        legs = [min(WELD + hidden, abs(leg)) * leg / abs(leg) for leg in (one, other)]
+        sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
 
 
 def box(
-    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: str = "-"
+    sheet: Sheet, at: complex, along: complex, colour: str, size: tuple[float, float], look: Look, style: Style = "-"
 ) -> None:
     """A slider or stone; dashed where it is only what a lead is joined to."""
     length, width = size
@@ -96,29 +117,12 @@ def box(
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
 
 
-def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> complex:
-    """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
-    side = 1j * out
-    height, half = look.support
-    foot = at + height * out
-    low, high = foot - half * side, foot + half * side
-    sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-    low, high = low - 1.6 * side, high + 1.6 * side
-    sheet.line([low, high], DARK, 1.2, z=2.7)
-    hatch(sheet, low, high, out)
-    return high
-
-
-def rails(
-    sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: str = "-", *, fixed: bool
-) -> None:
-    """Two lines along the way of a box of this width; hatched where they are the frame's."""
+def rails(sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: Style = "-") -> None:
+    """Two lines along the way of a box of this width."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + GAP)
         sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
-        if fixed:
-            hatch(sheet, start + shift, end + shift, side)
 
 
 def quiet(

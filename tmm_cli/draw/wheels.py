@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.base import axis
@@ -22,8 +23,8 @@ from tmm_cli.vectors import Vector, dot, unit
 if TYPE_CHECKING:
     from tmm_cli.draw.scene import Scene
 
-CHAIN: Any = (0, (7, 2.2, 1.2, 2.2))  # dash and dot
-DASHED: Any = (0, (3, 2))
+CHAIN: Style = "-."  # dash and dot
+DASHED: Style = "--"
 TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
@@ -151,7 +152,11 @@ def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
     if not true:  # no convex cam has its face there: the least that is convex, and not too slender
         height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
         height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
-    disk = centre + (height + rise - 1j * slope) * forward * unit(angle - turn)
+    ways = forward * unit(angle - turn)
+    disk = (height + rise - 1j * slope) * ways
+    # where no cam could have the law, the envelope has tails beyond the face
+    tails = np.max(dot(ways[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
+    disk = centre + disk[~tails]
     foot = centre + (height + now) * forward
     reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
     touch = foot - 1j * slope_now * forward
@@ -196,7 +201,7 @@ def draw(sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float
     sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
 
 
-def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Any, z: float) -> None:
+def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Style, z: float) -> None:
     """A curve within the drawing's field."""
     low, high = sheet.ground.low, sheet.ground.high
     inside = (places.real > low.real) & (places.real < high.real) & (places.imag > low.imag) & (places.imag < high.imag)

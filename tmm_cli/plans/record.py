@@ -9,7 +9,7 @@ from typing import Literal
 
 from tmm_cli.tolerances import NO_VECTOR
 
-ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
@@ -20,13 +20,32 @@ Kind = Literal[
 
 
 @dataclass(frozen=True)
+class Symbol:
+    """A letter with its indices, as formulas have it: a, BA below, n above."""
+
+    letter: str
+    below: str = ""
+    above: str = ""
+
+    @property
+    def name(self) -> str:
+        """In one line: R₃₄ᵗ."""
+        below = f"({self.below})" if "," in self.below else self.below.translate(_BELOW)
+        return self.letter + below + self.above.translate(_ABOVE)
+
+
+@dataclass(frozen=True)
 class NamedVector:
-    """A vector from start to end (SI), and what a student calls it."""
+    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+
+    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    """
 
     name: str
     start: complex
     end: complex
     kind: Kind
+    symbol: Symbol = Symbol("")
 
     @property
     def value(self) -> complex:
@@ -35,10 +54,11 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan; `ends` are its lettered points (the pole among them)."""
+    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
 
     vectors: tuple[NamedVector, ...]
     ends: Mapping[str, complex] = field(default_factory=dict)
+    corners: Mapping[str, complex] = field(default_factory=dict)
 
     @property
     def size(self) -> float:
@@ -58,6 +78,11 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
     xs, ys = [p.real for p in points], [p.imag for p in points]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+
+
+def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of what may be drawn on below the title strip, mm."""
+    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
 
 def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
@@ -81,20 +106,30 @@ def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[floa
     return best, scales[best]
 
 
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_ABOVE = str.maketrans("τn", "ᵗⁿ")
+
+
 def subscript(text: str) -> str:
     """Figures below the line where the name is a number, else in brackets."""
     return text.translate(_BELOW) if text.isdecimal() and text.isascii() else f"({text})"
 
 
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
 def reaction_name(by: str, on: str, part: str = "") -> str:
-    """R₃₄: from link 3 on link 4; part: ᵗ tangential, ⁿ normal."""
-    both = by + on if len(by) == len(on) == 1 else f"{by},{on}"
-    return f"R{subscript(both)}{part}"
+    """R₃₄: from link 3 on link 4; part: τ tangential, n normal."""
+    return reaction_symbol(by, on, part).name
+
+
+def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
+    """The same with indices; letter: M of the couple that a guide or a cam bears."""
+    return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
 
 
 def balance_name(link: str, several: bool, *, turns: bool = False) -> str:
     """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
-    return ("Mb" if turns else "Fb") + (subscript(link) if several else "")
+    return balance_symbol(link, several, turns=turns).name
+
+
+def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
+    """The same with indices."""
+    return Symbol("M" if turns else "F", f"b{link}" if several else "b")
