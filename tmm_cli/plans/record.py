@@ -9,7 +9,7 @@ from typing import Literal
 
 from tmm_cli.tolerances import NO_VECTOR
 
-ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
@@ -20,13 +20,26 @@ Kind = Literal[
 
 
 @dataclass(frozen=True)
+class Symbol:
+    """A letter with its indices, as formulas have it: a, BA below, n above."""
+
+    letter: str
+    below: str = ""
+    above: str = ""
+
+
+@dataclass(frozen=True)
 class NamedVector:
-    """A vector from start to end (SI), and what a student calls it."""
+    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+
+    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    """
 
     name: str
     start: complex
     end: complex
     kind: Kind
+    symbol: Symbol = Symbol("")
 
     @property
     def value(self) -> complex:
@@ -35,10 +48,11 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan; `ends` are its lettered points (the pole among them)."""
+    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
 
     vectors: tuple[NamedVector, ...]
     ends: Mapping[str, complex] = field(default_factory=dict)
+    corners: Mapping[str, complex] = field(default_factory=dict)
 
     @property
     def size(self) -> float:
@@ -58,6 +72,11 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
     xs, ys = [p.real for p in points], [p.imag for p in points]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+
+
+def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of what may be drawn on below the title strip, mm."""
+    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
 
 def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
