@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -111,14 +111,15 @@ def decades(low: float, high: float, start: float, length: float) -> Axis:
     return Axis(least, (most - least) / length, start, length, logarithmic=True)
 
 
-def equal(one: Axis, other: Axis) -> tuple[Axis, Axis]:
-    """Both at the coarser scale of the two, their middles where they were."""
-    mu = max(one.mu, other.mu)
-    return _coarser(one, mu), _coarser(other, mu)
-
-
-def _coarser(axis: Axis, mu: float) -> Axis:
-    return Axis((axis.low + axis.high - mu * axis.length) / 2, mu, axis.start, axis.length, degrees=axis.degrees)
+def equal(axes: tuple[Axis, Axis], ends: Sequence[tuple[float, float]]) -> tuple[Axis, Axis]:
+    """The two at one round scale at which what lies between these ends stands in the middle of both."""
+    spans = [_apart(*own) for own in ends]
+    mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
+    one, other = (
+        replace(axis, low=(low + high - mu * axis.length) / 2, mu=mu)
+        for axis, (low, high) in zip(axes, spans, strict=True)
+    )
+    return one, other
 
 
 def _apart(low: float, high: float) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from tmm_cli.draw.fonts import width as width_of
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 
 FINE = "#dcdcdc"  # of grids
+SOFT = "#505050"  # of scales and numbers of positions
 SMALL, PLAIN = 8.0, 9.0  # points
 LEFT, RIGHT = 17.0, 6.0  # mm beside the panels, for numbers on their axes
 ROW = 4.5  # mm from a line of text to the next
@@ -50,7 +52,7 @@ class Jump:
 
 @dataclass(frozen=True)
 class Plot:
-    """What a panel shows. scale: says the scale of its axis for people, from mu; share: of the height, to the others'."""
+    """What a panel shows. scale: how the scale of its axis is written, from mu; share: of the height."""
 
     words: str
     curves: Sequence[Curve]
@@ -96,11 +98,10 @@ def chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool
     for plot, rows in zip(plots, heads, strict=True):
         height = free * plot.share / sum(p.share for p in plots)
         bottom = top - ROW * (len(rows) + 0.3) - height
-        axis = x
-        y = _axis(plot, bottom, height)
+        axes = x, _axis(plot, bottom, height)
         if same_scale:
-            axis, y = equal(x, y)
-        panel = Panel(sheet, axis, y)
+            axes = equal(axes, [limits([getattr(c, way) for c in plot.curves]) for way in ("xs", "ys")])
+        panel = Panel(sheet, *axes)
         panel.grid()
         _write_head(panel, plot, rows, top)
         panel.fill(plot)
@@ -128,16 +129,16 @@ class Panel:
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """A line that keeps no label off."""
-        self.sheet.line([start, end], colour, width, style, z, blocks=False)
+        """A line; one that lies above the grid keeps labels off."""
+        self.sheet.line([start, end], colour, width, style, z, blocks=z > 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
         """A line from below to above at a place across, mm."""
         self.line(complex(place, self.y.start), complex(place, self.y.end), colour, width, style, z)
 
-    def level(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
+    def level(self, place: float, colour: str, width: float, z: float) -> None:
         """A line from side to side at a height, mm."""
-        self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, style, z)
+        self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
 
     def text(self, at: complex, text: str, ha: Align = "left", size: float = SMALL, colour: str = DARK) -> None:
         self.sheet.text(at, text, size, ha=ha, colour=colour)
@@ -153,24 +154,24 @@ class Panel:
         for place in (self.x.start, self.x.end):
             self.upright(place, THIN, 0.6)
         for place in (self.y.start, self.y.end):
-            self.level(place, THIN, 0.6)
+            self.level(place, THIN, 0.6, 1)
         if not self.y.logarithmic and self.y.low <= 0 <= self.y.high:
             self.level(float(self.y.on(0.0)), DARK, 0.7, z=1.5)
 
     def numbers_across(self, under: float) -> None:
         """Round numbers below the panel, so far under it (mm)."""
         for value, text in self.x.ticks(EVERY[0]):
-            self.text(complex(float(self.x.on(value)), self.y.start - under - 0.3 * ROW), text, "center")
+            self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
         """Short lines at positions, and as many of their numbers as there is room for."""
         last = -np.inf
         for value, text in numbers:
             place = float(self.x.on(value))
-            self.line(complex(place, self.y.start), complex(place, self.y.start - 1), DARK, 0.6)
+            self.line(complex(place, self.y.start), complex(place, self.y.start - 0.8), DARK, 0.6)
             half = width_of(text, SMALL * POINT) / 2
             if place - half > last + 0.8:
-                self.text(complex(place, self.y.start - 0.6 * ROW), text, "center", 7, THIN)
+                self.text(complex(place, self.y.start - 0.65 * ROW), text, "center", SMALL, SOFT)
                 last = place + half
 
     def fill(self, plot: Plot) -> None:
@@ -183,8 +184,9 @@ class Panel:
                 continue
             self.sheet.line(places.tolist(), curve.colour, curve.width, curve.style, blocks=False)
             if plot.jumps:
-                for start, end in zip(places[:-1:KEPT], places[KEPT::KEPT], strict=False):
-                    self.sheet.ground.line(complex(start), complex(end))
+                kept = places[np.isfinite(places)][::KEPT].tolist()
+                for start, end in pairwise(kept):
+                    self.sheet.ground.line(start, end)
         for jump in plot.jumps:
             for value, text in zip(jump.values, jump.texts, strict=True):
                 place = complex(self.at(jump.at, value))
@@ -226,14 +228,14 @@ def _write_head(panel: Panel, plot: Plot, rows: Sequence[Iterable[Curve]], top: 
     panel.text(at, plot.words, size=PLAIN)
     if plot.scale is not None:
         after = at + width_of(plot.words, PLAIN * POINT) + APART
-        panel.text(after, plot.scale(panel.y.mu), colour="#505050")
+        panel.text(after, plot.scale(panel.y.mu), colour=SOFT)
     for number, row in enumerate(rows):
         entries = list(row)
         place = complex(panel.x.end - sum(map(_entry, entries)) + APART, top - ROW * (number + 0.5))
         place = place if number == 0 else complex(panel.x.start, place.imag)
         for curve in entries:
             if curve.dots:
-                panel.sheet.circle(place + SAMPLE / 2, DOT, curve.colour, curve.colour, 0.3, 4)
+                panel.sheet.circle(place + SAMPLE - 2, DOT, curve.colour, curve.colour, 0.3, 4)
             else:
                 panel.line(place, place + SAMPLE, curve.colour, curve.width, curve.style)
             panel.text(place + SAMPLE + 1, curve.label)
