@@ -17,6 +17,7 @@ from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
 from tmm_cli.grading.task import Task
 from tmm_cli.plans.record import LANDSCAPE
+from tmm_cli.vectors import Real
 
 MOST, FEWEST = 10, 6  # bars that a panel has room for
 LONGEST = 32  # characters of a line beside a bar
@@ -54,7 +55,7 @@ def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     return sheet.finish()
 
 
-def _spread(panel: Panel, counts: Sequence[int], own: Sequence[float]) -> None:
+def _spread(panel: Panel, counts: Real, own: Real) -> None:
     _title(panel, _("Points"))
     if len(own):
         first, last = (float(panel.x.on(share)) for share in np.quantile(own, (0.25, 0.75)))
@@ -129,7 +130,8 @@ def _across(panel: Panel, ticks: Iterable[tuple[float, str]]) -> None:
 def _bar(panel: Panel, row: int, first: float, last: float, colour: str) -> None:
     if last > first:
         start, end = (float(panel.x.on(value)) for value in (first, last))
-        _area(panel, start, end, *(float(panel.y.on(row + side)) for side in (0.15, 0.85)), colour)
+        top, bottom = (float(panel.y.on(row + side)) for side in (0.15, 0.85))
+        _area(panel, start, end, bottom, top, colour)
 
 
 def _name(panel: Panel, row: int, name: str) -> None:
@@ -153,8 +155,7 @@ def _room(entries: Iterable[tuple[str, str]]) -> float:
     return sum(11 + width(text, SMALL * POINT) for text, __ in entries)
 
 
-def _area(
-    panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0
-) -> None:  # fmt: skip
+def _area(panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0) -> None:
+    """A rectangle on the paper, mm."""
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     panel.sheet.area(corners, colour, "none", z=z, blocks=False)
