@@ -26,9 +26,9 @@ def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     for part in loaded_parts(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
         stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
-        for number, equations in enumerate(_sheetfuls(part.equations)):
-            if part.acting:
-                yield stem + (f"-sheet-{number + 1}" if number else ""), _sheet(here, part, equations)
+        sheets = [sheet for few in _sheetfuls(part.equations) for sheet in _sheets(here, part, few)]
+        for number, sheet in enumerate(sheets if part.acting else ()):
+            yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
 
 def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
@@ -43,31 +43,31 @@ def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]
     return found
 
 
-def _letters(equation: MomentEquation) -> set[str]:
-    return {t.letter for t in equation.terms if t.letter}
+def _letters(equation: MomentEquation) -> set[int]:
+    return {t.number for t in equation.terms if t.number}
 
 
-def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Drawing:
+def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Iterable[Sheet]:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
     scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)
     terms = [t for e in equations for t in e.terms]
     further = [t.acting for t in terms if t.acting.kind == "reaction" and t.acting not in part.acting]
     places = [*scene.extent(part.links), *(scene.point(p) for n in part.links for p in linkage.links[n].points)]
-    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.letter))]
+    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
     title = _("Links {links} under their loads. {caption}")
     if part.driving:
         title = _("Driving link {links} under its loads. {caption}")
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
-    lines = [text for e in equations for text in written(e)]
+    lines = [line for e in equations for line in written(e)]
     units, shown = here.results.problem.units, [*part.acting, *further]
 
     def beneath(mu: float) -> Beneath:
         return Beneath(lines, (table_of_forces(shown), table_of_arms(equations, units, mu)))
 
     sized = [*((place, 0j) for place in places), *extent(shown)]
-    sheet = above(here, title, sized, beneath, links=", ".join(part.links))
+    sheet, text = above(here, title, sized, beneath, links=", ".join(part.links))
     measured(sheet, scene, links=part.links)
     bars = sheet.ground.crowd
     forces = Forces(sheet)
@@ -80,14 +80,14 @@ def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]
         sheet.note(scale_text("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
-    return sheet.finish()
+    return (sheet,) if text is None else (sheet, text)
 
 
 def _special(sheet: Sheet, part: LoadedPart, equation: MomentEquation) -> None:
     """The point of Assur, and the lines of the reactions that meet there."""
-    at, with_moments = sheet.on(equation.centre), {t.acting.name for t in equation.terms}
+    at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for one in part.acting:
-        if one.pair and not one.couple and one.name not in with_moments:
+        if one.pair and not one.couple and one.symbol not in with_moments:
             sheet.line([sheet.on(one.at), at], REACTION, 0.5, "-.", 1.7)
     sheet.circle(at, 0.6, REACTION, REACTION, 0.5)
     sheet.label(equation.about, at, 10)

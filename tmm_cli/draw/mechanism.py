@@ -14,13 +14,15 @@ from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.render import Rendered, render, slider
 from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.plans.record import PAD, balance_name
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import PAD, balance_symbol
 from tmm_cli.plans.velocity import massive
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
@@ -78,7 +80,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
         if not pair.lower:
             draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
         elif pair.slide is not None and pair.slide.runner in links:
-            slider(sheet, scene, pair, MEASURED, DARK)
+            slider(sheet, drawn.scene, pair, MEASURED, DARK)
     names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
     for link in shown:
         own, centre = linkage.links[link], f"S{link}"
@@ -96,7 +98,8 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
                 names[point].append(centre)
     for name, called in names.items():
         at = sheet.on(scene.point(name))
-        if sum(name in link.points for link in linkage.links.values()) == 1:
+        hinged = any(abs(at - sheet.on(scene.point(hinge.point))) <= MEASURED.hinge for hinge in linkage.hinges)
+        if not hinged:  # a dot in a circle would look like two pairs
             sheet.circle(at, 0.6, face=DARK)
         sheet.label(", ".join(called), at, 10, far=bool(mark) and name in moving)
     for link, form in drawn.forms.items():
@@ -182,11 +185,11 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
         if abs(force) > 0:
             if load.kind == "load":
                 belongs(sheet, scene, load.link, at)
-            unscaled(sheet, taken, at, force, load.name, colour)
+            unscaled(sheet, taken, at, force, load_symbols(load)[0], colour)
         if moment != 0:
             radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
             coupled.append(at)
-            couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
+            couple(sheet, at, np.sign(moment), colour, load_symbols(load)[1], radius)
     if reactions is not None:
         _balance(sheet, reactions, k)
         sheet.note(_("loads without scale"))
@@ -197,7 +200,7 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
 def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
     for balance in reactions.balances:
         turns = balance.kind == "moment" and balance.moment is not None
-        name = balance_name(balance.driver.link, len(reactions.balances) > 1, turns=turns)
+        name = balance_symbol(balance.driver.link, len(reactions.balances) > 1, turns=turns)
         if turns:
             pivots = [f.at for f in reactions.frames if f.on == balance.driver.link]
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
@@ -207,7 +210,7 @@ def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
 
 
 def unscaled(
-    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: str, colour: str
+    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: Words, colour: str
 ) -> None:
     """A force without scale; longer where it would hide others, taken, from the same place and in its direction."""
     along = force / abs(force)
@@ -218,7 +221,7 @@ def unscaled(
     sheet.label(name, end, 9, colour)
 
 
-def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:
+def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
     """A couple as an open circle with an arrow head in its sense."""
     if sense == 0:
         return

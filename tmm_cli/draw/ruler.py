@@ -49,14 +49,16 @@ class Ruler:
     def away(self, places: Vector) -> Vector:
         """How far places are from the way, on the side of the ruler, mm."""
         off = places - self.base
-        far: Vector = self.side * (dot(1j * self.along, off) if self.radius == 0 else abs(off) - self.radius)
-        return far
+        if self.radius == 0:
+            return self.side * np.asarray(dot(1j * self.along, off))
+        return self.side * np.asarray(abs(off) - self.radius)
 
     def run(self, places: Vector | complex) -> Real:
         """How far along it places on the way are, mm."""
         off = places - self.base
-        runs: Real = dot(self.along, off) if self.radius == 0 else self.radius * np.angle(off / self.along)
-        return runs
+        if self.radius == 0:
+            return np.asarray(dot(self.along, off))
+        return self.radius * np.asarray(np.angle(off / self.along))
 
     def out(self, run: float) -> complex:
         """The direction away from the way."""

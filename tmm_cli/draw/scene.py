@@ -87,9 +87,10 @@ class Scene:
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
     def joints(self, link: str) -> list[complex]:
-        """Places at which a link is hinged or runs on a guide; of a link with one of them, its named points too."""
+        """Places at which a link is hinged or runs on a guide; of a bar with one of them, its named points too."""
         found = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
-        if len(found) + len(self.guides(link)) < 2:
+        disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
+        if len(found) + len(self.guides(link)) < 2 and not disk:
             found += self.ends(link)
         return found
 
@@ -127,23 +128,26 @@ def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: f
     parted = spread(sheet, scene, links)
     if parted is not scene:
         fit(sheet, parted.extent(links), pad, most)
+        parted = spread(sheet, scene, links)
+        centre(sheet, parted.extent(links))
     return parted
 
 
 def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
     """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
-    boxes = [(p, sheet.on(scene.at(p))) for link in links for p in scene.of(link) if p.slide is not None]
+    boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
     every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
-    for pair, at in boxes:
-        slide = pair.slide
-        if slide is None or slide.carrier != FRAME:
+    for pair in (p for link in links for p in scene.of(link)):
+        if pair.slide is None or pair.slide.carrier != FRAME:
             continue
-        if any(abs(place - at) < APART for other, place in boxes if other.name != pair.name):
-            others = [place for place in every if abs(place - at) > ON_LINE]
-            choices = [at + side * ASIDE * scene.along(slide) for side in (1, -1)]
+        at = boxes[pair.name]
+        if any(abs(place - at) < APART for name, place in boxes.items() if name != pair.name):
+            others = [place for place in (*every, *boxes.values()) if abs(place - at) > ON_LINE]
+            choices = [at + side * ASIDE * scene.along(pair.slide) for side in (1, -1)]
             # farther from the others; without any, lower
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
+            boxes[pair.name] = free
             moved[pair.name] = (free - at) * sheet.mu
     return replace(scene, moved=moved) if moved else scene
 
@@ -156,9 +160,13 @@ def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
 
 def fit(sheet: Sheet, places: Sequence[complex], pad: float, most: float) -> None:
     """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
-    low, high = sheet.ground.low, sheet.ground.high
-    sheet.mu = scale_to(places, high - low - 2 * pad * (1 + 1j), most)
-    sheet.origin = (low + high) / 2 - extent(places or [0j])[3] / sheet.mu
+    sheet.mu = scale_to(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    centre(sheet, places)
+
+
+def centre(sheet: Sheet, places: Sequence[complex]) -> None:
+    """Put places (m) into the middle of the ground of the sheet, at its scale."""
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
 
 
 def apart(places: Iterable[complex]) -> list[complex]:
