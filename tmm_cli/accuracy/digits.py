@@ -176,7 +176,8 @@ class _Judge:
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
-        return array([cells.get(key, nothing) for key in self.values])
+        found: Real = array([cells.get(key, nothing) for key in self.values])
+        return found
 
     def gap(self, one: Real, other: Real) -> Real:
         """How far values are from others; of angles the way round."""
