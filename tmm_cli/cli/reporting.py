@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from tmm_cli import count, problem_of, redrive, solve, structure_of
@@ -62,21 +62,24 @@ def computed(
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
-def bounds_of(results: Results | ChainResults, digits: bool) -> AccuracyReport | None:
-    """How far each number is to be trusted, with `digits` in full; None where nothing moves."""
+def bounds_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
+    """How far each number is to be trusted, with `digits` in full; None where nothing moves.
+
+    shown: tables that alone are shown.
+    """
     if isinstance(results, ChainResults) or results.motion is None:
         return None
-    return accuracy(results, digits)
+    return accuracy(results, digits, shown)
 
 
 def report(
-    results: Results | ChainResults, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False
+    results: Results | ChainResults, names: Collection[str], as_json: bool, out: Path | None, digits: bool = False
 ) -> int:
     """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
 
     digits: show bounds and sensitivities beside the values.
     """
-    found = bounds_of(results, digits)
+    found = bounds_of(results, digits, () if as_json or out is not None else names)
     if as_json:
         emit_results(results, found)
     else:

@@ -117,7 +117,7 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        for edge in by_points(sheet, scene, link).edges:
+        for edge in by_points(sheet, scene, link, whole=False).edges:
             sheet.line(edge, colour, width, z=z, blocks=False)
 
 
