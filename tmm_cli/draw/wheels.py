@@ -31,6 +31,7 @@ ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
 AXLE = 0.9  # mm: the circle in the middle of a roller
 STEPS = 361
 ABOVE = 2.3  # plates do not hide wheels
+AROUND = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
 LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
 
 
@@ -116,7 +117,7 @@ def extent(found: Iterable[Outline], size: float, links: Collection[str] | None 
         apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
         for disc in one.discs:
             if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
-                places += [disc.centre + disc.radius * direction for direction in (1, 1j, -1, -1j)]
+                places += [disc.centre + disc.radius * complex(unit(turn)) for turn in AROUND]
     return [p for p in places if np.isfinite(p)]
 
 
