@@ -11,7 +11,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.equations import table_of_arms, table_of_forces, written
 from tmm_cli.draw.mechanism import Position, measured
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.moments import SPECIAL, LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.record import extent as extent_of
@@ -77,7 +77,7 @@ def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation
         _special(sheet, part, equation)
     arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
-        sheet.note(scale_text("l", sheet.mu, "m/mm"))
+        sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     return (sheet,) if text is None else (sheet, text)

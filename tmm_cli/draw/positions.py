@@ -19,7 +19,7 @@ from tmm_cli.draw.render import arrows
 from tmm_cli.draw.room import Figure, room
 from tmm_cli.draw.ruler import Number, Ruler, draw_ruler, gathered, reach, roomiest, ruler_of
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
-from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track
 from tmm_cli.errors import _
@@ -113,7 +113,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     notes, rows = list(_notes(view)), lengths(results)
     figure = _figure(view, whole)
     off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
-    found = room(figure, Block([scale_text("l", 0.0125, "m/mm") + ", 1:12.5", *notes], rows), OF_LENGTHS)
+    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
     sheet = Sheet(results.problem.title, caption, room=found)
     trace(sheet, whole)
@@ -132,7 +132,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
         _output(sheet, view, track, marks, off)
     elif track is not None and track != driver:
         _spots(sheet, marks)
-    sheet.note(f"{scale_text('l', sheet.mu, 'm/mm')}, {ratio(sheet.mu)}")
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
     for note in notes:
         sheet.note(note)
     sheet.table(rows, 1)
