@@ -71,7 +71,7 @@ def test_equations_of_moments_stand_beneath_in_letters_then_with_numbers(loaded,
 
 def test_arms_are_listed_with_their_length_and_as_they_measure_on_paper(loaded):
     texts = plain(loaded["group-loads-03-links-4-5"])
-    (scale,) = [float(t.split()[2]) for t in texts if t.startswith("μ_l")]
+    (scale,) = [float(t.split()[1]) for t in texts if t.startswith(" = ") and t.endswith(" m/mm")]
     assert {"104.1", f"{0.1041 / scale:.1f} mm", "228.6", f"{0.2286 / scale:.1f} mm"} <= texts
     lengths = [
         abs(mark.places[0] - mark.places[-1])

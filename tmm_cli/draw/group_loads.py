@@ -11,7 +11,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.equations import along_guide, table_of_arms, table_of_forces, written
 from tmm_cli.draw.mechanism import Position, measured
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.moments import SPECIAL, LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
@@ -83,7 +83,7 @@ def _sheets(
         _special(sheet, part, equation)
     arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
-        sheet.note(scale_text("l", sheet.mu, "m/mm"))
+        sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     return (sheet,) if text is None else (sheet, text)
