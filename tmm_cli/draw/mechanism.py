@@ -17,7 +17,7 @@ from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED, mass_centre
-from tmm_cli.draw.wheels import draw as draw_wheels
+from tmm_cli.draw.wheel_symbols import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
