@@ -19,7 +19,7 @@ from tmm_cli.draw.render import arrows
 from tmm_cli.draw.room import Figure, room
 from tmm_cli.draw.ruler import Number, Ruler, draw_ruler, gathered, reach, roomiest, ruler_of
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
-from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track
 from tmm_cli.errors import _
@@ -33,6 +33,7 @@ SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
 OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
 STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
 DIMENSION = 13.0  # mm beside a ruler for the stroke
+BEYOND, SHORT = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
 EXTREME = "#6a6a6a"
 BOLD = 4  # how much more a link in full is in the way than a thin one
 BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
@@ -113,7 +114,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     notes, rows = list(_notes(view)), lengths(results)
     figure = _figure(view, whole)
     off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
-    found = room(figure, Block([scale_text("l", 0.0125, "m/mm") + ", 1:12.5", *notes], rows), OF_LENGTHS)
+    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
     sheet = Sheet(results.problem.title, caption, room=found)
     trace(sheet, whole)
@@ -132,7 +133,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
         _output(sheet, view, track, marks, off)
     elif track is not None and track != driver:
         _spots(sheet, marks)
-    sheet.note(f"{scale_text('l', sheet.mu, 'm/mm')}, {ratio(sheet.mu)}")
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
     for note in notes:
         sheet.note(note)
     sheet.table(rows, 1)
@@ -167,9 +168,10 @@ def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark]
     bold = [view.lines(view.scene.k)] * BOLD
     lines = np.concatenate([*(view.lines(k) for k in view.shown), *bold]) / mu
     ruler = roomiest(plain, numbers, lines)
-    runs = [number.run for number in numbers]
-    for run in np.linspace(min(runs), max(runs), len(BETWEEN)).tolist():
-        way = ruler.way(run)
+    low, high = min(number.run for number in numbers), max(number.run for number in numbers)
+    more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
+    for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
+        way = ruler.way(min(max(run, low), high))
         for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
             figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
     return ruler.off
