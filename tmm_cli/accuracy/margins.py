@@ -103,7 +103,8 @@ def _longest(results: Results) -> float:
     linkage = results.linkage
     spreads = (spread(linkage, link) for link in linkage.links)
     acted_on = _most([*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)])
-    return max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
+    longest: float = max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
+    return longest
 
 
 def _most(values: object) -> float:
