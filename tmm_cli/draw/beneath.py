@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.labels import Ground
@@ -28,7 +29,7 @@ class Table:
     head: tuple[str, ...]
     rows: Sequence[tuple[Words, ...]]
 
-    @property
+    @cached_property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)

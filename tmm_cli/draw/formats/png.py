@@ -31,7 +31,7 @@ def png(drawing: Drawing) -> bytes:
     pixels = np.asarray(renderer.buffer_rgba())
     pixels[:] = 255
     draw(drawing, renderer, DPI, _write)
-    return _packed(pixels[:, :, :3])
+    return _packed(pixels)
 
 
 def _write(renderer: RendererBase, context: GraphicsContextBase, mark: Text, to_pixels: Affine2D) -> None:
@@ -45,11 +45,12 @@ def _write(renderer: RendererBase, context: GraphicsContextBase, mark: Text, to_
 
 
 def _packed(pixels: NDArray[Any]) -> bytes:
-    """The file of a picture; with the packing of drawings in mind a third of the time that libraries take."""
+    """The file of a picture without its transparency, packed in half the time that libraries take."""
     height, width, __ = pixels.shape
-    lines = pixels.reshape(height, -1)
-    told = np.empty((height, 1 + 3 * width), np.uint8)
-    told[:, 0], told[0, 1:], told[1:, 1:] = UP, lines[0], lines[1:] - lines[:-1]
+    told = np.full((height, 1 + 3 * width), UP, np.uint8)
+    for k in range(3):
+        told[0, 1 + k :: 3] = pixels[0, :, k]
+        np.subtract(pixels[1:, :, k], pixels[:-1, :, k], out=told[1:, 1 + k :: 3])
     per_metre = round(DPI / 0.0254)
     return b"".join((
         b"\x89PNG\r\n\x1a\n",
