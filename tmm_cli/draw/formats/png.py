@@ -54,6 +54,7 @@ def _write(
         codes.append(own)
     every = np.concatenate(placed)
     context.set_linewidth(0.0)
+    context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
     path = Path(np.column_stack([every.real, every.imag]), np.concatenate(codes))
     renderer.draw_path(context, path, to_pixels, to_rgb(marks[0].colour))
 
