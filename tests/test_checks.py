@@ -83,11 +83,6 @@ def test_a_load_that_turns_with_its_link_and_only_resists_is_fine(tmp_path):
     assert load["holds"] is True
 
 
-def test_a_run_without_a_detailed_position_says_so(tmp_path):
-    assert run(tmp_path)[1]["detail", ""]["holds"] is False
-    assert run(tmp_path, positions="count: 12, detail: [3]")[1]["detail", ""]["holds"] is True
-
-
 def test_pressure_angles_have_their_limits_there(tmp_path):
     found = run(tmp_path)[1]["pressure", "5"]
     assert (found["holds"], found["limit"]) == (True, pytest.approx(math.radians(30)))

@@ -9,8 +9,9 @@ from models import PARALLELOGRAM
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
-from tmm_cli.draw import files, sheets
+from tmm_cli.draw import files, remarks, sheets
 from tmm_cli.draw.diagrams import diagrams
+from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.labels import Ground, Label, extent
 from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.plans import motion_plans
@@ -27,16 +28,14 @@ def shaper(*changes):
     return build(read_text(text, "shaper.yaml"))
 
 
-def plain(figure):
+def plain(drawing):
     """Texts on a sheet."""
-    return {text.get_text() for text in figure.axes[0].texts}
+    return set(drawing.texts())
 
 
 def test_a_plotted_length_measures_what_the_scale_says():
     sheet = Sheet("title", "caption", [0j, 0.65 + 0.27j])
     assert abs(sheet.on(0.5 + 0j) - sheet.on(0j)) * sheet.mu == pytest.approx(0.5)
-    assert sheet.figure.get_size_inches()[0] * 25.4 == pytest.approx(sheet.paper[0])
-    assert sheet.axes.get_xlim() == (0, sheet.paper[0])  # axes are millimetres of the sheet
     assert all(10 < c < 290 for p in (0j, 0.65 + 0.27j) for c in (sheet.on(p).real, sheet.on(p).imag))
 
 
@@ -67,8 +66,7 @@ def test_a_centre_of_mass_that_is_a_point_or_has_the_name_of_one_is_labelled_onc
         ("inertia: 1.1, centre: {on: CD, at: 0.5}", f"inertia: 1.1, centre: {centre.replace('T', name)}"),
     )
     ((__, sheet),) = position(detailed(solve(problem))[0])
-    texts = [text.get_text() for text in sheet.axes[0].texts]
-    found = [text for text in texts if {"S3", "T"} & set(text.split(", "))]
+    found = [text for text in sheet.texts() if {"S3", "T"} & set(text.split(", "))]
     assert sorted(found) == (["S3"] if name == "S3" else sorted(labels))
 
 
@@ -91,7 +89,9 @@ def test_kinematics_alone_has_no_sheets_of_forces():
 
 def test_a_title_is_never_read_as_mathematics_and_is_cut():
     results = solve(shaper(("Crank shaper, variant 7", "'$\\frac{1}{0}$ " + "x" * 150 + "'")), "kinematics")
-    for _, figure in (*all_positions(results), *diagrams(results)):
+    for _, drawing in all_positions(results):
+        assert all(FORMATS[kind](drawing) for kind in FORMATS)
+    for _, figure in diagrams(results):
         figure.savefig(io.BytesIO(), format="png", dpi=30)
 
 
@@ -122,3 +122,26 @@ def test_every_sheet_is_written_in_every_format():
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
     stems = [stem for stem, _ in sheets(solve(build(read_text(PARALLELOGRAM, "x.yaml"))))]
     assert "velocity-01" in stems and "velocity-00" not in stems
+
+
+def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_drawn_in_full_and_named():
+    results = solve(shaper((", detail: [3]", "")))
+    moments = abs(results.reactions.balance.moment)
+    assert [here.k for here in detailed(results)] == [moments.argmax()]
+    assert list(remarks(results)) == [
+        f"note: no positions.detail in the file, drawn in full is position {moments.argmax()}, of the largest "
+        f"balancing moment: {moments.max():.4g} N*m"
+    ]
+
+
+def test_positions_that_the_file_names_are_drawn_in_full_and_nothing_is_said():
+    results = solve(shaper(("detail: [3]", "detail: [3, 5]")))
+    assert [here.k for here in detailed(results)] == [3, 5]
+    assert not list(remarks(results))
+
+
+def test_where_nothing_acts_the_position_after_the_first_is_drawn_in_full():
+    text = SHAPER.read_text(encoding="utf-8")
+    text = (text[: text.index("masses:")] + text[text.index("output:") :]).replace(", detail: [3]", "")
+    (here,) = detailed(solve(build(read_text(text, "light.yaml"))))
+    assert here.k == 1

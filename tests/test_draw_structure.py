@@ -8,11 +8,12 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from matplotlib.patches import Circle
 from test_commands import PROBLEMS, ROOT, SHAPER, imported, moved, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
+from tmm_cli.draw.drawing import Circle, Line, Text
+from tmm_cli.draw.fonts import corners
 from tmm_cli.draw.forms import by_pairs
 from tmm_cli.draw.groups import groups, side_by_side
 from tmm_cli.draw.scene import Scene
@@ -24,8 +25,6 @@ from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
-
-MM = 25.4
 
 
 def scene(points, links, slides=(), driver="O", turn=0.4):
@@ -108,27 +107,25 @@ def chain(number):
 
 def written(figure):
     """Texts with their true boxes, mm."""
-    renderer, size = figure.canvas.get_renderer(), MM / figure.dpi
-    for text in figure.axes[0].texts:
-        box = text.get_window_extent(renderer)
-        yield text.get_text(), (box.x0 * size, box.x1 * size, box.y0 * size, box.y1 * size)
+    for text in (mark for mark in figure.marks if isinstance(mark, Text)):
+        low, __, high, __ = corners(text)  # none is turned
+        yield text.text, (low.real, high.real, low.imag, high.imag)
 
 
 def texts(figure):
-    return [text.get_text() for text in figure.axes[0].texts]
+    return figure.texts()
 
 
 def inside(figure):
     """Every line inside the sheet."""
-    width, height = (MM * inches for inches in figure.get_size_inches())
-    for line in figure.axes[0].lines:
-        x, y = (np.asarray(v, dtype=float) for v in line.get_data())
-        assert np.all((x > 8) & (x < width - 8) & (y > 8) & (y < height - 8))
+    width, height = figure.paper
+    for line in (mark for mark in figure.marks if isinstance(mark, Line)):
+        assert all(8 < place.real < width - 8 and 8 < place.imag < height - 8 for place in line.places)
 
 
 def legible(figure):
     """Every text inside the sheet and none on another one."""
-    width, height = (MM * inches for inches in figure.get_size_inches())
+    width, height = figure.paper
     found = list(written(figure))
     for n, (text, (left, right, low, high)) in enumerate(found):
         assert left > 8 and low > 8 and right < width - 8 and high < height - 8, text
@@ -168,9 +165,9 @@ def test_the_legend_counts_mobility_after_chebyshev():
 
 def test_a_compound_hinge_has_a_circle_for_every_pair():
     figure = scheme("title", "", of_file(ROOT / "problems" / "six-bar.yaml")).finish()
-    circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
+    circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
     assert len(circles) == 6  # turning pairs
-    assert len({(round(c.center[0], 3), round(c.center[1], 3)) for c in circles}) == 5
+    assert len({(round(c.centre.real, 3), round(c.centre.imag, 3)) for c in circles}) == 5
 
 
 def test_the_driver_and_every_group_have_colours_of_their_own():
@@ -208,10 +205,10 @@ def test_symbols_shrink_where_pairs_are_near_one_another():
         {FRAME: "O C", "1": "O A", "2": "A B", "3": "B C"},
     )
     figure = scheme("title", "", near).finish()
-    circles = [p for p in figure.axes[0].patches if isinstance(p, Circle)]
-    o, a = sorted(circles, key=lambda c: c.center[0])[:2]
+    circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
+    o, a = sorted(circles, key=lambda c: c.centre.real)[:2]
     assert o.radius < STRUCTURAL.hinge
-    assert math.dist(o.center, a.center) > o.radius + a.radius
+    assert abs(o.centre - a.centre) > o.radius + a.radius
     legible(figure)
 
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgba
 
 from tmm_cli import load, solve
 from tmm_cli.draw.construction import PAD, SMALLER, construction, granted, inside
+from tmm_cli.draw.drawing import Area, Text
+from tmm_cli.draw.fonts import corners
 from tmm_cli.draw.lettering import rename
 from tmm_cli.draw.sheet import LOAD, border
 from tmm_cli.draw.symbols import MEASURED
@@ -65,15 +66,12 @@ CASES = {
 }  # fmt: skip
 
 
-def boxes(figure):
-    """Real boxes of all texts in the field, mm, by text."""
-    (axes,) = figure.axes
-    renderer, back = figure.canvas.get_renderer(), axes.transData.inverted()
+def boxes(drawing):
+    """Boxes of all texts, mm, by text."""
     found = []
-    for text in axes.texts:
-        extent = text.get_window_extent(renderer)
-        (left, low), (right, high) = back.transform([(extent.x0, extent.y0), (extent.x1, extent.y1)])
-        found.append((text.get_text(), left, right, low, high))
+    for text in (mark for mark in drawing.marks if isinstance(mark, Text)):
+        xs, ys = zip(*((corner.real, corner.imag) for corner in corners(text)), strict=True)
+        found.append((text.text, min(xs), max(xs), min(ys), max(ys)))
     return found
 
 
@@ -235,6 +233,6 @@ def test_an_arc_ends_in_an_arrow_where_the_edge_cuts_it(k, ratio, cut):
     bold = [a for a in one.arcs if a.style == "bold"]
     ends = [sheet.on(a.centre + a.radius * np.exp(1j * t)) for a in bold for t in (a.start, a.end)]
     assert sum(not (low.real < z.real < high.real and low.imag < z.imag < high.imag) for z in ends) == cut
-    tips = [complex(*p.get_xy()[0]) for p in sheet.axes.patches if p.get_facecolor() == to_rgba(LOAD)]
+    tips = [mark.corners[0] for mark in sheet.marks if isinstance(mark, Area) and mark.face == LOAD]
     assert len(tips) == cut
     assert all(min((z - low).real, (high - z).real, (z - low).imag, (high - z).imag) < 1e-6 for z in tips)

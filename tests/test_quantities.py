@@ -108,8 +108,7 @@ def test_units_are_written_one_way_in_tables_in_the_schema_and_on_drawings(shape
     told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
     described = json.dumps(schema(), ensure_ascii=False)
     position = detailed(shaper)[0]
-    notes = [text.get_text() for draw in (motion_plans, lever) for __, sheet in draw(position)
-             for text in sheet.axes[0].texts]  # fmt: skip
+    notes = [text for draw in (motion_plans, lever) for __, sheet in draw(position) for text in sheet.texts()]
     assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("m/s^2/mm") for note in notes)
     assert any(note.endswith(" N*m") for note in notes)
     for other in ("m/s2", "m/s²", "N·m", "N m"):

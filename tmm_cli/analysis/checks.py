@@ -22,7 +22,7 @@ from tmm_cli.roots import least
 from tmm_cli.tolerances import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES
 from tmm_cli.vectors import Real, dot
 
-Kind = Literal["slot", "pressure", "load", "detail", "near dead", "lever"]
+Kind = Literal["slot", "pressure", "load", "near dead", "lever"]
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,8 @@ class Check:
 
     slot: how far beyond the point `detail` of its slot a link is (m; negative: what is left), at most 0. pressure: the
     largest pressure angle on a link (rad), at most the limit. load: the work (J) with which a load that acts always
-    drives in one stroke (`detail`: working or idle) while it resists in the other, at most 0. detail: positions drawn
-    in detail, at least 1. near dead: least margin of a group, at least the limit. lever: its largest difference from
-    the force plan, at most the limit.
+    drives in one stroke (`detail`: working or idle) while it resists in the other, at most 0. near dead: least
+    margin of a group, at least the limit. lever: its largest difference from the force plan, at most the limit.
     """
 
     kind: Kind
@@ -53,7 +52,7 @@ def checks(results: Results) -> tuple[Check, ...]:
     closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
     found = (
         *_slots(results), *_pressure(results), *_loads(results, closely), *_near_dead(results, closely),
-        *_detail(results), *_lever(results),
+        *_lever(results),
     )  # fmt: skip
     if not results.driver_range.full:
         return found
@@ -118,11 +117,6 @@ def _margin(results: Results, upto: tuple[Kernel, ...], q: Real) -> Real:
     """Of the last group."""
     there = link_states(results.linkage, upto, q, 0)
     return np.where(there.placed, there.placements[-1].margin, np.inf)
-
-
-def _detail(results: Results) -> Iterable[Check]:
-    count = len(results.inputs.request.detail)
-    yield Check("detail", "", None, float(count), 1.0, count > 0)
 
 
 def _lever(results: Results) -> Iterable[Check]:

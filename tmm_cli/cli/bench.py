@@ -158,7 +158,7 @@ def _finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | N
 
 def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
     """name.json, name.csv of the lines or of the one table, charts."""
-    from tmm_cli.draw.formats import FORMATS
+    from tmm_cli.draw.formats.figures import FIGURES
     from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.files import write_whole
     from tmm_cli.results.text import csv_text, json_bytes
@@ -170,7 +170,7 @@ def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
         contents[f"{name}.csv"] = lines.getvalue().encode()
     elif len(measured.tables) == 1:
         contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
-    contents |= {file: FORMATS[file.rpartition(".")[2]](figure) for file, figure in charts.items()}
+    contents |= {file: FIGURES[file.rpartition(".")[2]](figure) for file, figure in charts.items()}
     for file, content in contents.items():
         write_whole(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)

@@ -59,7 +59,8 @@ def computed(
         introduce(problem, drafted=drafted)
     if digits or drawings:
         whole = problem.whole
-        shown = () if stage == "structure" else positions if positions and len(positions) == 1 else whole.request.detail
+        single = positions is not None and len(positions) == 1
+        shown = () if stage == "structure" else (0,) if single else whole.request.detail or (0,)
         afford(whole, positions, digits=digits, detail=shown if drawings else None)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 

@@ -21,6 +21,11 @@ def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: comp
 
     The text of a short one goes on along it, at whichever end is free, or stands beside an upright one.
     """
+    with sheet.on_layer("dimensions"):
+        _dimension(sheet, start, end, text, along)
+
+
+def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex) -> None:
     span = end - start if along == 0 else along * float(dot(end - start, along)) / abs(along) ** 2
     length = abs(span)
     if length < SHORTEST:
@@ -88,6 +93,11 @@ def beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
 
 def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     """The arc of an angle between the ways to two places (mm), or a square where it is right; its name beside it."""
+    with sheet.on_layer("dimensions"):
+        _angle_mark(sheet, vertex, first, last, name, right=right)
+
+
+def _angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # beyond the edge of a stone

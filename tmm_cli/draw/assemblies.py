@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import Assemblies, Assembly, GroupAssemblies, listed
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.render import names, render, spot
 from tmm_cli.draw.scene import Scene
@@ -31,7 +31,7 @@ SMALLEST_ROOM = 5.0  # mm: in a smaller cell nothing is drawn
 SMALLEST = 0.7  # size of symbols: smaller ones cannot be read
 
 
-def sheets(results: Results) -> Iterable[tuple[str, Figure]]:
+def sheets(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The sheets with the stems of their files, more than one of a group with many; none without a real assembly."""
     for stem, here, group in listed(results.assemblies or ()):
         every = list(enumerate(group.assemblies, 1))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tmm_cli.draw.annotations import angle_mark, dimension
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
 from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, hatch, scale_text
@@ -18,7 +19,7 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
 from tmm_cli.synthesis.construction import Arc, Centre, Construction, Size, Spot
 
-STYLES = {  # colour, width, line
+STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
     "link": (DARK, 2.2, "-"), "link2": (INERTIA, 2.2, "-"), "thin": (THIN, 0.8, "-"), "dashed": (THIN, 0.7, "--"),
     "axis": (THIN, 0.7, "-."), "bold": (LOAD, 1.5, "-"), "guide": (DARK, 1.0, "-"),
 }  # fmt: skip

@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tmm_cli.analysis.pipeline import Results, at_places
-from tmm_cli.draw.sheet import DARK, THIN, chart, safe, with_unit
+from tmm_cli.draw.chart_axes import chart
+from tmm_cli.draw.sheet import DARK, THIN, safe, with_unit
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import angle, followers, named

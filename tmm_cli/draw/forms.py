@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -68,6 +69,11 @@ class Form:
         if len(self.hull) == 2:
             lines.append((self.hull[0], self.hull[1]))
         return lines
+
+    @property
+    def edges(self) -> list[tuple[complex, complex]]:
+        """Its straight parts and the sides of its plate."""
+        return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
     @property
     def middle(self) -> complex:

@@ -7,8 +7,8 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.render import arrows, names, render, spot
@@ -31,7 +31,7 @@ STUB = 8.0  # mm of what a lead would be joined to
 
 def groups(
     title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
-) -> Iterable[tuple[str, Figure]]:
+) -> Iterable[tuple[str, Drawing]]:
     """All groups side by side, on more than one sheet when there are many."""
     every = parts(scene.structure)
     for first in range(0, len(every), A_SHEET):
@@ -52,7 +52,7 @@ def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], ro
         lines = max(map(len, told[row * columns : (row + 1) * columns]))
         if column:
             x = low.real - GAP / 2
-            sheet.axes.plot([x, x], [low.imag, high.imag], color=THIN, lw=0.4)
+            sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN, 0.4, blocks=False)
         sheet.ground = Ground(low + 1j * (LINE * (lines + 0.5)), high)
         top = low + 1j * LINE * (lines - 0.5)
         sheet.text(top, words[0], 11, colour=part.colour, weight="bold")
@@ -131,7 +131,7 @@ def sliding_lead(sheet: Sheet, scene: Scene, pair: Pair, part: Part, look: Look)
         box(sheet, at, along, FREE, look.box, look, "--")
         return
     reach = (look.box[0] / 2 + BEYOND + 2) * along
-    rails(sheet, at - reach, at + reach, look.box[1], FREE, "--", fixed=False)
+    rails(sheet, at - reach, at + reach, look.box[1], FREE, "--")
     box(sheet, at, along, part.colour, look.box, look)
 
 

@@ -6,15 +6,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
-from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.draw.symbols import MEASURED, mass_centre
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
@@ -69,8 +70,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
             at = sheet.on(scene.place(link, complex(own.centre)))
             point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
             if point is None:
-                sheet.circle(at, 1.0, face="#f4e3b2", z=6.2)
-                sheet.circle(at, 0.25, face=DARK, z=6.3)
+                mass_centre(sheet, at)
                 belongs(sheet, scene, link, at)
             if centre in names:
                 continue
@@ -114,7 +114,7 @@ def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     return sheet
 
 
-def all_positions(results: Results) -> Iterable[tuple[str, Figure]]:
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
@@ -157,14 +157,10 @@ def detailed(results: Results) -> list[Position]:
     """The positions in detail that could be computed."""
     motion = results.motion
     assert motion is not None
-    wanted = results.problem.request.detail if len(results.numbers) > 1 else results.numbers
-    return [
-        Position(results, motion, k) for k, n in enumerate(results.numbers)
-        if n in wanted and motion.moving[k] and not results.locked[k]
-    ]  # fmt: skip
+    return [Position(results, motion, k) for k in in_detail(results)]
 
 
-def position(here: Position) -> Iterable[tuple[str, Figure]]:
+def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The position with weights, inertia forces and couples, loads, and what balances the crank."""
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions

@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from matplotlib.figure import Figure
 
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position, unscaled
 from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
@@ -19,7 +19,7 @@ from tmm_cli.plans.record import NamedVector, balance_name
 from tmm_cli.plans.velocity import velocity_plan
 
 
-def motion_plans(here: Position) -> Iterable[tuple[str, Figure]]:
+def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
     """Velocity plan and acceleration plan of a position, with the parts of each link."""
     for name, plan_of, title, pole, symbol, unit in (
         ("velocity", velocity_plan, _("Velocity plan. {caption}"), "p", "v", "m/s/mm"),
@@ -49,7 +49,7 @@ def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
 
 
-def forces(here: Position) -> Iterable[tuple[str, Figure]]:
+def forces(here: Position) -> Iterable[tuple[str, Drawing]]:
     """A sheet for the polygon of each group and of the driving link."""
     if here.results.reactions is None:
         return
@@ -86,7 +86,7 @@ def _force(sheet: Sheet, vector: NamedVector) -> None:
     sheet.label(vector.name, (start + end) / 2, 10, colour)
 
 
-def lever(here: Position) -> Iterable[tuple[str, Figure]]:
+def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     """The turned velocity plan with its forces; arms are thin lines from the pole."""
     results = here.results
     if results.lever is None:

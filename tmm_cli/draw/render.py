@@ -14,15 +14,27 @@ from tmm_cli.draw.actuators import cylinder, cylinders, driver_name, springs
 from tmm_cli.draw.forms import Form, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.scene import BEYOND, Scene
-from tmm_cli.draw.sheet import DARK, Sheet, border, hatch
-from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, quiet, rails, sliding_arrow, support, turning_arrow
-from tmm_cli.draw.wheels import CamShape, contact
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
+from tmm_cli.draw.symbols import (
+    STRUCTURAL,
+    Line,
+    Look,
+    body,
+    box,
+    guide,
+    rails,
+    sliding_arrow,
+    support,
+    support_side,
+    turning_arrow,
+)  # fmt: skip
+from tmm_cli.draw.wheels import CHAIN, CamShape, contact
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Slide
 from tmm_cli.structure.assur import Pair
 
-OVER, OVER_SLOT = 10.0, 7.0  # mm: how far a measured guide, and a slot, goes on beyond the way of its stone
+OVER, OVER_SLOT = 10.0, 7.0  # mm: how far the axis of a guide, and a slot, goes on beyond the way of its stone
 GREY = "#404040"
 
 
@@ -39,14 +51,25 @@ def render(
     leads: Sequence[Pair] = (),
 ) -> Rendered:  # fmt: skip
     """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
+    with sheet.on_layer("links"):
+        return _render(sheet, scene, links, pairs, look, hue, leads)
+
+
+def _render(
+    sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
+    leads: Sequence[Pair],
+) -> Rendered:  # fmt: skip
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
     drawn = Rendered(forms)
     driven = cylinders(scene.linkage) if look.measured else {}
+    rods = [edge for form in forms.values() for edge in form.edges]
     for pair in pairs:
-        if pair.slide is not None and look.measured and pair.name not in driven:
+        if pair.slide is None or pair.name in driven:
+            continue
+        if pair.slide.carrier == FRAME:
+            _guide(sheet, scene, pair, look, rods)
+        elif look.measured:
             _way(sheet, scene, pair.slide, look)
-        elif pair.slide is not None and not look.measured and pair.slide.carrier == FRAME:
-            _guide(sheet, scene, pair, look)
     for pair in pairs:
         if not pair.lower:
             _higher(sheet, scene, pair, look, hue)
@@ -68,36 +91,38 @@ def render(
         joined = {link for pair in here if pair in pairs for link in (pair.i, pair.j)}
         if FRAME not in joined:
             continue
-        if look.measured:
-            support(sheet, at, _hanging(at, [forms[link] for link in joined if link != FRAME], look), look)
-        else:
-            end = support(sheet, at, quiet(sheet, at, -1j, 9.0, (-1j, 1j, -1, 1), from_=2.2), look)
+        end = support(sheet, at, support_side(sheet, at, rods, look), look)
+        if not look.measured:
             sheet.label(FRAME, end, 9, DARK, "italic")
     return drawn
 
 
 def _way(sheet: Sheet, scene: Scene, slide: Slide, look: Look) -> None:
-    """The hatched rails of a guide along the whole way on it; the slot of a link that has no bar along its guide."""
-    fixed = FRAME in (slide.carrier, slide.runner)
-    if not fixed and len(scene.linkage.links[slide.carrier].points) > 1:
+    """The slot of a link that has no bar along its guide, along the whole way on it."""
+    if len(scene.linkage.links[slide.carrier].points) > 1:
         return
     along, (low, high), here = scene.along(slide), scene.way(slide), scene.run(slide)
-    if slide.runner == FRAME:  # the guide moves, the stone does not
-        low = high = here
-    stone, over = sheet.on(scene.place(slide.runner, slide.at)), OVER if fixed else OVER_SLOT
-    start = border(stone, stone + ((low - here) / sheet.mu - over) * along, *sheet.field)
-    end = border(stone, stone + ((high - here) / sheet.mu + over) * along, *sheet.field)
-    rails(sheet, start, end, (look.box if fixed else look.stone)[1], fixed=fixed)
+    stone = sheet.on(scene.place(slide.runner, slide.at))
+    start = border(stone, stone + ((low - here) / sheet.mu - OVER_SLOT) * along, *sheet.field)
+    end = border(stone, stone + ((high - here) / sheet.mu + OVER_SLOT) * along, *sheet.field)
+    rails(sheet, start, end, look.stone[1])
 
 
-def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look) -> None:
-    """A guide on the frame: a piece of hatched rails about its box, with the frame's number."""
-    assert pair.slide is not None
-    at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
+def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Line]) -> None:
+    """A guide on the frame: hatched rails about its box; to scale also its axis, as long as the way on it."""
+    slide = pair.slide
+    assert slide is not None
+    at, along = sheet.on(scene.at(pair)), scene.along(slide)
+    guide(sheet, at, along, look, rods)
+    if look.measured:
+        (low, high), here = scene.way(slide), scene.run(slide)
+        start, end = at + ((low - here) / sheet.mu - OVER) * along, at + ((high - here) / sheet.mu + OVER) * along
+        axis = [border(at, start, *sheet.field), border(at, end, *sheet.field)]
+        sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
+        return
+    low_side = -1j * along if (1j * along).imag > 0 else 1j * along
     reach = (look.box[0] / 2 + BEYOND) * along
-    rails(sheet, at - reach, at + reach, look.box[1], fixed=True)
-    low = -1j * along if (1j * along).imag > 0 else 1j * along
-    sheet.label(FRAME, at + low * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
+    sheet.label(FRAME, at + low_side * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
 
 
 def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str, str]) -> None:
@@ -115,7 +140,7 @@ def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str
 
 
 def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str) -> None:
-    """The box of a sliding pair, hatched in a scheme where it is the frame."""
+    """The box of a sliding pair, hatched where it is the frame."""
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
@@ -123,22 +148,18 @@ def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str) -> N
         return
     size = look.box if FRAME in (slide.carrier, slide.runner) else look.stone
     box(sheet, at, along, colour, size, look)
-    if slide.runner == FRAME and not look.measured:
+    if slide.runner == FRAME:
         for side in (1j * along, -1j * along):
             edge, half = at + side * size[1] / 2, along * size[0] / 2
             hatch(sheet, edge - half, edge + half, side)
-        sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
+        if not look.measured:
+            sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
 
 
 def _hinge(
     sheet: Sheet, at: complex, here: Sequence[Pair], forms: Mapping[str, Form], look: Look, hue: Mapping[str, str]
 ) -> None:
-    """The turning pairs of one place, in a scheme a circle each; bars that go on beyond it cross it there."""
-    if look.measured:
-        sheet.circle(at, look.hinge)
-        if len(here) > 1:
-            sheet.circle(at, look.hinge / 2.5, face=DARK, z=6.5)
-        return
+    """The turning pairs of one place, a circle each; bars that go on beyond it cross it there."""
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
     for number, pair in reversed(list(enumerate(here))):
@@ -148,13 +169,6 @@ def _hinge(
         along = forms[link].through(at) if link in forms else None
         if along is not None:
             sheet.line([at - look.hinge * along, at + look.hinge * along], hue[link], 0.8 * look.bar, z=6.2)
-
-
-def _hanging(at: complex, links: Iterable[Form], look: Look) -> complex:
-    """The side of a fixed hinge on which its support is: below, or above where its links hang down from it."""
-    arms = [place - at for form in links for place in (*form.hull, *form.joints)]
-    low = sum(arm.imag / abs(arm) for arm in arms if abs(arm) > look.hinge)
-    return 1j if low < -0.8 else -1j
 
 
 def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:

@@ -1,17 +1,14 @@
-"""A sheet of paper: A4, millimetres, true scales; lines, arrows, labels, a title strip. Matplotlib without pyplot."""
+"""A sheet of paper: millimetres, true scales; lines, arrows, labels, a title strip. What is drawn is recorded."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon
-from matplotlib.textpath import TextPath
 
+from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
 from tmm_cli.errors import _
@@ -19,9 +16,6 @@ from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
 
-MM = 1 / 25.4  # inches
-POINTS = 72 * MM  # in a millimetre
-HINTED = 1.06  # pixels widen a text by up to this
 CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 NAMES = "#7a3d99"  # of links, lines and angles
@@ -33,11 +27,6 @@ BETWEEN = 12  # places along an edge that are tried for the notes
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
 LEADER = 4.0  # mm from which a line leads from a place to its label
-
-# Reproducible files: no dates, no random ids in SVG; text as outlines, so that every viewer shows the same.
-mpl.rcParams["svg.hashsalt"] = "tmm"
-mpl.rcParams["svg.fonttype"] = "path"
-mpl.rcParams["font.family"] = "DejaVu Sans"
 
 
 class Sheet:
@@ -54,18 +43,16 @@ class Sheet:
         self.paper = paper or best
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
-        self.figure = Figure(figsize=(self.paper[0] * MM, self.paper[1] * MM))
-        FigureCanvasAgg(self.figure)
-        self.axes = self.figure.add_axes((0, 0, 1, 1))
-        self.axes.set_xlim(0, self.paper[0])
-        self.axes.set_ylim(0, self.paper[1])
-        self.axes.axis("off")
+        self.marks: list[Mark] = []
+        self.layer: Layer = "frame"
         self.labels: list[Label] = []
         self.notes: list[str] = []
         width, height = self.paper
-        self.axes.plot([MARGIN, width - MARGIN], [height - MARGIN - STRIP + 5] * 2, color=DARK, lw=0.6)
+        edge = 1j * (height - MARGIN - STRIP + 5)
+        self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
         self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
         self.text(complex(MARGIN, height - MARGIN - 8), caption[:120], 9, colour="#404040")
+        self.layer = "construction"
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
@@ -76,15 +63,22 @@ class Sheet:
         """Corners of the field in which curves and guides are drawn, mm."""
         return self.ground.low + EDGE * (1 + 1j), self.ground.high - EDGE * (1 + 1j)
 
+    @contextmanager
+    def on_layer(self, layer: Layer) -> Iterator[None]:
+        """What is drawn meanwhile belongs to this layer."""
+        before, self.layer = self.layer, layer
+        yield
+        self.layer = before
+
     def text(
-        self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: str = "left",
+        self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: Align = "left",
         style: str = "normal", turn: float = 0.0,
     ) -> None:  # fmt: skip
-        """A text at a place (mm), turned (deg) about it; never read as mathematics."""
-        self.axes.text(
-            at.real, at.imag, text, fontsize=size, color=colour, weight=weight, ha=ha, va="center", style=style,
-            rotation=turn, rotation_mode="anchor", parse_math=False, zorder=9,
-        )  # fmt: skip
+        """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
+        line = "".join(letter if letter.isprintable() else " " for letter in text)
+        if line.strip():
+            bold, italic = weight == "bold", style == "italic"
+            self.marks.append(Text(complex(at), line, size * POINT, colour, ha, bold, italic, turn))
 
     def label(
         self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
@@ -95,24 +89,22 @@ class Sheet:
             self.labels.append(Label(text, anchor, size, colour, style, far=far))
 
     def line(
-        self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: str = "-", z: float = 3, *,
+        self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: Style = "-", z: float = 3, *,
         blocks: bool = True,
     ) -> None:  # fmt: skip
-        """A polyline through places (mm)."""
-        array = np.array(places)
-        self.axes.plot(array.real, array.imag, color=colour, lw=width, ls=style, zorder=z, solid_capstyle="round")
-        if blocks:
-            for start, end in pairwise(places):
-                if np.isfinite(start) and np.isfinite(end):
-                    self.ground.line(complex(start), complex(end))
+        """A polyline through places (mm), of this width (points); places that are not finite interrupt it."""
+        for stretch in whole_stretches(places):
+            self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
+            for start, end in pairwise(stretch) if blocks else ():
+                self.ground.line(start, end)
 
     def area(
         self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
         blocks: bool = True,
     ) -> None:  # fmt: skip
-        """A filled polygon."""
-        shape = [(c.real, c.imag) for c in corners]
-        self.axes.add_patch(Polygon(shape, facecolor=face, edgecolor=edge, lw=width, zorder=z))
+        """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
+        outline = None if edge == "none" else edge
+        self.marks.append(Area(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
         for start, end in pairwise([*corners, corners[0]]) if blocks else ():
             self.ground.line(start, end)
 
@@ -121,7 +113,7 @@ class Sheet:
     ) -> None:
         """A circle about a place (mm)."""
         if np.isfinite(at):
-            self.axes.add_patch(Circle((at.real, at.imag), radius, facecolor=face, edgecolor=edge, lw=width, zorder=z))
+            self.marks.append(Circle(complex(at), radius, face, edge, width * POINT, self.layer, z))
             self.ground.spot(at, radius)
 
     def arrow(self, start: complex, end: complex, colour: str = DARK, width: float = 1.2, z: float = 5) -> None:
@@ -134,19 +126,20 @@ class Sheet:
         head = min(3.4, 0.6 * length)
         neck = end - head * along
         side = 1j * along * head * 0.27
-        self.line([start, neck + 0.3 * head * along], colour, width, z=z)
-        self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
+        with self.on_layer("vectors" if self.layer == "construction" else self.layer):
+            self.line([start, neck + 0.3 * head * along], colour, width, z=z)
+            self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
         self.ground.line(neck, end)
 
     def note(self, text: str) -> None:
         """A line of the corner box: scale factors and remarks."""
         self.notes.append(text)
 
-    def finish(self) -> Figure:
+    def finish(self) -> Drawing:
         """Put the notes into the emptiest corner, place the labels."""
         self.corner()
         self.settle()
-        return self.figure
+        return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:
         """Place the labels that are waiting, in the field that the ground has now."""
@@ -170,7 +163,7 @@ class Sheet:
         """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
         if not self.notes:
             return
-        width = HINTED * max(TextPath((0, 0), t, size=9).get_extents().width for t in self.notes) / POINTS + 4
+        width = max(label_extent(text, 9)[0] for text in self.notes) + 4
         height = 5.0 * len(self.notes) + 2
         low, high = self.ground.low, self.ground.high
         right, top = high.real - width, high.imag - height
@@ -193,13 +186,24 @@ class Sheet:
         self.notes = []
 
 
+def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
+    """Stretches of a polyline between places that are not finite."""
+    array = np.asarray(places, complex)
+    gaps = np.flatnonzero(~np.isfinite(array))
+    for stretch in np.split(array, gaps):
+        found = stretch[np.isfinite(stretch)]
+        if len(found) > 1:
+            yield tuple(found.tolist())
+
+
 def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
     """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
-    for k in range(number):
-        foot = start + along * (k + 0.5) * abs(end - start) / number
-        sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
+    with sheet.on_layer("supports"):
+        for k in range(number):
+            foot = start + along * (k + 0.5) * abs(end - start) / number
+            sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
     for depth in HATCH:
         sheet.ground.line(start + depth * outward, end + depth * outward)
 
@@ -232,15 +236,6 @@ def border(inner: complex, outer: complex, low: complex, high: complex) -> compl
         if abs(step) > 1e-12:
             share = min(share, ((most if step > 0 else least) - at) / step)
     return inner + max(share, 0.0) * way
-
-
-def chart(size: tuple[float, float], title: str, caption: str) -> Figure:
-    """A figure of a size (mm) for curves, with its title."""
-    figure = Figure(figsize=(size[0] * MM, size[1] * MM))
-    FigureCanvasAgg(figure)
-    figure.text(0.06, 0.965, title[:90], fontsize=12, weight="bold", parse_math=False)
-    figure.text(0.06, 0.945, caption, fontsize=9, color="#404040", parse_math=False)
-    return figure
 
 
 def scale_text(symbol: str, mu: float, unit: str) -> str:

@@ -168,11 +168,11 @@ class Legend:
         """Into the band that was kept free."""
         rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
         top = MARGIN + self.height(sheet.paper[0])
-        sheet.axes.plot([MARGIN, sheet.paper[0] - MARGIN], [top, top], color=DARK, lw=0.6)
+        sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK, 0.6, blocks=False)
         most = int((top - MARGIN - 4) / ROW + 0.5)
         for row, part in enumerate(self.parts[:most]):
             at = complex(MARGIN, top - 4 - ROW * row)
-            sheet.axes.plot([at.real, at.real + 9], [at.imag] * 2, color=part.colour, lw=3.2, solid_capstyle="butt")
+            sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
             text = _("... and {count} parts more").format(count=rows - most + 1) if hidden else self.words(part)
             sheet.text(at + 12, text, 9, colour=part.colour)

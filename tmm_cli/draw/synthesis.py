@@ -12,12 +12,14 @@ from matplotlib.figure import Figure
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.actuators import cylinders
+from tmm_cli.draw.chart_axes import chart
 from tmm_cli.draw.construction import construction
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, chart, scale_text, with_unit
+from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, scale_text, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
@@ -31,7 +33,7 @@ ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 
 def sheets(
     title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
-) -> Iterable[tuple[str, Figure]]:
+) -> Iterable[tuple[str, Drawing | Figure]]:
     """What the task draws, and the extreme positions, if there is a mechanism with strokes.
 
     names: of parameters, standard name to that in the file.
@@ -39,15 +41,14 @@ def sheets(
     linkage = results.linkage if results is not None else None
     for drawn in outcome.drawings:
         if isinstance(drawn, Diagram):
-            figure = diagram(title, drawn, units)
+            yield f"synthesis-{drawn.name}", diagram(title, drawn, units)
         else:
-            figure = construction(title, drawn, units, linkage, names).finish()
-        yield f"synthesis-{drawn.name}", figure
+            yield f"synthesis-{drawn.name}", construction(title, drawn, units, linkage, names).finish()
     if results is not None and results.strokes is not None and results.strokes.strokes:
         yield "synthesis-extremes", extremes(results).finish()
 
 
-def synthesised(results: Results) -> Iterable[tuple[str, Figure]]:
+def synthesised(results: Results) -> Iterable[tuple[str, Drawing | Figure]]:
     """The sheets of a problem whose file has a synthesis."""
     found = results.problem.synthesis
     if found is not None:

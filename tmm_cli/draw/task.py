@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
-
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.mechanism import measured
 from tmm_cli.draw.render import arrows
 from tmm_cli.draw.scene import fixed_pivots, to_scale
@@ -13,7 +12,7 @@ from tmm_cli.draw.structure import at_sketch
 from tmm_cli.draw.symbols import MEASURED
 
 
-def task_picture(results: Results) -> Figure | None:
+def task_picture(results: Results) -> Drawing | None:
     """None when the linkage cannot be assembled at the sketch."""
     found = at_sketch(results)
     if found is None:

@@ -12,7 +12,7 @@ from itertools import groupby
 import yaml
 
 from tmm_cli import structure_of
-from tmm_cli.draw.formats import png
+from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.task import task_picture
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.record import VariantTable

@@ -50,13 +50,13 @@ FIRST = (
 )  # fmt: skip
 CHECK = record(
     "a number against its limit",
-    Field("check", TEXT, "slot, pressure, load, near dead, detail, lever", "kind"),
+    Field("check", TEXT, "slot, pressure, load, near dead, lever", "kind"),
     Field("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
     Field("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
     Field("at", NUMBER, "place of the driver, rad or m; null where there is none"),
     Field("value", NUMBER, "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
-          "of the group, positions in detail, difference of the lever"),
-    Field("limit", NUMBER, "the most, of margins and positions in detail the least"),
+          "of the group, difference of the lever"),
+    Field("limit", NUMBER, "the most, of margins the least"),
     Field("holds", FLAG, "within its limit"),
 )  # fmt: skip
 LAST = (

@@ -159,5 +159,3 @@ def _skipped(problem: Problem) -> Iterable[tuple[str, str]]:
         yield _("all forces are zero"), _("neither masses nor loads are given")
     if linkage.gravity == 0:
         yield _("weights"), _("gravity is zero")
-    if not problem.request.detail:
-        yield _("plans of single positions"), _("positions.detail names none")

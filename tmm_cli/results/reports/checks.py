@@ -60,8 +60,6 @@ def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
             limit = _("at least {margin}").format(margin=f"{check.limit:.6g}")
             found = f"{check.value if check.value > 1e-12 else 0.0:.3g}"
             return _("margin to dead and change points"), check.of, found, limit
-        case "detail":
-            return _("positions in detail"), "", f"{check.value:.0f}", _("at least 1; positions: {detail: [3]}")
         case "lever":
             limit = _("at most {share} %").format(share=f"{100 * check.limit:.6g}")
             value = 100 * check.value

@@ -1,0 +1,95 @@
+"""A drawing is a record of primitives in millimetres; every format is written from it."""
+
+import io
+import re
+from xml.etree import ElementTree
+
+import pytest
+from PIL import Image
+from pypdf import PdfReader
+
+from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.fonts import corners, lacking, width
+from tmm_cli.draw.formats import FORMATS
+from tmm_cli.draw.formats.pdf import pdf
+
+LINE = Line((20 + 30j, 120 + 30j), "#b3261e", 0.5, layer="links")
+TRIANGLE = Area((20 + 60j, 60 + 60j, 40 + 90j), "#1f4e9c", None, 0.0)
+MARKS = (LINE, TRIANGLE, Circle(150 + 70j, 8, "white", "#1a1a1a", 0.4))
+HOSTILE = ["x" * 10_000, "שלום عربي", "\U0001f600 \ue000", "$\\frac{1}{0}$", "%%c \\P {\\f", "\x00\x1b"]
+
+
+def drawn(*texts):
+    return Drawing.of((200.0, 100.0), [*MARKS, *texts])
+
+
+def test_what_covers_others_comes_last():
+    high, low = Line((0j, 1j), "#000000", 1, z=5), Line((0j, 1j), "#000000", 1, z=1)
+    assert Drawing.of((10, 10), [high, low]).marks == (low, high)
+
+
+def test_a_drawing_is_moved_with_all_its_marks():
+    moved = drawn(Text(50 + 50j, "A", 4, "#000000")).moved(10 - 5j)
+    assert {mark.at for mark in moved.marks if isinstance(mark, Text)} == {60 + 45j}
+    assert LINE.moved(10 - 5j) in moved.marks
+
+
+def test_a_millimetre_of_a_picture_is_as_many_points_as_its_resolution_says():
+    picture = Image.open(io.BytesIO(FORMATS["png"](drawn())))
+    scale = picture.info["dpi"][0] / 25.4
+    assert picture.size == (round(200 * scale), round(100 * scale))
+    assert picture.getpixel((round(70 * scale), round(70 * scale)))[0] > 150  # the red line, 30 mm above the lower edge
+    assert picture.getpixel((round(40 * scale), round(30 * scale))) == (0x1F, 0x4E, 0x9C)
+
+
+def test_svg_is_in_millimetres_and_its_text_is_text():
+    root = ElementTree.fromstring(FORMATS["svg"](drawn(Text(50 + 50j, "<b>&A", 4, "#000000", "center", turn=30))))
+    assert (root.get("width"), root.get("viewBox")) == ("200mm", "0 0 200 100")
+    space = "{http://www.w3.org/2000/svg}"
+    assert [line.get("points") for line in root.iter(f"{space}polyline")] == ["20,70 120,70"]
+    assert [text.text for text in root.iter(f"{space}text")] == ["<b>&A"]
+
+
+def test_a_length_in_a_pdf_is_true_and_its_font_is_in_it():
+    (page,) = PdfReader(io.BytesIO(FORMATS["pdf"](drawn(Text(50 + 50j, "Сила R₃₄", 4, "#000000"))))).pages
+    assert [float(side) * 25.4 / 72 for side in page.mediabox[2:]] == pytest.approx([200, 100], abs=1e-3)
+    found = re.search(rb"([\d.]+) ([\d.]+) m\s+([\d.]+) ([\d.]+) l\s+S", page.get_contents().get_data())
+    assert [float(n) * 25.4 / 72 for n in found.groups()] == pytest.approx([20, 30, 120, 30], abs=1e-3)
+    assert "Сила R₃₄" in page.extract_text()
+    assert any("/FontFile2" in str(font.get_object()) for font in _descriptors(page))
+
+
+def _descriptors(page):
+    for font in page["/Resources"]["/Font"].values():
+        own = font.get_object()
+        for part in own.get("/DescendantFonts", [own]):
+            yield part.get_object()["/FontDescriptor"]
+
+
+def test_several_drawings_are_pages_of_one_file():
+    assert len(PdfReader(io.BytesIO(pdf(drawn(), drawn(), drawn()))).pages) == 3
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_the_same_drawing_gives_the_same_bytes(kind):
+    assert FORMATS[kind](drawn(Text(50 + 50j, "A", 4, "#000000"))) == FORMATS[kind](
+        drawn(Text(50 + 50j, "A", 4, "#000000"))
+    )
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+@pytest.mark.parametrize("text", HOSTILE)
+def test_any_text_is_drawn_and_none_comes_alive(kind, text):
+    assert FORMATS[kind](drawn(Text(50 + 50j, text, 4, "#000000")))
+
+
+def test_the_box_of_a_text_is_as_wide_as_its_letters_and_turns_with_it():
+    low, end, __, left = corners(Text(50 + 50j, "AB", 10, "#000000", "center"))
+    assert end - low == pytest.approx(width("AB", 10)) and (low + end) / 2 == pytest.approx(50 + 45j)
+    assert left - low == pytest.approx(10j)
+    low, end, *__ = corners(Text(50 + 50j, "AB", 10, "#000000", turn=90))
+    assert end - low == pytest.approx(1j * width("AB", 10))
+
+
+def test_characters_that_the_font_lacks_are_told():
+    assert lacking("A₃τ Я") == set() and lacking("A\U0001f980") == {"\U0001f980"}

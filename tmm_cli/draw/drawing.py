@@ -1,0 +1,114 @@
+"""A drawing as a record: primitives in millimetres of paper, from which each format is written.
+
+The origin is the lower left corner of the paper. A text is data: no format may read it as markup or mathematics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+POINT = 25.4 / 72  # mm
+
+Layer = Literal["frame", "links", "supports", "construction", "vectors", "dimensions", "text"]
+Style = Literal["-", "--", ":", "-."]
+Align = Literal["left", "center", "right"]
+DASHES: dict[Style, tuple[float, ...]] = {"-": (), "--": (3.7, 1.6), ":": (1.0, 1.65), "-.": (6.4, 1.6, 1.0, 1.6)}
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A polyline; width in mm."""
+
+    places: tuple[complex, ...]
+    colour: str
+    width: float
+    style: Style = "-"
+    layer: Layer = "construction"
+    z: float = 3.0
+
+    def moved(self, by: complex) -> Line:
+        return replace(self, places=tuple(place + by for place in self.places))
+
+    @property
+    def dashes(self) -> tuple[float, ...]:
+        """Lengths drawn and left out by turns, mm; none of a whole line."""
+        return tuple(length * self.width for length in DASHES[self.style])
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A filled polygon. edge: the colour of its outline, if it has one."""
+
+    corners: tuple[complex, ...]
+    face: str
+    edge: str | None
+    width: float
+    layer: Layer = "construction"
+    z: float = 2.0
+
+    def moved(self, by: complex) -> Area:
+        return replace(self, corners=tuple(corner + by for corner in self.corners))
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A filled circle with its outline."""
+
+    centre: complex
+    radius: float
+    face: str
+    edge: str
+    width: float
+    layer: Layer = "construction"
+    z: float = 6.0
+
+    def moved(self, by: complex) -> Circle:
+        return replace(self, centre=self.centre + by)
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One line of text; `at` is its left end, middle or right end at half the height of its letters.
+
+    size: of the letters' body, mm. turn: deg, about `at`.
+    """
+
+    at: complex
+    text: str
+    size: float
+    colour: str
+    align: Align = "left"
+    bold: bool = False
+    italic: bool = False
+    turn: float = 0.0
+    layer: Layer = "text"
+    z: float = 9.0
+
+    def moved(self, by: complex) -> Text:
+        return replace(self, at=self.at + by)
+
+
+Mark = Line | Area | Circle | Text
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Marks on a paper (mm), those that cover others last."""
+
+    paper: tuple[float, float]
+    marks: tuple[Mark, ...]
+
+    @classmethod
+    def of(cls, paper: tuple[float, float], marks: Iterable[Mark]) -> Drawing:
+        """Of marks in the order in which they were made."""
+        return cls(paper, tuple(sorted(marks, key=lambda mark: mark.z)))
+
+    def moved(self, by: complex) -> Drawing:
+        """All marks at another place of the paper."""
+        return replace(self, marks=tuple(mark.moved(by) for mark in self.marks))
+
+    def texts(self) -> list[str]:
+        """What is written on it."""
+        return [mark.text for mark in self.marks if isinstance(mark, Text)]

@@ -1,0 +1,72 @@
+"""How wide a text is: advances of the letters of DejaVu Sans, the font that comes with matplotlib."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import cache
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.ft2font import FT2Font
+
+from tmm_cli.draw.drawing import Text
+
+FAMILY = "DejaVu Sans"
+SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # of the width, from the left end to where a text is put
+HALF = 0.265  # of the size: from the base line to the middle of the letters' height
+BOX = "\u25a1"  # stands for what the font lacks
+UNITS = 1000  # the size at which advances are read
+
+
+@cache
+def font(bold: bool = False, italic: bool = False) -> FT2Font:
+    """The font of a weight and slant."""
+    ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
+    name = "DejaVuSans" + (f"-{ending}" if ending else "")
+    found = FT2Font(str(Path(mpl.get_data_path(), "fonts", "ttf", f"{name}.ttf")))
+    found.set_size(UNITS, 72)
+    return found
+
+
+@cache
+def _advance(letter: str, bold: bool, italic: bool) -> float:
+    glyph = font(bold, italic).load_char(ord(drawable(letter)))
+    return float(glyph.linearHoriAdvance) / 65536 / UNITS
+
+
+def width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
+    """Width of a line of text, in the unit of its size."""
+    return size * sum(_advance(letter, bold, italic) for letter in text)
+
+
+def start(mark: Text) -> complex:
+    """The left end of a text, at half the height of its letters, mm."""
+    left = SHARE[mark.align] * width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
+    return mark.at - left * cmath.rect(1, math.radians(mark.turn))
+
+
+def corners(mark: Text) -> tuple[complex, complex, complex, complex]:
+    """Corners of the box of a text, from the lower left one on, mm."""
+    along = cmath.rect(1, math.radians(mark.turn))
+    low = start(mark) - 0.5j * mark.size * along
+    end = low + width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
+    up = 1j * mark.size * along
+    return low, end, end + up, low + up
+
+
+@cache
+def _letters() -> frozenset[int]:
+    return frozenset(font().get_charmap())
+
+
+def drawable(text: str) -> str:
+    """The text with boxes in the place of characters that the font lacks."""
+    known = _letters()
+    return "".join(letter if ord(letter) in known else BOX for letter in text)
+
+
+def lacking(text: str) -> set[str]:
+    """Characters for which the font has no letter: boxes stand for them."""
+    known = _letters()
+    return {letter for letter in text if ord(letter) not in known}

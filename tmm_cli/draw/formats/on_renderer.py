@@ -1,0 +1,73 @@
+"""A drawing on one of matplotlib's renderers: they take paths and texts, no figure or axes stands between."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.colors import to_rgb
+from matplotlib.font_manager import FontProperties
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
+
+from tmm_cli.draw.drawing import POINT, Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.fonts import FAMILY, HALF, drawable, start
+
+mpl.rcParams["text.hinting"] = "no_hinting"  # a text is as wide as its letters say, at every resolution
+
+
+def draw(drawing: Drawing, renderer: RendererBase, dpi: float) -> None:
+    """All marks, those that cover others last."""
+    to_pixels = Affine2D().scale(dpi / 25.4)
+    for mark in drawing.marks:
+        context = renderer.new_gc()
+        match mark:
+            case Line():
+                _pen(context, mark.colour, mark.width)
+                context.set_capstyle("round")
+                context.set_joinstyle("round")
+                if mark.dashes:
+                    context.set_dashes(0, [length / POINT for length in mark.dashes])
+                renderer.draw_path(context, _path(mark.places), to_pixels)
+            case Area():
+                _pen(context, mark.edge or mark.face, mark.width if mark.edge else 0.0)
+                renderer.draw_path(context, _path(mark.corners, closed=True), to_pixels, to_rgb(mark.face))
+            case Circle():
+                _pen(context, mark.edge, mark.width)
+                shape = Path.circle((mark.centre.real, mark.centre.imag), mark.radius)
+                renderer.draw_path(context, shape, to_pixels, to_rgb(mark.face))
+            case Text():
+                _text(renderer, context, mark, dpi / 25.4, drawing.paper[1])
+        context.restore()
+
+
+def _pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
+    context.set_foreground(colour)
+    context.set_linewidth(wide / POINT)
+
+
+def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
+    array = np.array([*places, places[0]] if closed else places)
+    return Path(np.column_stack([array.real, array.imag]), closed=closed)
+
+
+def _text(renderer: RendererBase, context: GraphicsContextBase, mark: Text, scale: float, height: float) -> None:
+    """From the left end of its base line on."""
+    foot = start(mark) - 1j * HALF * mark.size * cmath.rect(1, math.radians(mark.turn))
+    up = height - foot.imag if renderer.flipy() else foot.imag
+    context.set_foreground(mark.colour)
+    renderer.draw_text(context, scale * foot.real, scale * up, drawable(mark.text), _font(mark), mark.turn)
+
+
+def _font(mark: Text) -> Any:
+    return FontProperties(
+        family=FAMILY,
+        size=mark.size / POINT,
+        weight="bold" if mark.bold else "normal",
+        style="italic" if mark.italic else "normal",
+    )

@@ -1,0 +1,67 @@
+"""Drawings for browsers and editors: SVG in millimetres, text as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from xml.sax.saxutils import escape
+
+from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.draw.fonts import FAMILY, HALF
+
+ANCHOR = {"left": "start", "center": "middle", "right": "end"}
+NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")
+
+
+def svg(drawing: Drawing) -> bytes:
+    """Places are rounded to a thousandth of a millimetre."""
+    across, up = (f"{side:g}" for side in drawing.paper)
+    lines = [
+        '<?xml version="1.0" encoding="utf-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{across}mm" height="{up}mm" viewBox="0 0 {across} {up}" '
+        f'font-family="\'{FAMILY}\', Verdana, sans-serif" stroke-linejoin="round" xml:space="preserve">',
+        '<rect width="100%" height="100%" fill="white"/>',
+        *(_element(mark, drawing.paper[1]) for mark in drawing.marks),
+        "</svg>\n",
+    ]
+    return "\n".join(lines).encode("utf-8", "replace")
+
+
+def _element(mark: Mark, height: float) -> str:
+    match mark:
+        case Line():
+            dashes = f' stroke-dasharray="{" ".join(f"{d:.3g}" for d in mark.dashes)}"' if mark.dashes else ""
+            return (
+                f'<polyline points="{_places(mark.places, height)}" fill="none" stroke="{mark.colour}" '
+                f'stroke-width="{mark.width:.3g}" stroke-linecap="round"{dashes}/>'
+            )
+        case Area():
+            return f'<polygon points="{_places(mark.corners, height)}" {_filled(mark.face, mark.edge, mark.width)}/>'
+        case Circle():
+            x, y = _place(mark.centre, height).split(",")
+            return f'<circle cx="{x}" cy="{y}" r="{mark.radius:.3g}" {_filled(mark.face, mark.edge, mark.width)}/>'
+        case Text():
+            x, y = _place(mark.at, height).split(",")
+            turn = f' transform="rotate({-mark.turn:.4g} {x} {y})"' if mark.turn else ""
+            bold = ' font-weight="bold"' if mark.bold else ""
+            italic = ' font-style="italic"' if mark.italic else ""
+            return (
+                f'<text x="{x}" y="{y}" dy="{HALF:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
+                f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{escape(mark.text.translate(NOT_XML))}</text>'
+            )
+
+
+def _filled(face: str, edge: str | None, width: float) -> str:
+    outline = f' stroke="{edge}" stroke-width="{width:.3g}"' if edge else ""
+    return f'fill="{face}"{outline}'
+
+
+def _places(places: Iterable[complex], height: float) -> str:
+    return " ".join(_place(place, height) for place in places)
+
+
+def _place(place: complex, height: float) -> str:
+    return f"{_number(place.real)},{_number(height - place.imag)}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.3f}".rstrip("0").rstrip(".")
