@@ -11,8 +11,9 @@ import numpy as np
 from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
+from tmm_cli.draw.layout.room import block, in_room, paper_for
 from tmm_cli.errors import _
-from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, sheet_scale
+from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
 
@@ -38,21 +39,27 @@ class Sheet:
     ) -> None:  # fmt: skip
         """For these points (SI), upright or not as they are larger then; or of a given paper, scaled later."""
         found = [p for p in points if np.isfinite(p)] or [0j]
-        middle = extent(found)[3]
-        best, self.mu = sheet_scale(found, pad)
-        self.paper = paper or best
+        __, across, up, middle = extent(found)
+        self.caption, self.remarks = caption, list[str]()
+        self.paper, self.mu = paper_for(found, pad, paper)
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
+        self.figure = None if paper else (across / self.mu, up / self.mu)
         self.marks: list[Mark] = []
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
         self.notes: list[str] = []
+        if not in_room():
+            self._strip(title)
+        self.layer = "construction"
+
+    def _strip(self, title: str) -> None:
+        """The title above the drawing."""
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
         self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
-        self.text(complex(MARGIN, height - MARGIN - 8), caption[:120], 9, colour="#404040")
-        self.layer = "construction"
+        self.text(complex(MARGIN, height - MARGIN - 8), self.caption[:120], 9, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
@@ -136,9 +143,12 @@ class Sheet:
         self.notes.append(text)
 
     def finish(self) -> Drawing:
-        """Put the notes into the emptiest corner, place the labels."""
+        """Put the notes into the emptiest corner, or where all is a block under its heading; place the labels."""
         self.corner()
         self.settle()
+        if in_room():
+            longest = max(self.figure or self.paper)
+            return block(self.marks, self.caption, self.remarks, longest, self.figure, self.mu)
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:
@@ -161,6 +171,9 @@ class Sheet:
 
     def corner(self) -> None:
         """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
+        if in_room():
+            self.remarks += self.notes
+            self.notes = []
         if not self.notes:
             return
         width = max(label_extent(text, 9)[0] for text in self.notes) + 4

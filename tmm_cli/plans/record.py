@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
+FACTORS = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # those that courses take, times a power of ten: no 1 : 1.5 or 1 : 7.5
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
@@ -60,14 +61,16 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
     return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
 
 
-def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
+def round_scale(
+    width: float, height: float, paper_width: float, paper_height: float, factors: Sequence[float] = ROUND
+) -> float:
     """The smallest round scale factor (SI a millimetre) at which a box fits on paper (mm)."""
     least = max(width / paper_width, height / paper_height)
     if not least > 0 or not math.isfinite(least):
         return 1.0
     power = 10.0 ** math.floor(math.log10(least))
     # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
-    return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
+    return next((f * power for f in factors if f * power >= least * (1 - 1e-9)), 10 * power)
 
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
-from tmm_cli.draw.room import Block
-from tmm_cli.plans.record import round_scale
+from tmm_cli.draw.layout.room import Block
+from tmm_cli.plans.record import FACTORS, round_scale
 
 GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
+FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
 STEP = 1.1  # by which a drawing without a scale is made larger
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
@@ -19,41 +20,33 @@ PAGES = 40  # of one sheet at most
 
 @dataclass(frozen=True)
 class Piece:
-    """A drawing, the room (mm) that it was drawn into, and the room that is usual for it."""
+    """A drawing; the room (mm, its longest side) that is usual for it, and the least one."""
 
     drawn: Block
-    room: float
     usual: float
+    least: float = 0.0
 
     @property
-    def mu(self) -> float:
-        return self.drawn.mu
+    def length(self) -> float:
+        """The longest side of the figure, SI; none where there is no scale."""
+        return max(self.drawn.figure) * self.drawn.mu if self.drawn.figure else 0.0
 
     def fitted(self, room: float) -> float:
-        """The room that a drawing takes of this one: at a round scale its figure is shorter."""
-        if not self.drawn.figure:
-            return room
-        length = max(self.drawn.figure.real, self.drawn.figure.imag) * self.mu
-        return length / round_scale(length, 0.0, room, room)
+        """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
+        return self.length / round_scale(self.length, 0.0, room, room, FACTORS) if self.length else room
 
     def larger(self, room: float) -> float:
         """The next room in which it becomes larger."""
-        if not self.drawn.figure:
+        if not self.length:
             return STEP * room
-        length = max(self.drawn.figure.real, self.drawn.figure.imag) * self.mu
-        mu, finer = length / room, round_scale(length, 0.0, room, room)
-        while finer > 0.99 * mu:
-            room *= 1.05
-            finer = round_scale(length, 0.0, room, room)
-        return length / finer
+        return next(room * step for step in FINER if step == FINER[-1] or self.fitted(room * step) > 0.99 * room * step)
 
     def size(self, room: float) -> Size:
         """Its size (mm) in another room: letters stay as large as they are."""
-        (width, height), figure = self.drawn.paper, self.drawn.figure
-        if figure:
-            grown = figure * (room / self.room - 1)
-            return width + grown.real, height + grown.imag
-        return width * room / self.room, height * room / self.room
+        (width, height), figure, factor = self.drawn.paper, self.drawn.figure, room / (self.drawn.longest or 1.0)
+        if figure is None:
+            return width * factor, height * factor
+        return width + (factor - 1) * figure[0], height + (factor - 1) * figure[1]
 
 
 Page = list[int]  # numbers of pieces
@@ -66,7 +59,7 @@ def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list
     """
     few, found = PAGES, None
     for share in shares():
-        rooms = [piece.fitted(share * shrunk * piece.usual) for piece in pieces]
+        rooms = [piece.fitted(max(share * shrunk * piece.usual, piece.least)) for piece in pieces]
         pages = filled([piece.size(room) for piece, room in zip(pieces, rooms, strict=True)], field)
         if pages is not None and len(pages) < few:
             few, found = len(pages), (rooms, pages)

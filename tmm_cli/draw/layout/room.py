@@ -1,0 +1,119 @@
+"""Room for a drawing that stands on a large sheet beside others: how large it may be, and what becomes of it there."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+
+from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.draw.fonts import width
+from tmm_cli.draw.layout.writing import CELLS, DARK, LINE, wrap
+from tmm_cli.plans.record import FACTORS, LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
+
+HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
+NARROW = 70.0  # mm: a heading is not broken into shorter lines
+AIR = 2.5  # mm between a heading and what is below it
+MOST = 3  # lines of a heading, and of each note
+
+Size = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Block(Drawing):
+    """A drawing with its heading, no larger than they are.
+
+    longest: side (mm) that it was drawn for; figure: what is to scale (mm), at `mu` SI a millimetre.
+    """
+
+    longest: float = 0.0
+    figure: Size | None = None
+    mu: float = 1.0
+
+
+@dataclass(frozen=True)
+class Room:
+    """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes."""
+
+    longest: float | None
+
+
+_ROOM: ContextVar[Room | None] = ContextVar("room", default=None)
+
+
+@contextmanager
+def within(room: Room) -> Iterator[None]:
+    """What is drawn meanwhile becomes blocks, and has no paper of its own."""
+    token = _ROOM.set(room)
+    try:
+        yield
+    finally:
+        _ROOM.reset(token)
+
+
+def in_room() -> bool:
+    """Whether what is drawn now is to be a block."""
+    return _ROOM.get() is not None
+
+
+def longest_for(usual: float) -> float:
+    """The longest side (mm) of what is drawn now, where it would be this one."""
+    room = _ROOM.get()
+    return usual if room is None or room.longest is None else room.longest
+
+
+def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
+    """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
+    if not in_room():
+        best, mu = sheet_scale(points, pad)
+        return paper or best, mu
+    if paper is not None:
+        factor = longest_for(max(paper)) / max(paper)
+        return (factor * paper[0], factor * paper[1]), 1.0
+    longest = longest_for(max(LANDSCAPE))
+    __, across, up, ___ = extent(points)
+    mu, edge = round_scale(across, up, longest, longest, FACTORS), 2 * (MARGIN + pad)
+    return (across / mu + edge, up / mu + edge + STRIP), mu
+
+
+def block(
+    marks: Iterable[Mark], title: str, notes: Sequence[str], longest: float, figure: Size | None = None, mu: float = 1.0
+) -> Block:
+    """What was drawn, cut out of its paper, below its title and notes."""
+    drawn = list(marks)
+    low, high = extremes(drawn)
+    room = max((high - low).real, NARROW)
+    y = high.imag + AIR
+    for text, size, bold in reversed([(title, HEAD, True), *((note, NOTE, False) for note in notes)]):
+        for line in reversed(wrap(text, size, room, MOST, bold=bold)):
+            drawn.append(Text(complex(low.real, y + LINE * size / 2), line, size, DARK, bold=bold))
+            y += LINE * size
+    low, high = extremes(drawn)
+    moved = [mark.moved(-low) for mark in drawn]
+    moved.sort(key=lambda mark: mark.z)
+    return Block(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
+
+
+def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:
+    """Corners of the box about marks, mm."""
+    places = [place for mark in marks for place in _reach(mark)] or [0j]
+    xs, ys = [z.real for z in places], [z.imag for z in places]
+    return complex(min(xs), min(ys)), complex(max(xs), max(ys))
+
+
+def _reach(mark: Mark) -> Iterable[complex]:
+    match mark:
+        case Line():
+            return mark.places
+        case Area():
+            return mark.corners
+        case Circle():
+            return mark.centre - mark.radius * (1 + 1j), mark.centre + mark.radius * (1 + 1j)
+        case Text():
+            long = width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
+            turn = cmath.rect(1, math.radians(mark.turn))
+            start = -CELLS[mark.align] * long
+            return [mark.at + turn * complex(x, y * mark.size) for x in (start, start + long) for y in (-0.5, 0.5)]
