@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.base import axis
@@ -22,8 +23,8 @@ from tmm_cli.vectors import Vector, dot, unit
 if TYPE_CHECKING:
     from tmm_cli.draw.scene import Scene
 
-CHAIN: Any = (0, (7, 2.2, 1.2, 2.2))  # dash and dot
-DASHED: Any = (0, (3, 2))
+CHAIN: Style = "-."  # dash and dot
+DASHED: Style = "--"
 TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
@@ -196,7 +197,7 @@ def draw(sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float
     sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
 
 
-def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Any, z: float) -> None:
+def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Style, z: float) -> None:
     """A curve within the drawing's field."""
     low, high = sheet.ground.low, sheet.ground.high
     inside = (places.real > low.real) & (places.real < high.real) & (places.imag > low.imag) & (places.imag < high.imag)

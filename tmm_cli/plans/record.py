@@ -94,8 +94,16 @@ _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 def reaction_name(by: str, on: str, part: str = "") -> str:
     """R₃₄: from link 3 on link 4; part: ᵗ tangential, ⁿ normal."""
-    both = by + on if len(by) == len(on) == 1 else f"{by},{on}"
-    return f"R{subscript(both)}{part}"
+    return f"R{_from_to(by, on)}{part}"
+
+
+def couple_name(by: str, on: str) -> str:
+    """M₀₅: the couple of a guide's reaction, or of a cam's, from link 0 on link 5."""
+    return f"M{_from_to(by, on)}"
+
+
+def _from_to(by: str, on: str) -> str:
+    return subscript(by + on if len(by) == len(on) == 1 else f"{by},{on}")
 
 
 def balance_name(link: str, several: bool, *, turns: bool = False) -> str:

@@ -1,0 +1,141 @@
+"""What acts on some links of a position taken together: loads, reactions in pairs with other links, drivers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+
+from tmm_cli.forces.plan import Balance, Reaction, Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import FRAME
+from tmm_cli.plans.record import Kind, balance_name, couple_name, reaction_name
+from tmm_cli.structure.assur import Pair
+from tmm_cli.tolerances import NO_FORCE
+from tmm_cli.vectors import cross, dot, unit
+
+FAR = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
+DRIVE = "drive"
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A force (N) at a place (m) of a link; or a couple (N m), which has no force.
+
+    pair: the name of the pair, or DRIVE, that it comes from; empty of loads.
+    """
+
+    name: str
+    kind: Kind
+    link: str
+    at: complex
+    force: complex
+    moment: float = 0.0
+    pair: str = ""
+
+    @property
+    def couple(self) -> bool:
+        return self.force == 0
+
+    @property
+    def size(self) -> float:
+        """N, or N m of a couple."""
+        return abs(self.moment) if self.couple else abs(self.force)
+
+    def about(self, centre: complex) -> float:
+        """Its moment about a place, N m, positive counterclockwise."""
+        return self.moment + float(cross(self.at - centre, self.force))
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A position under its forces; size of the linkage, m."""
+
+    motion: Motion
+    reactions: Reactions
+    k: int
+    size: float
+
+    @classmethod
+    def at(cls, motion: Motion, reactions: Reactions, k: int) -> Loaded:
+        """A position by its index."""
+        places = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
+        return cls(motion, reactions, k, max((abs(p - q) for p in places for q in places), default=0.0) or 1.0)
+
+    def place(self, link: str, local: complex) -> complex:
+        """A point of a link, m."""
+        return complex(local) if link == FRAME else complex(self.motion.poses[link].at(local)[self.k])
+
+    def hinge(self, point: str) -> complex:
+        """A named point, m."""
+        link = self.motion.linkage.owner(point)
+        return self.place(link, self.motion.linkage.local(link, point))
+
+    def pair(self, pair: Pair) -> complex:
+        """A hinge, or the running point of a sliding pair, m."""
+        return self.hinge(pair.point) if pair.slide is None else self.place(pair.slide.runner, pair.slide.at)
+
+    def guide(self, pair: Pair) -> complex:
+        """The direction of a sliding pair's guide."""
+        assert pair.slide is not None
+        carrier = pair.slide.carrier
+        turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
+        return complex(turned * unit(pair.slide.direction))
+
+    def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[Acting, ...]:
+        """All that acts on these links from without; what is zero beside the largest is left out.
+
+        axes: directions, by the names of hinges, along which and across which their reactions are parted.
+        """
+        found = [*self._loads(links), *self._drives(links)]
+        for reaction in self.reactions.all:
+            if (reaction.on in links) != (reaction.by in links):
+                link = reaction.on if reaction.on in links else reaction.by
+                found += self._reaction(reaction, link, axes.get(reaction.pair.name))
+        largest = max((a.size if a.couple is False else a.size / self.size for a in found), default=0.0)
+        return tuple(a for a in found if a.size > NO_FORCE * largest * (self.size if a.couple else 1.0))
+
+    def _loads(self, links: Collection[str]) -> Iterable[Acting]:
+        for load in self.reactions.applied:
+            if load.link in links:
+                kind: Kind = "inertia" if load.kind == "inertia" else "load"
+                at = complex(self.motion.point(load.link, load.at).x[self.k])
+                yield Acting(load.name, kind, load.link, at, complex(load.force[self.k]))
+                yield Acting(load.couple_name or load.name, kind, load.link, at, 0j, float(load.moment[self.k]))
+
+    def _drives(self, links: Collection[str]) -> Iterable[Acting]:
+        for balance in self.reactions.balances:
+            driver = balance.driver
+            if driver.link in links and driver.base not in links:
+                yield self._drive(balance, driver.link, 1)
+            elif driver.base in links and driver.link not in links:
+                yield self._drive(balance, driver.base, -1)
+
+    def _drive(self, balance: Balance, link: str, sense: int) -> Acting:
+        driver, k, turns = balance.driver, self.k, balance.kind == "moment" and balance.moment is not None
+        name = "−" * (sense < 0) + balance_name(driver.link, len(self.reactions.balances) > 1, turns=turns)
+        if turns:
+            moment = sense * float(balance.generalized[k])
+            return Acting(name, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
+        force = sense * complex(balance.vector[k])
+        return Acting(name, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
+
+    def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[Acting]:
+        """On one of its two links: a guide's where it acts, a hinge's in two parts where it has an axis."""
+        k, pair, own = self.k, reaction.pair, link == reaction.on
+        by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
+        couple = 0.0
+        if reaction.couple is not None:
+            back = -reaction.couple if reaction.back is None else reaction.back
+            couple = float((reaction.couple if own else back)[k])
+        if reaction.arm is not None and abs(reaction.arm[k]) < FAR * self.size:
+            at, couple = at + float(reaction.arm[k]) * self.guide(pair), 0.0
+        if axis is None:
+            yield Acting(reaction_name(by, link), "reaction", link, at, force, pair=pair.name)
+            yield Acting(couple_name(by, link), "reaction", link, at, 0j, couple, pair.name)
+        else:
+            across = axis * 1j / abs(axis)
+            tangential = across * float(dot(across, force))
+            if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
+                tangential = complex(reaction.tangential[k])
+            yield Acting(reaction_name(by, link, "ⁿ"), "normal", link, at, force - tangential, pair=pair.name)
+            yield Acting(reaction_name(by, link, "ᵗ"), "tangential", link, at, tangential, pair=pair.name)

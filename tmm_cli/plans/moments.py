@@ -1,0 +1,224 @@
+"""Equations of moments of a position: those that the force plan of each group needs, and those of the driving links.
+
+Leads of a group: moments about the inner hinge of a lead give the tangential part of its reaction; of a group with
+three leads, moments about a special point of L. V. Assur, where what is open of two of them meets, give the third.
+Guides: moments of the link that runs in it say where a guide's reaction acts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
+from tmm_cli.plans.leads import Lead, assur_point, hinges_of, leads_of
+from tmm_cli.plans.record import Kind, balance_name, reaction_name, subscript
+from tmm_cli.structure.assur import Group, Pair
+from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
+from tmm_cli.vectors import dot
+
+SPECIAL = "W"  # the special point of a group with three leads
+MARKS = {"tangential": "ᵗ", "normal": "ⁿ"}
+
+
+@dataclass(frozen=True)
+class Term:
+    """What acts, and its moment about the centre (N m); a force's arm (m) leads from there to the foot on its line."""
+
+    acting: Acting
+    moment: float
+    arm: float
+    foot: complex
+    letter: str = ""
+
+
+@dataclass(frozen=True)
+class Sought:
+    """What an equation gives: a part of the reaction in a pair (or the driver's), or the arm at which that acts."""
+
+    name: str
+    pair: str
+    kind: Kind = "reaction"
+    arm: bool = False
+
+
+@dataclass(frozen=True)
+class MomentEquation:
+    """The moments about a point of all that acts on some links come to nothing; forces through it are left out.
+
+    sought: None where all reactions of the group are found at once. Its term is missing where it has no moment: a part
+    of a reaction is nothing then, and a guide's reaction goes through the point.
+    """
+
+    links: tuple[str, ...]
+    about: str
+    centre: complex
+    terms: tuple[Term, ...]
+    sought: Sought | None = None
+
+    @property
+    def found(self) -> Term | None:
+        """The term of what is sought; of a guide that bears a couple, this."""
+        own = [t for t in self.terms if self.sought and _is(t.acting, self.sought)]
+        return min(own, key=lambda t: not t.acting.couple, default=None)
+
+    @property
+    def value(self) -> float:
+        """What it gives, from the moments of the other terms: N, N m or m; positive as it is drawn."""
+        found = self.found
+        assert found is not None and self.sought is not None
+        others = sum(t.moment for t in self.terms if t is not found)
+        moment = -others if found.moment > 0 else others
+        if found.acting.couple:
+            return moment
+        return moment / (found.acting.size if self.sought.arm else found.arm)
+
+
+@dataclass(frozen=True)
+class LoadedPart:
+    """A group, or a driving link, apart: all that acts on it from without, and its equations of moments."""
+
+    links: tuple[str, ...]
+    acting: tuple[Acting, ...]
+    equations: tuple[MomentEquation, ...]
+    driving: bool = False
+
+
+def loaded_parts(motion: Motion, reactions: Reactions, k: int) -> tuple[LoadedPart, ...]:
+    """Last group first, as force plans are drawn, and the driving links at the end."""
+    here = Loaded.at(motion, reactions, k)
+    groups = [_group(here, group) for group in reversed(reactions.groups)]
+    return (*groups, *(_driving(here, frame) for frame in reactions.frames))
+
+
+def _group(here: Loaded, forces: GroupForces) -> LoadedPart:
+    group = forces.group
+    leads = leads_of(here, group)
+    axes = {lead.pair.name: lead.axis for lead in leads if lead.axis is not None}
+    equations = [*_of_leads(here, group, leads, axes), *_of_teeth(here, group, axes)]
+    if not equations and len(group.links) > 2:  # all reactions are found at once
+        equations = [_equation(here, axes, (link,), *_hinge(here, group, link)) for link in group.links]
+    else:
+        equations += _of_guides(here, group, axes)
+    return LoadedPart(group.links, here.acting(group.links, axes), _lettered(equations))
+
+
+def _of_leads(
+    here: Loaded, group: Group, leads: Sequence[Lead], axes: Mapping[str, complex]
+) -> Iterable[MomentEquation]:
+    for lead in leads:
+        if lead.about is not None:
+            sought = _part(group, lead.pair, "tangential")
+            yield _equation(here, axes, lead.links, lead.about, here.hinge(lead.about), sought)
+    open_hinges = [lead for lead in leads if lead.rest is None and lead.pair.slide is None and lead.about is None]
+    special = assur_point(here, group, leads)
+    if len(leads) == len(group.outer) == 2 and len(open_hinges) == 1:  # all of one reaction, and a part of the other
+        other = next(lead for lead in leads if lead not in open_hinges)
+        about = open_hinges[0].pair.point
+        yield _equation(here, axes, group.links, about, here.hinge(about), _part(group, other.pair, other.open_part))
+    elif special is not None:
+        lead, centre = special
+        # of a guide's reaction the moment about its link's hinge is known by now, but not where it acts
+        carried = {other.pair.name: other.rest[0] for other in leads if other.pair.slide is not None and other.rest}
+        sought = _part(group, lead.pair, lead.open_part)
+        yield _equation(here, axes, group.links, SPECIAL, centre, sought, carried)
+
+
+def _of_teeth(here: Loaded, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:
+    """A wheel, or a follower of a cam, that hangs on one hinge: moments about it give what the teeth do."""
+    for pair in group.outer:
+        own = group.own(pair)
+        joined = [p for p in (*group.inner, *group.outer) if own in (p.i, p.j) and p != pair]
+        if not pair.lower and [p.kind for p in joined] == ["R"]:
+            point = joined[0].point
+            yield _equation(here, axes, (own,), point, here.hinge(point), _part(group, pair, "reaction"))
+
+
+def _of_guides(here: Loaded, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:
+    """Moments of one of the two links of a sliding pair: where its reaction acts. An inner one where no hinge is."""
+    pairs = (*group.inner, *group.outer)
+    inner = group.inner if group.type == "RPP" else ()
+    for pair in (p for p in (*inner, *group.outer) if p.slide is not None):
+        sides = [link for link in (pair.i, pair.j) if link in group.links]
+        own = min(sides, key=lambda n: (not hinges_of(pairs, (n,)), sum(n in (p.i, p.j) for p in pairs)))
+        name = reaction_name(pair.other(own), own)
+        sought = Sought(name, pair.name, arm=True)
+        yield _equation(here, axes, (own,), *_hinge(here, group, own, pair), sought)
+
+
+def _driving(here: Loaded, frame: Reaction) -> LoadedPart:
+    """A crank about its pivot, which gives what balances it; a driven slider about its running point."""
+    link, pair = frame.on, frame.pair
+    if pair.slide is not None:
+        sought = Sought(reaction_name(frame.by, link), pair.name, arm=True)
+    else:
+        balance = next(b for b in here.reactions.balances if b.driver.link == link)
+        turns = balance.kind == "moment"
+        sought = Sought(balance_name(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
+    equation = _equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
+    return LoadedPart((link,), here.acting((link,), {}), _lettered([equation]), driving=True)
+
+
+def _part(group: Group, pair: Pair, kind: Kind) -> Sought:
+    own = group.own(pair)
+    return Sought(reaction_name(pair.other(own), own, MARKS.get(kind, "")), pair.name, kind)
+
+
+def _hinge(here: Loaded, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
+    """About which point moments of a link are taken: a hinge, an inner one first; else the running point of a guide."""
+    own = [p for p in (*group.inner, *group.outer) if link in (p.i, p.j) and p.kind == "R"]
+    pair = own[0] if own else guide or next(p for p in (*group.inner, *group.outer) if link in (p.i, p.j))
+    return pair.point or pair.name, here.pair(pair)
+
+
+def _is(acting: Acting, sought: Sought) -> bool:
+    return (acting.pair, acting.kind) == (sought.pair, sought.kind)
+
+
+def _equation(
+    here: Loaded, axes: Mapping[str, complex], links: Sequence[str], about: str, centre: complex,
+    sought: Sought | None = None, carried: Mapping[str, complex] | None = None,
+) -> MomentEquation:  # fmt: skip
+    """Moments of all that acts on these links. carried: to which places guides' reactions go, each with a couple."""
+    terms = []
+    for acting in here.acting(links, axes):
+        for one in _moved(acting, (carried or {}).get(acting.pair)):
+            along = one.force / abs(one.force) if not one.couple else 0j
+            foot = one.at - along * float(dot(one.at - centre, along))
+            arm = abs(foot - centre) if not one.couple else 0.0
+            if one.couple or arm > NO_COORDINATE * here.size:
+                terms.append(Term(one, one.about(centre), arm, foot))
+    return MomentEquation(tuple(links), about, centre, tuple(terms), sought)
+
+
+def _moved(acting: Acting, place: complex | None) -> Iterable[Acting]:
+    if place is None or acting.couple:
+        return (acting,)
+    couple = replace(acting, name=f"M({acting.name})", kind="inner", force=0j, moment=acting.about(place), at=place)
+    return (replace(acting, at=place), couple)
+
+
+def _lettered(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
+    """Arms get letters h₁, h₂, ...; the same ones of several forces (weight and inertia in one line) have one."""
+    found: list[MomentEquation] = []
+    feet: list[tuple[complex, complex]] = []
+    for equation in equations:
+        terms = []
+        for term in equation.terms:
+            letter = ""
+            if not term.acting.couple:
+                arm = (equation.centre, term.foot)
+                near = SAME_PLACES * term.arm
+                same = [n for n, (c, f) in enumerate(feet) if abs(c - arm[0]) < near and abs(f - arm[1]) < near]
+                feet += [] if same else [arm]
+                letter = arm_letter(same[0] if same else len(feet) - 1)
+            terms.append(replace(term, letter=letter))
+        found.append(replace(equation, terms=tuple(terms)))
+    return tuple(found)
+
+
+def arm_letter(number: int) -> str:
+    """h₁ for 0."""
+    return f"h{subscript(str(number + 1))}"
