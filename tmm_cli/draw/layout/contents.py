@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any, Literal
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
@@ -28,14 +29,30 @@ class Choice:
     plans: tuple[Position, ...]
     detail: tuple[Position, ...]
 
+    @property
+    def moves(self) -> bool:
+        """Whether there is a position in which the mechanism can be drawn."""
+        motion = self.results.motion
+        return motion is not None and bool(motion.placed.any())
+
 
 @dataclass(frozen=True)
 class Source:
-    """What draws some of the drawings of a sheet. usual: longest side on A1, mm; None: as it comes (tables)."""
+    """What draws some of the drawings of a sheet, from the results or from each of some positions.
+
+    usual: longest side on A1, mm; None: as it comes (tables). over: for which positions of the choice it draws.
+    """
 
     sheet: int
-    draw: Callable[[Choice], Drawn]
+    draw: Callable[[Any], Drawn]
     usual: float | None = None
+    over: Literal["", "plans", "detail"] = ""
+
+    def drawings(self, choice: Choice) -> Drawn:
+        """They are drawn one after the other, as they are taken."""
+        if self.over:
+            return (found for here in getattr(choice, self.over) for found in self.draw(here))
+        return self.draw(choice.results) if choice.moves or self.sheet == 0 else ()
 
 
 def chosen(results: Results, *, every: bool) -> Choice:
@@ -49,47 +66,30 @@ def chosen(results: Results, *, every: bool) -> Choice:
     return Choice(results, tuple(plans), detail)
 
 
-def _structure(choice: Choice) -> Drawn:
-    found, title = at_sketch(choice.results), choice.results.problem.title
+def _structure(results: Results) -> Drawn:
+    found = at_sketch(results)
     if found is not None:
-        yield "structure", scheme(title, *found).finish()
+        yield "structure", scheme(results.problem.title, *found).finish()
 
 
-def _groups(choice: Choice) -> Drawn:
-    found, title = at_sketch(choice.results), choice.results.problem.title
+def _groups(results: Results) -> Drawn:
+    found = at_sketch(results)
     if found is not None:
-        yield from groups(title, *found, choice.results.roles)
-
-
-def _of_cycle(draw: Callable[[Results], Drawn]) -> Callable[[Choice], Drawn]:
-    """A drawing that needs a mechanism that moves."""
-    def drawn(choice: Choice) -> Drawn:
-        motion = choice.results.motion
-        return draw(choice.results) if motion is not None and bool(motion.placed.any()) else ()
-
-    return drawn
-
-
-def _of_plans(draw: Callable[[Position], Drawn]) -> Callable[[Choice], Drawn]:
-    return lambda choice: (found for here in choice.plans for found in draw(here))
-
-
-def _of_detail(draw: Callable[[Position], Drawn]) -> Callable[[Choice], Drawn]:
-    return lambda choice: (found for here in choice.detail for found in draw(here))
+        yield from groups(results.problem.title, *found, results.roles)
 
 
 CONTENTS = (
     Source(0, _structure, 240),
     Source(0, _groups, 300),
-    Source(0, _of_cycle(synthesised), 200),
-    Source(0, lambda choice: structure_tables(choice.results)),
-    Source(1, _of_cycle(all_positions), 200),
-    Source(1, _of_plans(motion_plans), 300),
-    Source(1, _of_cycle(motion_tables)),
-    Source(1, _of_cycle(diagrams), 160),
-    Source(2, _of_detail(position), 200),
-    Source(2, _of_detail(forces), 100),
-    Source(2, _of_detail(lever), 200),
-    Source(2, _of_detail(forces_table)),
-    Source(2, _of_cycle(balance_table)),
+    Source(0, synthesised, 200),
+    Source(0, structure_tables),
+    Source(1, all_positions, 200),
+    Source(1, motion_plans, 300, over="plans"),
+    Source(1, motion_tables),
+    Source(1, diagrams, 160),
+    Source(2, position, 200, over="detail"),
+    Source(2, forces, 100, over="detail"),
+    Source(2, lever, 200, over="detail"),
+    Source(2, forces_table, over="detail"),
+    Source(2, balance_table),
 )

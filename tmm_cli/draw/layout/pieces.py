@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -20,11 +21,12 @@ PAGES = 40  # of one sheet at most
 
 @dataclass(frozen=True)
 class Piece:
-    """A drawing; the room (mm, its longest side) that is usual for it, and the least one."""
+    """A drawing; the room (mm, its longest side) that is usual for it, the least and the largest."""
 
     drawn: Block
     usual: float
     least: float = 0.0
+    most: float = math.inf
 
     @property
     def length(self) -> float:
@@ -59,7 +61,7 @@ def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list
     """
     few, found = PAGES, None
     for share in shares():
-        rooms = [piece.fitted(max(share * shrunk * piece.usual, piece.least)) for piece in pieces]
+        rooms = [piece.fitted(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
         pages = filled([piece.size(room) for piece, room in zip(pieces, rooms, strict=True)], field)
         if pages is not None and len(pages) < few:
             few, found = len(pages), (rooms, pages)
@@ -103,6 +105,6 @@ def grow(pieces: Sequence[Piece], rooms: list[float], page: Page, field: Field, 
         number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
         before, rooms[number] = rooms[number], pieces[number].larger(rooms[number])
         sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
-        if rooms[number] > most * pieces[number].usual or pack(spaced(sizes, page), field) is None:
+        if rooms[number] > min(most * pieces[number].usual, pieces[number].most * (1 + 1e-9)) or pack(spaced(sizes, page), field) is None:
             rooms[number] = before
             growing.discard(number)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import batched
 from typing import Any
 
 import numpy as np
@@ -50,8 +49,8 @@ def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
         ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
     ):
         moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
-        for number, part in enumerate(batched(moving, BESIDE)):
-            yield f"table-{stem}-{number + 1}", _over_positions(results, title, part)
+        for start in range(0, len(moving), BESIDE):
+            yield f"table-{stem}", _over_positions(results, title, moving[start : start + BESIDE])
 
 
 def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
