@@ -107,7 +107,8 @@ def test_run_writes_tables_drawings_and_results(shaper):
     assert {"result.json", "structure.csv", "points.csv", "reactions.csv", "lever.csv", "cycle.csv"} <= names
     drawings = (
         "structure", "groups", "mechanism", "position-03", "velocity-03", "acceleration-03", "forces-03-links-4-5",
-        "forces-03-links-2-3", "forces-03-link-1", "lever-03", "diagrams", "reactions",
+        "forces-03-links-2-3", "forces-03-link-1", "lever-03", "diagrams", "reactions", "group-loads-03-links-4-5",
+        "group-loads-03-links-2-3", "group-loads-03-link-1",
     )  # fmt: skip
     for name in drawings:
         assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")

@@ -11,14 +11,15 @@ from higher import PROBLEMS
 
 from tmm_cli import draw, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.actuators import BARREL, cylinder, springs
-from tmm_cli.draw.drawing import POINT, Area, Line
+from tmm_cli.draw.actuators import BARREL, Cylinder, springs
+from tmm_cli.draw.drawing import Line
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.draw.wheels import contact, extent, outline
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
+from tmm_cli.plans.record import Symbol
 from tmm_cli.plans.velocity import letters, velocity_plan
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -171,21 +172,18 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
     results = solved("cylinder")
     slide = results.linkage.slides[0]
     runs = results.motion.slide(slide).run
-    heads = []
+    runs_of_piston = []
+    sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
     for k in range(len(runs)):
-        sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
         here = scene(results, k)
-        middle, along = cylinder(sheet, here, slide), here.along(slide)
-        barrel = [mark for mark in sheet.marks if isinstance(mark, Area)][-1]
-        length = max(abs(corner - middle) for corner in barrel.corners)
-        piston = next(m for m in sheet.marks if isinstance(m, Line) and m.width == pytest.approx(2.4 * POINT))
-        head = np.mean(piston.places)
-        assert abs(cross(along, head - middle)) < 1e-9 and abs(head - middle) < length
-        assert abs(piston.places[0] - head) < BARREL
-        end = sheet.on(results.motion.named("A").x[k])
-        assert dot(along, end - middle) > length - BARREL  # the rod comes out of it
-        heads.append(dot(along, head - sheet.on(here.place("1", 0j))))
-    assert np.all(np.diff(heads) > 0)
+        found, along = Cylinder.of(sheet, here, slide), here.along(slide)
+        length, run, end = (dot(along, place - found.back) for place in (found.front, found.piston, found.end))
+        assert 0 < run < length - BARREL / 2
+        assert end > length + BARREL  # the rod comes out of it
+        assert all(abs(cross(along, place - found.back)) < 1e-9 for place in (found.front, found.piston, found.end))
+        assert found.end == pytest.approx(sheet.on(results.motion.named("A").x[k]))
+        runs_of_piston.append(run)
+    assert np.all(np.diff(runs_of_piston) > 0)
 
 
 def test_a_spring_is_drawn_from_end_to_end():
@@ -247,14 +245,14 @@ def test_normal_and_tangential_parts_lead_from_end_to_end(name):
     for first, second in zip(parts[::2], parts[1::2], strict=True):
         assert first.end == second.start
         for end in (first.start, second.end):
-            assert min(abs(end - e) for e in ends) < 1e-9 * plan.size, (first.name, second.name)
+            assert min(abs(end - e) for e in ends) < 1e-9 * plan.size, (first.symbol, second.symbol)
 
 
 def test_under_a_piston_the_parts_start_where_the_cylinder_is_hinged_to_a_moving_link():
     motion = solved("two cylinders").motion
     plan = acceleration_plan(motion, 3)
-    normal = next(v for v in plan.vectors if v.name == "n(d5c)")
-    tangential = next(v for v in plan.vectors if v.name == "t(d5c)")
+    normal = next(v for v in plan.vectors if v.symbol == Symbol("a", "D5C", "n"))
+    tangential = next(v for v in plan.vectors if v.symbol == Symbol("a", "D5C", "τ"))
     assert normal.start == pytest.approx(plan.ends["c"])
     assert tangential.end == pytest.approx(plan.ends["d5"])
     arm = motion.named("D").x[3] - motion.named("C").x[3]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tmm_cli.draw.fixed import free_runs, support_side
 from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.symbols import free_runs, support_side
 
 
 def test_a_rail_is_open_where_rods_go_through_it():

@@ -14,7 +14,8 @@ from tmm_cli.forces.lever import lever
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import ROUND, reaction_name, round_scale
+from tmm_cli.plans.readings import Reading, readings, turns
+from tmm_cli.plans.record import ROUND, Symbol, reaction_name, round_scale
 from tmm_cli.plans.velocity import velocity_plan
 from tmm_cli.vectors import cross
 
@@ -57,9 +58,12 @@ def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
     velocity = velocity_plan(results.motion, 3)
     assert {"pa", "pd", "pe", "de", "pa3", "a3a"} <= {v.name for v in velocity.vectors}
     acceleration = acceleration_plan(results.motion, 3)
-    names = [v.name for v in acceleration.vectors]
-    assert {"n(ao)", "n(dc)", "t(dc)", "n(ed)", "t(ed)", "k(a)", "r(a)"} <= set(names)
-    coriolis = next(v for v in acceleration.vectors if v.name == "k(a)")
+    parts = {(v.symbol.above, v.symbol.below): v for v in acceleration.vectors if v.kind != "absolute"}
+    assert set(parts) >= {("n", "AO"), ("n", "DC"), ("τ", "DC"), ("n", "ED"), ("τ", "ED"), ("k", "AA3"), ("r", "AA3")}
+    assert parts["k", "AA3"].name == "a3k" and parts["r", "AA3"].name == "ka"
+    assert parts["n", "AO"].name == "πa" and parts["τ", "AO"].name == ""  # the crank turns evenly
+    assert parts["n", "DC"].name == "πn₁" and parts["τ", "DC"].name == "n₁d"
+    coriolis = parts["k", "AA3"]
     omega = results.motion.link("3").omega[3]
     sliding = results.motion.slide(results.linkage.slides[0]).v[3]
     assert abs(coriolis.value) == pytest.approx(abs(2 * omega * sliding), rel=1e-14)
@@ -97,3 +101,27 @@ def test_nothing_is_left_of_the_lever_when_nothing_acts():
 
     _, motion, *_ = solved(linkage(3, ("RRR",)))
     assert lever(motion, (), np.zeros(3)).items == ()
+
+
+def test_each_vector_is_read_off_once_and_equal_ones_together():
+    results = solve(load(str(SHAPER)))
+    motion, k = results.motion, 3
+    found = {s: r for r in readings(velocity_plan(motion, k)) for s in r.symbols}
+    both = found[Symbol("v", "A")]
+    assert both.symbols == (Symbol("v", "A"), Symbol("v", "S2")) and both.segment == "pa"
+    assert found[Symbol("v", "E")].size == abs(motion.named("E").v[k])
+    assert found[Symbol("v", "ED")].size == pytest.approx(
+        abs(motion.named("E").v[k] - motion.named("D").v[k]), rel=1e-12
+    )
+    found = {s: r for r in readings(acceleration_plan(motion, k)) for s in r.symbols}
+    omega, epsilon = motion.link("3").omega[k], motion.link("3").epsilon[k]
+    assert found[Symbol("a", "DC", "n")].size == pytest.approx(0.65 * omega**2, rel=1e-12)
+    assert found[Symbol("a", "DC", "τ")].size == pytest.approx(0.65 * abs(epsilon), rel=1e-12)
+    assert found[Symbol("a", "AO", "τ")] == Reading((Symbol("a", "AO", "τ"),), "", 0.0)
+
+
+def test_links_that_only_slide_turn_with_nothing_and_signs_are_senses():
+    motion = solve(load(str(SHAPER))).motion
+    found = {t.symbol.below: t.value for t in turns(motion, 3, "omega")}
+    assert set(found) == {"1", "2", "3", "4"}
+    assert found["1"] == pytest.approx(82 * np.pi / 30) and found["2"] == found["3"] == motion.link("3").omega[3]

@@ -9,9 +9,11 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.formats import files as every_format
+from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.mechanism import all_positions, detailed, position
-from tmm_cli.draw.plans import forces, lever, motion_plans
+from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.plans import forces, lever
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _
@@ -31,7 +33,7 @@ def sheets(results: Results) -> Drawn:
         yield from all_positions(results)
         yield from diagrams(results)
     for here in detailed(results):
-        for sheets_of in (position, motion_plans, forces, lever):
+        for sheets_of in (position, motion_plans, group_loads, forces, lever):
             yield from sheets_of(here)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 
 from tmm_cli.draw.scene import ON_LINE, Scene
@@ -20,29 +23,47 @@ def cylinders(linkage: Linkage) -> dict[str, Driver]:
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
 
-def cylinder(sheet: Sheet, scene: Scene, slide: Slide) -> complex:
-    """A cylinder with its piston and rod; the middle of the barrel (mm).
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder between two links, mm: its barrel from back to front, its rod from the piston to the end."""
 
-    The barrel begins at the last point that the cylinder has behind the rod's end, else a stroke before it; where it
-    cannot hold the stroke (no real one could) the piston goes slower than the rod.
-    """
-    low, high = (run / sheet.mu for run in scene.way(slide))
-    foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
-    along, stroke = scene.along(slide), high - low
-    run = float(dot(along, end - foot))
-    arms = [sheet.on(point) - foot for point in scene.ends(slide.carrier)]
-    runs = [float(dot(along, arm)) for arm in arms if abs(cross(along, arm)) < ON_LINE]
-    behind = [r for r in runs if r < low - LEAST / 2]
-    start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST)
-    length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST, low - start))
-    share = (run - low) / max(stroke, 0.74 * length, 1e-9)
-    head = foot + along * (start + length * (0.13 + 0.74 * share))
-    back, front = foot + along * start, foot + along * (start + length)
-    side = 1j * along * BARREL
-    sheet.area([back + side, front + side, front - side, back - side], "white", DARK, 1.3, 3.5)
-    sheet.line([head + 0.8 * side, head - 0.8 * side], DARK, 2.4, z=3.7)
-    sheet.line([head, end], DARK, 1.8, z=3.6)
-    return (back + front) / 2
+    slide: Slide
+    back: complex
+    front: complex
+    piston: complex
+    end: complex
+
+    @staticmethod
+    def of(sheet: Sheet, scene: Scene, slide: Slide) -> Cylinder:
+        """The barrel begins at the last point that its link has behind the rod's end, else a stroke before it.
+
+        Where it cannot hold the stroke (no real one could) the piston goes slower than the rod.
+        """
+        low, high = (run / sheet.mu for run in scene.way(slide))
+        foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
+        along, stroke = scene.along(slide), high - low
+        run = float(dot(along, end - foot))
+        arms = [sheet.on(point) - foot for point in scene.ends(slide.carrier)]
+        runs = [float(dot(along, arm)) for arm in arms if abs(cross(along, arm)) < ON_LINE]
+        behind = [r for r in runs if r < low - LEAST / 2]
+        start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST)
+        length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST, low - start))
+        share = (run - low) / max(stroke, 0.74 * length, 1e-9)
+        piston = start + length * (0.13 + 0.74 * share)
+        return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
+
+    def part(self, link: str) -> tuple[complex, complex]:
+        """The barrel or the rod."""
+        return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
+
+    def draw(self, sheet: Sheet, hue: Mapping[str, str]) -> None:
+        """The barrel cut open, the piston and its rod in it."""
+        side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL
+        corners = [self.back + side, self.front + side, self.front - side, self.back - side]
+        sheet.area(corners, "white", hue[self.slide.carrier], 1.3, 4.6)
+        rod = hue[self.slide.runner]
+        sheet.line([self.piston + 0.8 * side, self.piston - 0.8 * side], rod, 2.4, z=4.8)
+        sheet.line([self.piston, self.end], rod, 1.8, z=4.7)
 
 
 def driver_name(driver: Driver, symbol: str) -> str:

@@ -14,12 +14,12 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.render import names, render, spot
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, ground_of, scale_text
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, scale_text
 from tmm_cli.draw.structure import colours
 from tmm_cli.draw.symbols import STRUCTURAL, Look, numbers, symbol_size
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, round_scale
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
 from tmm_cli.results.reports.assemblies import place
 from tmm_cli.structure.assur import Pair, Structure
 from tmm_cli.tolerances import DEAD

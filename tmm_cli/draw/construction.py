@@ -8,10 +8,11 @@ import numpy as np
 
 from tmm_cli.draw.annotations import angle_mark, dimension
 from tmm_cli.draw.drawing import Style
+from tmm_cli.draw.fixed import support
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
 from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, hatch, scale_text
-from tmm_cli.draw.symbols import MEASURED, box, support
+from tmm_cli.draw.symbols import MEASURED, box
 from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale

@@ -1,7 +1,6 @@
-"""The form in which a link is drawn: from what it is joined by, or from its points.
+"""The form in which a link is drawn: a bar between two places, a plate between more, a bar along every guide.
 
-By its pairs: a bar between two of them, a plate between three and more, a bar along every guide that it carries;
-nothing of it is to be measured. By its points: a bar or a plate between its named points, to scale.
+By its pairs nothing of it is to be measured; by its points it is to scale, its guides as long as the way on them.
 """
 
 from __future__ import annotations
@@ -12,14 +11,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.draw.actuators import cylinders
+from tmm_cli.draw.actuators import Cylinder, cylinders
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
-from tmm_cli.draw.sheet import Sheet
-from tmm_cli.linkage import FRAME
+from tmm_cli.draw.sheet import Sheet, border
+from tmm_cli.linkage import Slide
 from tmm_cli.vectors import cross, dot
 
-NARROW = 1.87  # mm: a plate that is nowhere wider is drawn as a bar
+Line = tuple[complex, complex]
+NARROW = 1.87  # mm: a plate of a scheme that is nowhere wider is drawn as a bar
 GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it
+OVER = 7.0  # mm: how far such a bar goes on beyond the way of its stone, to scale
 
 
 @dataclass
@@ -44,7 +45,7 @@ class Bar:
         return self.base + self.along * float(dot(self.along, place - self.base))
 
     @property
-    def tips(self) -> tuple[complex, complex]:
+    def tips(self) -> Line:
         return self.base + self.low * self.along, self.base + self.high * self.along
 
 
@@ -59,11 +60,11 @@ class Form:
     boxes: Sequence[complex] = ()
     hull: Sequence[complex] = ()
     bars: Sequence[Bar] = ()
-    struts: Sequence[tuple[complex, complex]] = ()
+    struts: Sequence[Line] = ()
     welds: Sequence[tuple[complex, complex, complex]] = ()
 
     @property
-    def lines(self) -> list[tuple[complex, complex]]:
+    def lines(self) -> list[Line]:
         """Its straight parts."""
         lines = [bar.tips for bar in self.bars] + list(self.struts)
         if len(self.hull) == 2:
@@ -71,7 +72,7 @@ class Form:
         return lines
 
     @property
-    def edges(self) -> list[tuple[complex, complex]]:
+    def edges(self) -> list[Line]:
         """Its straight parts and the sides of its plate."""
         return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
@@ -106,35 +107,58 @@ class Form:
 
 
 def by_points(sheet: Sheet, scene: Scene, link: str) -> Form:
-    """The form of a link from its named points and the stones that run on it, to scale."""
-    linkage = scene.linkage
-    places = [scene.place(link, local) for local in linkage.links[link].points.values()]
-    for slide in linkage.slides:
-        if slide.carrier == link and slide.runner != FRAME and slide.name not in cylinders(linkage):
-            foot = scene.place(link, slide.through)
-            places += [foot, foot + scene.run(slide) * scene.along(slide)]
-    hull = outline([sheet.on(p) for p in places])
-    return Form(hull=hull) if len(hull) > 1 else Form(joints=hull)
+    """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them."""
+    joints = apart(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
+    bars: list[Bar] = []
+    for slide in _guides(scene, link):
+        stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
+        (low, high), here = scene.way(slide), scene.run(slide)
+        bar = _bar(bars, stone, along)
+        for end, side in (((low - here) / sheet.mu, -along), ((high - here) / sheet.mu, along)):
+            tip = stone + end * along
+            if not any(bar.meets(j) and dot(side, j - tip) > -ON_LINE for j in joints):
+                bar.take(border(stone, tip + OVER * side, *sheet.field))
+    return _joined(sheet, scene, link, joints, bars, ON_LINE)
 
 
 def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
     """The form of a link from its pairs, on paper."""
     joints = apart(sheet.on(p) for p in scene.joints(link))
     bars: list[Bar] = []
-    for stone, along in scene.guides(link):
-        at = sheet.on(stone)
-        same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
-        if same is None:
-            same = Bar(at, along, -GUIDE, GUIDE)
-            bars.append(same)
-        same.take(at - GUIDE * along)
-        same.take(at + GUIDE * along)
+    for slide in _guides(scene, link):
+        at, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
+        bar = _bar(bars, at, along)
+        bar.take(at - GUIDE * along)
+        bar.take(at + GUIDE * along)
+    for bar in bars:
+        for end in scene.ends(link):
+            if bar.meets(sheet.on(end)):
+                bar.take(sheet.on(end))
+    return _joined(sheet, scene, link, joints, bars, NARROW)
+
+
+def _guides(scene: Scene, link: str) -> list[Slide]:
+    """Guides that a link carries, but for those in its cylinders."""
+    slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
+    return [slide for slide in slides if slide.name not in cylinders(scene.linkage)]
+
+
+def _bar(bars: list[Bar], at: complex, along: complex) -> Bar:
+    """The bar on a line through a place: one that is there already, or a new one."""
+    same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
+    if same is None:
+        same = Bar(at, along, 0.0, 0.0)
+        bars.append(same)
+    return same
+
+
+def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar], narrow: float) -> Form:
+    """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]
-        for place in [*bar.holds, *(sheet.on(e) for e in scene.ends(link))]:
-            if bar.meets(place):
-                bar.take(place)
-    struts: list[tuple[complex, complex]] = []
+        for place in bar.holds:
+            bar.take(place)
+    struts: list[Line] = []
     welds: list[tuple[complex, complex, complex]] = []
     for number, bar in enumerate(bars[1:], 1):
         _join(bars[:number], bar, struts, welds)
@@ -149,18 +173,24 @@ def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
             welds.append((foot, near - foot, _longer(bar, foot)))
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
-    hull = _flat(outline(loose)) if len(loose) > 1 else ()
-    boxes = [sheet.on(scene.at(p)) for p in scene.of(link) if p.slide is not None and p.slide.runner == link]
+    hull = _flat(outline(loose), narrow) if len(loose) > 1 else ()
+    driven = cylinders(scene.linkage)
+    boxes = []
+    for pair in scene.of(link):
+        if pair.slide is not None and pair.name in driven:
+            struts.append(Cylinder.of(sheet, scene, pair.slide).part(link))
+        elif pair.slide is not None and pair.slide.runner == link:
+            boxes.append(sheet.on(scene.at(pair)))
     return Form(joints, boxes, hull, bars, struts, welds)
 
 
-def _flat(hull: Sequence[complex]) -> Sequence[complex]:
-    """Corners of a plate; the two ends of a plate that is hardly wider than a bar."""
+def _flat(hull: Sequence[complex], narrow: float) -> Sequence[complex]:
+    """Corners of a plate; the two ends of a plate that is hardly wider (mm) than a bar."""
     if len(hull) < 3:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
     along = (end - start) / abs(end - start)
-    return hull if max(abs(cross(along, p - start)) for p in hull) > NARROW else (start, end)
+    return hull if max(abs(cross(along, p - start)) for p in hull) > narrow else (start, end)
 
 
 def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
@@ -178,7 +208,7 @@ def _longer(bar: Bar, foot: complex) -> complex:
 
 
 def _join(
-    others: Sequence[Bar], bar: Bar, struts: list[tuple[complex, complex]],
+    others: Sequence[Bar], bar: Bar, struts: list[Line],
     welds: list[tuple[complex, complex, complex]],
 ) -> None:  # fmt: skip
     """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""

@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_cli.draw import script
 from tmm_cli.draw.drawing import POINT
-from tmm_cli.draw.fonts import width as width_of
 
 STEP = 1.2  # mm between the points that stand for a line
 RINGS = (1.2, 3.0, 5.5, 9.0)  # mm from the anchor to the label's near side
@@ -31,7 +31,7 @@ class Label:
     line: it stands beside this line, wherever along it. far: it may stand farther off, a thin line leads to it then.
     """
 
-    text: str
+    text: script.Words
     anchor: complex
     size: float
     colour: str
@@ -171,6 +171,7 @@ def away(box: Box, place: complex) -> float:
     return abs(nearest(box, place) - place)
 
 
-def extent(text: str, size: float) -> tuple[float, float]:
+def extent(text: script.Words, size: float) -> tuple[float, float]:
     """Width and height of a text on paper, mm, with a little air at its sides; size: points."""
-    return width_of(text, size * POINT) + 0.6, size * POINT
+    high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
+    return script.width(text, size * POINT) + 0.6, high * size * POINT

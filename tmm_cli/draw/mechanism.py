@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,10 +12,12 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.render import Rendered, arrows, render
+from tmm_cli.draw.render import Rendered, arrows, render, slider
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
+from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
@@ -40,11 +42,18 @@ class Position:
         """velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
-    def sheet(self, title: str, places: Iterable[complex], pad: float = PAD, **words: str) -> Sheet:
-        """A sheet for places (SI). {caption} in its title: which position it is and where the driver stands."""
+    def sheet(
+        self, title: str, places: Iterable[complex] = (), pad: float = PAD, room: Room | None = None, **words: str
+    ) -> Sheet:
+        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
+        subject = title.format(caption=self.caption, **words)
+        return Sheet(self.results.problem.title, subject, places, pad=pad, room=room)
+
+    @property
+    def caption(self) -> str:
+        """Which position it is and where the driver stands."""
         place = place_of_driver(self.results, float(self.motion.q[self.k]))
-        caption = _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
-        return Sheet(self.results.problem.title, title.format(caption=caption, **words), places, pad=pad)
+        return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
 def place_of_driver(results: Results, q: float) -> str:
@@ -55,16 +64,23 @@ def place_of_driver(results: Results, q: float) -> str:
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 
-def measured(sheet: Sheet, scene: Scene, mark: str = "") -> Rendered:
+def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = ()) -> Rendered:
     """One position to scale with its symbols, names of points and centres of mass, numbers of links.
 
-    mark: of the position, after the names of moving points.
+    mark: of the position, after the names of moving points. links: only these, without what they are joined to.
     """
     linkage = scene.linkage
-    moving = linkage.moving_points
-    drawn = render(sheet, scene, linkage.moving, scene.structure.pairs, MEASURED, dict.fromkeys(linkage.links, DARK))
-    names = {p: [p + mark if p in moving else p] for link in linkage.moving for p in linkage.links[link].points}
-    for link in linkage.moving:
+    moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK)
+    apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
+    inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
+    drawn = render(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
+    for pair in apart:
+        if not pair.lower:
+            draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
+        elif pair.slide is not None and pair.slide.runner in links:
+            slider(sheet, scene, pair, MEASURED, DARK)
+    names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
+    for link in shown:
         own, centre = linkage.links[link], f"S{link}"
         if np.any(own.mass != 0):
             at = sheet.on(scene.place(link, complex(own.centre)))
@@ -98,9 +114,8 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        hull = by_points(sheet, scene, link).hull
-        if hull:
-            sheet.line([*hull, hull[0]] if len(hull) > 2 else hull, colour, width, z=z, blocks=False)
+        for edge in by_points(sheet, scene, link).edges:
+            sheet.line(edge, colour, width, z=z, blocks=False)
 
 
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:

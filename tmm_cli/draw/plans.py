@@ -1,4 +1,4 @@
-"""Sheets of the velocity plan, the acceleration plan, the force plans and the lever."""
+"""Sheets of the force plans and the lever."""
 
 from __future__ import annotations
 
@@ -12,37 +12,12 @@ from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position, unscaled
 from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
 from tmm_cli.errors import _
-from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
 from tmm_cli.plans.record import NamedVector, balance_name
-from tmm_cli.plans.velocity import velocity_plan
 
 
-def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """Velocity plan and acceleration plan of a position, with the parts of each link."""
-    for name, plan_of, title, pole, symbol, unit in (
-        ("velocity", velocity_plan, _("Velocity plan. {caption}"), "p", "v", "m/s/mm"),
-        ("acceleration", acceleration_plan, _("Acceleration plan. {caption}"), POLE, "a", "m/s^2/mm"),
-    ):
-        plan = plan_of(here.motion, here.k)
-        sheet = here.sheet(title, [*plan.ends.values(), *(v.end for v in plan.vectors)])
-        for vector in plan.drawn():
-            # of points of mass a thin ray is enough: the letters say the rest
-            mass = vector.kind == "absolute" and vector.name[len(pole) :].startswith("s")
-            width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
-            sheet.arrow(sheet.on(vector.start), sheet.on(vector.end), THIN if mass else COLOURS[vector.kind], width)
-        for vector in plan.drawn():
-            if vector.kind not in ("absolute", "relative") and abs(vector.value) / sheet.mu > 2.5:
-                sheet.label(vector.name, sheet.on((vector.start + vector.end) / 2), 8, COLOURS[vector.kind])
-        _letters(sheet, plan.ends, pole)
-        if plan.size == 0:
-            sheet.note(_("everything is at rest"))
-        sheet.note(scale_text(symbol, sheet.mu, unit))
-        yield here.stem(name), sheet.finish()
-
-
-def _letters(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
+def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
     for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
@@ -111,7 +86,7 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
             sheet.line([sheet.on(0j), foot], THIN, 0.6, ":", 2)
             sheet.line([foot, at], THIN, 0.5, "--", 2)
         unscaled(sheet, taken, at, force.force, force.name, COLOURS["inertia" if force.name in inertial else "load"])
-    _letters(sheet, plan.ends, "p")
+    letter_points(sheet, plan.ends, "p")
     sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
     for name, moment in plan.couples:
         if moment != 0:

@@ -10,39 +10,30 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.draw.actuators import cylinder, cylinders, driver_name, springs
-from tmm_cli.draw.forms import Form, by_pairs, by_points
+from tmm_cli.draw.actuators import Cylinder, cylinders, driver_name, springs
+from tmm_cli.draw.fixed import guide, support, support_side
+from tmm_cli.draw.forms import Form, Line, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.scene import BEYOND, Scene
+from tmm_cli.draw.rigid import rigid
+from tmm_cli.draw.scene import BEYOND, Scene, spread
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
-from tmm_cli.draw.symbols import (
-    STRUCTURAL,
-    Line,
-    Look,
-    body,
-    box,
-    guide,
-    rails,
-    sliding_arrow,
-    support,
-    support_side,
-    turning_arrow,
-)  # fmt: skip
+from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, sliding_arrow, turning_arrow
 from tmm_cli.draw.wheels import CHAIN, CamShape, contact
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME, Slide
+from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair
 
-OVER, OVER_SLOT = 10.0, 7.0  # mm: how far the axis of a guide, and a slot, goes on beyond the way of its stone
+OVER = 10.0  # mm: how far the axis of a guide goes on beyond the way of its stone
 GREY = "#404040"
 
 
 @dataclass
 class Rendered:
-    """What was drawn of the links, and the middles of the cylinders (mm) by their sliding pair."""
+    """What was drawn of the links, in which scene; the middles of the cylinders (mm) by their sliding pair."""
 
     forms: Mapping[str, Form]
+    scene: Scene
     cylinders: dict[str, complex] = field(default_factory=dict)
 
 
@@ -59,27 +50,30 @@ def _render(
     sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
     leads: Sequence[Pair],
 ) -> Rendered:  # fmt: skip
+    if look.measured:
+        scene = spread(sheet, scene, links)
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
-    drawn = Rendered(forms)
-    driven = cylinders(scene.linkage) if look.measured else {}
+    drawn = Rendered(forms, scene)
+    driven = cylinders(scene.linkage)
     rods = [edge for form in forms.values() for edge in form.edges]
     for pair in pairs:
-        if pair.slide is None or pair.name in driven:
-            continue
-        if pair.slide.carrier == FRAME:
+        if pair.slide is not None and pair.slide.carrier == FRAME:
             _guide(sheet, scene, pair, look, rods)
-        elif look.measured:
-            _way(sheet, scene, pair.slide, look)
     for pair in pairs:
         if not pair.lower:
             _higher(sheet, scene, pair, look, hue)
     for link, form in forms.items():
         body(sheet, form, hue[link], look)
+        for pair in pairs:
+            if not pair.lower and link in (pair.i, pair.j):
+                rigid(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
     for pair in pairs:
         if pair.slide is None:
             continue
         if pair.name in driven:
-            drawn.cylinders[pair.name] = cylinder(sheet, scene, pair.slide)
+            found = Cylinder.of(sheet, scene, pair.slide)
+            found.draw(sheet, hue)
+            drawn.cylinders[pair.name] = (found.back + found.front) / 2
         else:
             slider(sheet, scene, pair, look, hue[pair.slide.runner])
     if look.measured:
@@ -97,17 +91,6 @@ def _render(
     return drawn
 
 
-def _way(sheet: Sheet, scene: Scene, slide: Slide, look: Look) -> None:
-    """The slot of a link that has no bar along its guide, along the whole way on it."""
-    if len(scene.linkage.links[slide.carrier].points) > 1:
-        return
-    along, (low, high), here = scene.along(slide), scene.way(slide), scene.run(slide)
-    stone = sheet.on(scene.place(slide.runner, slide.at))
-    start = border(stone, stone + ((low - here) / sheet.mu - OVER_SLOT) * along, *sheet.field)
-    end = border(stone, stone + ((high - here) / sheet.mu + OVER_SLOT) * along, *sheet.field)
-    rails(sheet, start, end, look.stone[1])
-
-
 def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Line]) -> None:
     """A guide on the frame: hatched rails about its box; to scale also its axis, as long as the way on it."""
     slide = pair.slide
@@ -118,7 +101,8 @@ def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Li
         (low, high), here = scene.way(slide), scene.run(slide)
         start, end = at + ((low - here) / sheet.mu - OVER) * along, at + ((high - here) / sheet.mu + OVER) * along
         axis = [border(at, start, *sheet.field), border(at, end, *sheet.field)]
-        sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
+        with sheet.on_layer("construction"):
+            sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
         return
     low_side = -1j * along if (1j * along).imag > 0 else 1j * along
     reach = (look.box[0] / 2 + BEYOND) * along
@@ -178,10 +162,12 @@ def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:
 
 
 def spot(sheet: Sheet, scene: Scene, pair: Pair, look: Look) -> complex:
-    """Where the name of a pair belongs: its hinge, the end of its box, or that of its guide on the frame."""
+    """Where the name of a pair belongs: its hinge, the end of its box, guide on the frame or cylinder."""
     at = sheet.on(scene.at(pair))
     if pair.slide is None:
         return at
+    if pair.name in cylinders(scene.linkage):
+        return Cylinder.of(sheet, scene, pair.slide).front
     beyond = BEYOND if pair.slide.carrier == FRAME else 0.0
     return at - scene.along(pair.slide) * (look.box[0] / 2 + beyond)
 
@@ -192,7 +178,7 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
         if driver.link not in drawn.forms:
             continue
         pair = scene.structure.driving_pair(driver)
-        at = sheet.on(scene.at(pair))
+        at = sheet.on(drawn.scene.at(pair))
         if pair.slide is not None:
             along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
             sliding_arrow(
@@ -204,8 +190,6 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
                 hue[driver.link],
             )
         else:
-            ends = [end - at for line in drawn.forms[driver.link].lines for end in line]
-            if look.measured:
-                ends = [end - at for end in drawn.forms[driver.link].hull]
+            ends = [end - at for edge in drawn.forms[driver.link].edges for end in edge]
             arm = max(ends, key=abs, default=1 + 0j)
             turning_arrow(sheet, at, float(np.angle(arm)), driver.sense, driver_name(driver, "ω"), hue[driver.link])

@@ -122,11 +122,16 @@ class Scene:
 
 
 def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: float) -> Scene:
-    """Put these links onto the ground of the sheet; where a guide on the frame is does not matter for the structure.
-
-    So a slider that would cover another one of its link is drawn further on along its guide.
-    """
+    """Put these links onto the ground of the sheet; no slider covers another one."""
     fit(sheet, scene.extent(links), pad, most)
+    parted = spread(sheet, scene, links)
+    if parted is not scene:
+        fit(sheet, parted.extent(links), pad, most)
+    return parted
+
+
+def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
+    """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
     boxes = [(p, sheet.on(scene.at(p))) for link in links for p in scene.of(link) if p.slide is not None]
     every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
@@ -140,10 +145,7 @@ def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: f
             # farther from the others; without any, lower
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
             moved[pair.name] = (free - at) * sheet.mu
-    if moved:
-        scene = replace(scene, moved=moved)
-        fit(sheet, scene.extent(links), pad, most)
-    return scene
+    return replace(scene, moved=moved) if moved else scene
 
 
 def scale_to(places: Sequence[complex], room: complex, most: float) -> float:

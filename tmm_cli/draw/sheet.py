@@ -8,23 +8,27 @@ from itertools import pairwise
 
 import numpy as np
 
+from tmm_cli.draw import script
+from tmm_cli.draw.blocks import Block, Row, nearest_free, roomiest
 from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
+from tmm_cli.draw.fonts import SHARE
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
-from tmm_cli.draw.layout.room import block, in_room, paper_for
+from tmm_cli.draw.layout.picture import extremes, on_large_sheet, paper_for, picture
+from tmm_cli.draw.room import Room
 from tmm_cli.errors import _
-from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent
+from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, ground_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
+from tmm_cli.vectors import unit
 
-CLEAR = 4.0  # mm about the notes that are free
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 NAMES = "#7a3d99"  # of links, lines and angles
 COLOURS = {
     "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
     "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": NAMES,
 }  # fmt: skip
-BETWEEN = 12  # places along an edge that are tried for the notes
+GREY_TEXT = "#505050"  # of titles of columns
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
 LEADER = 4.0  # mm from which a line leads from a place to its label
@@ -35,21 +39,23 @@ class Sheet:
 
     def __init__(
         self, title: str, caption: str, points: Iterable[complex] = (), *, pad: float = PAD,
-        paper: tuple[float, float] | None = None,
+        paper: tuple[float, float] | None = None, room: Room | None = None,
     ) -> None:  # fmt: skip
-        """For these points (SI), upright or not as they are larger then; or of a given paper, scaled later."""
+        """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(found)
-        self.caption, self.remarks = caption, list[str]()
-        self.paper, self.mu = paper_for(found, pad, paper)
+        self.caption = caption
+        self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
+        self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
-        self.figure = None if paper else (across / self.mu, up / self.mu)
+        if room is not None:
+            self.origin = room.origin
         self.marks: list[Mark] = []
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
-        self.notes: list[str] = []
-        if not in_room():
+        self.block = Block()
+        if not on_large_sheet():
             self._strip(title)
         self.layer = "construction"
 
@@ -78,17 +84,21 @@ class Sheet:
         self.layer = before
 
     def text(
-        self, at: complex, text: str, size: float, *, colour: str = DARK, weight: str = "normal", ha: Align = "left",
-        style: str = "normal", turn: float = 0.0,
+        self, at: complex, text: script.Words, size: float, *, colour: str = DARK, weight: str = "normal",
+        ha: Align = "left", style: str = "normal", turn: float = 0.0,
     ) -> None:  # fmt: skip
         """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
-        line = "".join(letter if letter.isprintable() else " " for letter in text)
-        if line.strip():
-            bold, italic = weight == "bold", style == "italic"
-            self.marks.append(Text(complex(at), line, size * POINT, colour, ha, bold, italic, turn))
+        bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
+        one = isinstance(text, str)
+        start = complex(at) if one else at - SHARE[ha] * script.width(text, size * POINT) * along
+        for off, letters, own in script.pieces(text, size * POINT):
+            line = "".join(letter if letter.isprintable() else " " for letter in letters)
+            if line.strip():
+                align: Align = ha if one else "left"
+                self.marks.append(Text(start + off * along, line, own, colour, align, bold, italic, turn))
 
     def label(
-        self, text: str, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
+        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
         far: bool = False,
     ) -> None:  # fmt: skip
         """A text beside a place (mm); where exactly is decided when all is drawn."""
@@ -138,17 +148,20 @@ class Sheet:
             self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
         self.ground.line(neck, end)
 
-    def note(self, text: str) -> None:
+    def note(self, text: script.Words) -> None:
         """A line of the corner box: scale factors and remarks."""
-        self.notes.append(text)
+        self.block.notes.append(text)
+
+    def table(self, rows: Iterable[Row], numbers: int) -> None:
+        """A table under the notes; numbers: how many of its columns, the last ones, are flush right."""
+        self.block.rows, self.block.numbers = list(rows), numbers
 
     def finish(self) -> Drawing:
-        """Put the notes into the emptiest corner, or where all is a block under its heading; place the labels."""
+        """Put the notes into the emptiest corner, place the labels; on a large sheet, cut it out below its caption."""
         self.corner()
         self.settle()
-        if in_room():
-            longest = max(self.figure or self.paper)
-            return block(self.marks, self.caption, self.remarks, longest, self.figure, self.mu)
+        if on_large_sheet():
+            return picture(self.marks, self.caption, self.figure, self.mu, longest=max(self.figure or self.paper))
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:
@@ -170,33 +183,22 @@ class Sheet:
         self.ground.boxes += [about(place, height, height) for place in row(at, along, width, height)]
 
     def corner(self) -> None:
-        """Put the notes into the emptiest corner, or between two corners where that leaves more of the drawing free."""
-        if in_room():
-            self.remarks += self.notes
-            self.notes = []
-        if not self.notes:
+        """Put notes and table where they cover the least of the drawing."""
+        if not self.block.notes and not self.block.rows:
             return
-        width = max(label_extent(text, 9)[0] for text in self.notes) + 4
-        height = 5.0 * len(self.notes) + 2
-        low, high = self.ground.low, self.ground.high
-        right, top = high.real - width, high.imag - height
-        fields = [complex(x, y) for y in (low.imag, top) for x in (right, low.real)]
-        fields += [complex(x, y) for y in (low.imag, top) for x in np.linspace(right, low.real, BETWEEN)]
-        fields += [complex(x, y) for x in (right, low.real) for y in np.linspace(low.imag, top, BETWEEN)]
-        crowd = self.ground.crowd
-
-        def covered(c: complex) -> int:
-            off = crowd - c - complex(width, height) / 2
-            across, up = width / 2 + CLEAR, height / 2 + CLEAR
-            return int(np.count_nonzero((np.abs(off.real) < across) & (np.abs(off.imag) < up)))
-
-        at = min(fields, key=covered)
-        corners = [at, at + width, at + complex(width, height), at + 1j * height]
-        self.area(corners, "white", THIN, 0.6, 8, blocks=False)
-        for k, text in enumerate(self.notes):
-            self.text(at + complex(2, height - 3.5 - 5 * k), text, 9)
-        self.ground.boxes.append((at.real, at.real + width, at.imag, at.imag + height))
-        self.notes = []
+        if on_large_sheet():
+            shape, at = nearest_free(self.block, *extremes(self.marks), self.ground.crowd)
+        else:
+            shape, at = roomiest(self.block, self.ground.low, self.ground.high, self.ground.crowd)
+        wide, high = complex(shape.size.real), 1j * shape.size.imag
+        self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
+        for start, end in shape.lines:
+            self.line([at + start, at + end], THIN, 0.5, z=8.5, blocks=False)
+        for one in shape.texts:
+            colour = GREY_TEXT if one.head else DARK
+            self.text(at + one.at, one.words, one.size, colour=colour, ha="right" if one.right else "left")
+        self.ground.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
+        self.block = Block()
 
 
 def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
@@ -219,11 +221,6 @@ def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
             sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
     for depth in HATCH:
         sheet.ground.line(start + depth * outward, end + depth * outward)
-
-
-def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
-    """Corners of what may be drawn on below the title strip, mm."""
-    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
 
 def cells(

@@ -14,11 +14,11 @@ from tmm_cli.draw.labels import extent
 from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.scene import Scene, fitted, scale_to
-from tmm_cli.draw.sheet import DARK, Sheet, ground_of
+from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.draw.symbols import PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
 from tmm_cli.structure.assur import ROMAN, Group, Structure
 from tmm_cli.vectors import Real, dot
 

@@ -1,11 +1,11 @@
-"""Symbols of a mechanism, each in one place: links, hinges, stones, guides, supports, centres of mass, arrows.
+"""Symbols of a mechanism, each in one place: links, rigid corners, stones, rails, centres of mass, arrows.
 
 A look says how large and how bold they are: as measured drawings have them, or as structural schemes do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,17 +13,13 @@ import numpy as np
 from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import about, extent
-from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
-from tmm_cli.draw.sheet import DARK, Sheet, hatch
-from tmm_cli.vectors import Vector, cross, dot, unit
+from tmm_cli.draw.scene import ON_LINE, Scene, apart
+from tmm_cli.draw.sheet import DARK, Sheet
+from tmm_cli.vectors import cross, dot, unit
 
-Line = tuple[complex, complex]
 WELD = 3.2  # mm: leg of a rigid corner's mark
 CLEAR = 3.2  # mm about the number on a plate
 GAP = 0.5  # mm between a box and its rails
-HATCHED, WALL = 1.7, 0.6  # mm: depth of hatching, how far rods keep off it
-GROUND = 2.2  # half widths of a support's triangle: its hatched ground
-PIECE, FINE = 2.0, 0.4  # mm: the shortest piece of a rail, between places along a rod
 MASS = 1.4  # mm: radius of a centre of mass
 FREE = "#6a6a6a"  # what a lead would be joined to
 PALETTE = ("#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#b86a00", "#00757d", "#8a3b5c", "#5f6b00", "#3d4a5c")
@@ -81,16 +77,27 @@ def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
     for start, end in form.lines:
         # a guide goes behind its stone, a link that is only hinged to a stone comes in front of it
         behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in form.boxes)
-        sheet.line([start, end], colour, look.bar, z=3 if behind or look.measured else 4.5, blocks=False)
+        sheet.line([start, end], colour, look.bar, z=3 if behind else 4.5, blocks=False)
         if abs(end - start) > ON_LINE:
             for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
                 sheet.ground.line(start + shift, end + shift)
     for at, one, other in form.welds:
-        if min(abs(one), abs(other)) > 0.5:
-            reach = WELD + (look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0)
-            legs = [min(reach, abs(leg)) * leg / abs(leg) for leg in (one, other)]
-            sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
+        weld(
+            sheet,
+            at,
+            one,
+            other,
+            colour,
+            look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0,
+        )
+
+
+def weld(sheet: Sheet, at: complex, one: complex, other: complex, colour: str, hidden: float = 0.0) -> None:
+    """The mark of a rigid corner between two legs; a circle of the radius `hidden` (mm) covers its tip."""
+    if min(abs(one), abs(other)) > 0.5:
+        legs = [min(WELD + hidden, abs(leg)) * leg / abs(leg) for leg in (one, other)]
+        sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
 
 
 def box(
@@ -110,78 +117,12 @@ def box(
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
 
 
-def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = MEASURED) -> complex:
-    """The side of a fixed hinge where its support is: below, else above, else where no rod runs through it."""
-    height, half = look.support
-
-    def through(rod: Line, out: complex) -> bool:
-        places = _places(rod) - at
-        run, off = dot(out, places), np.abs(cross(out, places))
-        wide = np.where(run < height - WALL, half * run / height, GROUND * half) + WALL
-        return bool(np.any((run > look.hinge + WALL) & (run < height + HATCHED + WALL) & (off < wide)))
-
-    ways = [complex(unit(np.pi / 4 * n)) for n in (-2, 2, 0, 4, -1, -3, 1, 3)]
-    crossed = [sum(through(rod, way) for rod in rods) for way in ways]
-    among = next((part for part in (slice(2), slice(2, 4)) if 0 in crossed[part]), slice(None))
-    least = [way for way, count in zip(ways[among], crossed[among], strict=True) if count == min(crossed[among])]
-    return quiet(sheet, at, -1j, 9.0, least, from_=2.2)
-
-
-def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> complex:
-    """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
-    side = 1j * out
-    height, half = look.support
-    foot = at + height * out
-    low, high = foot - half * side, foot + half * side
-    with sheet.on_layer("supports"):
-        sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-        low, high = foot - GROUND * half * side, foot + GROUND * half * side
-        sheet.line([low, high], DARK, 1.2, z=2.7)
-    hatch(sheet, low, high, out)
-    return high
-
-
 def rails(sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: Style = "-") -> None:
     """Two lines along the way of a box of this width."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + GAP)
         sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
-
-
-def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[Line]) -> None:
-    """A piece of the frame's guide about a box: hatched rails, open where rods go through."""
-    reach = look.box[0] / 2 + BEYOND
-    for side in (1j * along, -1j * along):
-        rail = at + side * (look.box[1] / 2 + GAP)
-        covered = [run for rod in rods if (run := _covered(rod, rail, along, side)) is not None]
-        for low, high in free_runs(-reach, reach, covered):
-            start, end = rail + low * along, rail + high * along
-            with sheet.on_layer("supports"):
-                sheet.line([start, end], DARK, 1.0, z=2.5)
-            hatch(sheet, start, end, side)
-
-
-def _covered(rod: Line, rail: complex, along: complex, out: complex) -> tuple[float, float] | None:
-    """The run (mm) along a rail in whose hatching a rod is."""
-    places = _places(rod) - rail
-    inside = dot(along, places)[(dot(out, places) > -WALL) & (dot(out, places) < HATCHED + WALL)]
-    return (float(np.min(inside)) - WALL, float(np.max(inside)) + WALL) if len(inside) else None
-
-
-def _places(rod: Line) -> Vector:
-    """Places along a rod, close together."""
-    return np.linspace(rod[0], rod[1], int(abs(rod[1] - rod[0]) / FINE) + 2)
-
-
-def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """What is left from low to high without what is covered; pieces too short for hatching are left out."""
-    edges = [low]
-    for first, last in sorted(covered):
-        edges += [max(first, edges[-1]), max(last, edges[-1])]
-    edges.append(high)
-    pieces = [(first, min(last, high)) for first, last in zip(edges[::2], edges[1::2], strict=True)]
-    return [(first, last) for first, last in pieces if last - first >= PIECE]
 
 
 def quiet(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -106,7 +105,7 @@ def extremes(results: Results) -> Sheet:
     for other in others:
         skeleton(sheet, other, INERTIA, 1.6, 2.9)
         for link in linkage.moving:
-            for start, end in pairwise(by_points(sheet, other, link).hull):
+            for start, end in by_points(sheet, other, link).edges:
                 sheet.ground.line(start, end)
         for pair in results.structure.pairs:
             if pair.slide is not None and pair.name not in cylinders(linkage):

@@ -152,7 +152,11 @@ def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
     if not true:  # no convex cam has its face there: the least that is convex, and not too slender
         height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
         height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
-    disk = centre + (height + rise - 1j * slope) * forward * unit(angle - turn)
+    ways = forward * unit(angle - turn)
+    disk = (height + rise - 1j * slope) * ways
+    # where no cam could have the law, the envelope has tails beyond the face
+    tails = np.max(dot(ways[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
+    disk = centre + disk[~tails]
     foot = centre + (height + now) * forward
     reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
     touch = foot - 1j * slope_now * forward

@@ -2,49 +2,100 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import NamedVector, Plan
-from tmm_cli.plans.velocity import absolute, ends_of, hinge_points, letters, other_than, stones
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.plans.record import NamedVector, Plan, Symbol, subscript
+from tmm_cli.plans.velocity import Stone, absolute, ends_of, hinge_points, letters, massive, other_than, stones
+from tmm_cli.tolerances import NO_VECTOR
 
 POLE = "π"
 
+Pair = tuple[NamedVector, NamedVector]
+
 
 def acceleration_plan(motion: Motion, k: int) -> Plan:
-    """Vectors πa, n_ba, t_ba, k, r in m/s2 at position k. Each chain of parts leads from one end to the next."""
+    """Vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2 at position k. Each pair of parts leads from one end to another."""
     linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
     ends = ends_of(linkage, POLE, lambda point: motion.named(point).a[k])
-    vectors: list[NamedVector] = []
+    names = {letter: point for point, letter in letter_of.items()}
+    pairs: list[Pair] = []
 
-    def parts(link: str, base: str, local: complex, letter: str) -> Iterable[NamedVector]:
-        """Normal part (towards the base) and tangential part of a point's acceleration about another of its link."""
-        turning, start = motion.link(link), 0j if base in fixed else ends[letter_of[base]]
-        radius = complex((local - linkage.local(link, base)) * motion.poses[link].z[k])
-        bend = start - complex(turning.omega[k] ** 2) * radius
-        end, name = bend + 1j * complex(turning.epsilon[k]) * radius, f"({letter}{letter_of[base]})"
-        return NamedVector(f"n{name}", start, bend, "normal"), NamedVector(f"t{name}", bend, end, "tangential")
-
-    def told(link: str) -> list[str]:
-        """From the pivot on the frame on, else from a hinge with another moving link."""
-        return sorted(hinge_points(linkage, link), key=lambda p: p not in fixed)
+    def parts(link: str, base: str, local: complex, name: str) -> Pair:
+        start = 0j if base in fixed else ends[letter_of[base]]
+        return _turning(motion, k, link, base, local, start, name + base)
 
     for link in linkage.moving:
-        for base, point in pairwise(told(link)):
+        for base, point in pairwise(told(linkage, link)):
             if point not in fixed:
-                vectors += parts(link, base, linkage.local(link, point), letter_of[point])
-    for slide, letter, under, local in stones(motion, ends, k):
-        ends[under] = complex(motion.point(slide.carrier, local).a[k])
-        for base in told(slide.carrier)[:1]:
-            vectors += parts(slide.carrier, base, local, under)
-        sliding = motion.slide(slide)
-        bend = ends[under] + complex(sliding.coriolis[k])
-        vectors.append(NamedVector(f"k({letter})", ends[under], bend, "coriolis"))
-        vectors.append(NamedVector(f"r({letter})", bend, bend + complex(sliding.a[k] * sliding.u[k]), "sliding"))
-    for link in linkage.moving:
-        if linkage.links[link].mass:
-            ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).a[k])
-    return Plan((*absolute(ends, POLE), *vectors), ends)
+                pairs.append(parts(link, base, linkage.local(link, point), point))
+    for stone in stones(motion, ends, k):
+        carrier = stone.slide.carrier
+        ends[stone.under] = complex(motion.point(carrier, stone.local).a[k])
+        names[stone.under] = stone.below
+        pairs += [parts(carrier, base, stone.local, stone.below) for base in told(linkage, carrier)[:1]]
+        pairs.append(_sliding(motion, k, stone, ends[stone.under]))
+    for link in massive(linkage):
+        letter = other_than(ends, f"s{link}")
+        ends[letter], names[letter] = complex(motion.centre(link).a[k]), f"S{link}"
+    vectors = [part for pair in pairs for part in pair]
+    least = NO_VECTOR * Plan(tuple(vectors), ends).size
+    corners = _corners(pairs, ends, least)
+    segments = [replace(v, name=_segment(v, {**ends, **corners}, least)) for v in vectors]
+    return Plan((*absolute(ends, POLE, "a", names), *segments), ends, corners)
+
+
+def told(linkage: Linkage, link: str) -> list[str]:
+    """Points of a link from its pivot on the frame on, else from a hinge with another moving link."""
+    return sorted(hinge_points(linkage, link), key=lambda point: point not in linkage.links[FRAME].points)
+
+
+def _turning(motion: Motion, k: int, link: str, base: str, local: complex, start: complex, index: str) -> Pair:
+    """Normal part (towards the base) and tangential part of a point's acceleration about another of its link."""
+    turning = motion.link(link)
+    radius = complex((local - motion.linkage.local(link, base)) * motion.poses[link].z[k])
+    bend = start - complex(turning.omega[k] ** 2) * radius
+    end = bend + 1j * complex(turning.epsilon[k]) * radius
+    return (
+        NamedVector("", start, bend, "normal", Symbol("a", index, "n")),
+        NamedVector("", bend, end, "tangential", Symbol("a", index, "τ")),
+    )
+
+
+def _sliding(motion: Motion, k: int, stone: Stone, start: complex) -> Pair:
+    """Coriolis part and sliding part of a stone's acceleration about the point of its guide under it."""
+    sliding, index = motion.slide(stone.slide), stone.name + stone.below
+    bend = start + complex(sliding.coriolis[k])
+    end = bend + complex(sliding.a[k] * sliding.u[k])
+    return (
+        NamedVector("", start, bend, "coriolis", Symbol("a", index, "k")),
+        NamedVector("", bend, end, "sliding", Symbol("a", index, "r")),
+    )
+
+
+def _corners(pairs: Sequence[Pair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
+    """Letters of the points in which two parts meet: n₁, n₂, ..., k; none where one of the parts is zero."""
+    found: dict[str, complex] = {}
+    for letter, kind in (("n", "normal"), ("k", "coriolis")):
+        bends = [
+            first.end
+            for first, last in pairs
+            if first.kind == kind and min(map(abs, (first.value, last.value))) > least
+        ]
+        for number, bend in enumerate(bends, 1):
+            found[other_than(ends, letter + (subscript(str(number)) if len(bends) > 1 else ""))] = bend
+    return found
+
+
+def _segment(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
+    """The letters of a vector's ends; nothing where it is zero."""
+    if abs(vector.value) <= least:
+        return ""
+    return "".join(
+        next(letter for letter, place in lettered.items() if abs(place - end) <= least)
+        for end in (vector.start, vector.end)
+    )

@@ -185,6 +185,8 @@ def _equation(
     terms = []
     for acting in here.acting(links, axes):
         for one in _moved(acting, (carried or {}).get(acting.pair)):
+            if one.size <= NO_COORDINATE * (acting.size * here.size if one.couple else acting.size):
+                continue
             along = one.force / abs(one.force) if not one.couple else 0j
             foot = one.at - along * float(dot(one.at - centre, along))
             arm = abs(foot - centre) if not one.couple else 0.0

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from tmm_cli.tolerances import NO_VECTOR
 
-ROUND = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 7.5, 10.0)  # reduction scales of GOST 2.302, times a power of ten
-FACTORS = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # those that courses take, times a power of ten: no 1 : 1.5 or 1 : 7.5
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
@@ -21,13 +20,26 @@ Kind = Literal[
 
 
 @dataclass(frozen=True)
+class Symbol:
+    """A letter with its indices, as formulas have it: a, BA below, n above."""
+
+    letter: str
+    below: str = ""
+    above: str = ""
+
+
+@dataclass(frozen=True)
 class NamedVector:
-    """A vector from start to end (SI), and what a student calls it."""
+    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+
+    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    """
 
     name: str
     start: complex
     end: complex
     kind: Kind
+    symbol: Symbol = Symbol("")
 
     @property
     def value(self) -> complex:
@@ -36,10 +48,11 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan; `ends` are its lettered points (the pole among them)."""
+    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
 
     vectors: tuple[NamedVector, ...]
     ends: Mapping[str, complex] = field(default_factory=dict)
+    corners: Mapping[str, complex] = field(default_factory=dict)
 
     @property
     def size(self) -> float:
@@ -61,16 +74,19 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
     return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
 
 
-def round_scale(
-    width: float, height: float, paper_width: float, paper_height: float, factors: Sequence[float] = ROUND
-) -> float:
+def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of what may be drawn on below the title strip, mm."""
+    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
+
+
+def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
     """The smallest round scale factor (SI a millimetre) at which a box fits on paper (mm)."""
     least = max(width / paper_width, height / paper_height)
     if not least > 0 or not math.isfinite(least):
         return 1.0
     power = 10.0 ** math.floor(math.log10(least))
     # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
-    return next((f * power for f in factors if f * power >= least * (1 - 1e-9)), 10 * power)
+    return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
 
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:

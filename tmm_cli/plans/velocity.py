@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from tmm_cli.linkage import FRAME, Linkage, Slide
 from tmm_cli.pairs.base import axis
 from tmm_cli.pairs.gear import Gear
 from tmm_cli.pairs.rack import Rack
-from tmm_cli.plans.record import NamedVector, Plan
+from tmm_cli.plans.record import NamedVector, Plan, Symbol
 
 
 def hinge_points(linkage: Linkage, link: str) -> list[str]:
@@ -51,47 +52,79 @@ def ends_of(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dic
 
 
 def relative(linkage: Linkage, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Vectors ab, bc, ... from end to end along each link."""
+    """Vectors ab, bc, ... from end to end along each link: of b about a, of c about b."""
     fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
     vectors = []
     for link in linkage.moving:
-        told = [letter_of[p] for p in hinge_points(linkage, link) if p not in fixed]
-        vectors += [NamedVector(a + b, ends[a], ends[b], "relative") for a, b in pairwise(told)]
+        told = [p for p in hinge_points(linkage, link) if p not in fixed]
+        for base, point in pairwise(told):
+            a, b = letter_of[base], letter_of[point]
+            vectors.append(NamedVector(a + b, ends[a], ends[b], "relative", Symbol("v", point + base)))
     return vectors
 
 
-def absolute(ends: Mapping[str, complex], pole: str) -> list[NamedVector]:
-    """Vectors pa, pb, ... from the pole to every end."""
-    return [NamedVector(pole + name, 0j, end, "absolute") for name, end in ends.items() if name != pole]
+def absolute(
+    ends: Mapping[str, complex], pole: str, letter: str = "v", names: Mapping[str, str] | None = None
+) -> list[NamedVector]:
+    """Vectors pa, pb, ... from the pole to every end. letter: of their values; names: of points by their letters."""
+    names = names or {}
+    return [
+        NamedVector(pole + end, 0j, value, "absolute", Symbol(letter, names.get(end, end)))
+        for end, value in ends.items()
+        if end != pole
+    ]
 
 
-def stones(motion: Motion, ends: Collection[str], k: int) -> Iterable[tuple[Slide, str, str, complex]]:
-    """Stones on moving guides: slide, letter of the stone, of the point of the guide under it, where that is on it."""
+@dataclass(frozen=True)
+class Stone:
+    """A stone on a moving guide and the point of the guide under it, at `local` in the axes of the guide's link.
+
+    letter, under: letters of both on the plan; name, below: names of both.
+    """
+
+    slide: Slide
+    letter: str
+    under: str
+    name: str
+    below: str
+    local: complex
+
+
+def stones(motion: Motion, ends: Collection[str], k: int) -> Iterable[Stone]:
+    """Stones on moving guides; ends: letters that are taken."""
     letter_of = letters(motion.linkage)
     for slide in motion.linkage.slides:
         if FRAME not in (slide.carrier, slide.runner):
-            letter = letter_of.get(slide.point, slide.point.lower())
+            letter, point = letter_of.get(slide.point, slide.point.lower()), slide.point
             carrier, runner = motion.poses[slide.carrier], motion.point(slide.runner, slide.at)
             local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
-            yield slide, letter, other_than(ends, f"{letter}{slide.carrier}"), local
+            under = other_than(ends, f"{letter}{slide.carrier}")
+            yield Stone(slide, letter, under, point, f"{point}{slide.carrier}", local)
 
 
 def velocity_plan(motion: Motion, k: int) -> Plan:
     """Vectors pa, ab, ... in m/s at position k."""
     linkage = motion.linkage
     ends = ends_of(linkage, "p", lambda point: motion.named(point).v[k])
-    vectors = relative(linkage, ends)
-    for slide, letter, under, local in stones(motion, ends, k):
-        ends[under] = complex(motion.point(slide.carrier, local).v[k])
-        runner = complex(motion.point(slide.runner, slide.at).v[k])
-        vectors.append(NamedVector(under + letter, ends[under], runner, "sliding"))
+    vectors, names = relative(linkage, ends), {letter: point for point, letter in letters(linkage).items()}
+    for stone in stones(motion, ends, k):
+        slide, under = stone.slide, stone.under
+        ends[under], names[under] = complex(motion.point(slide.carrier, stone.local).v[k]), stone.below
+        runner, symbol = complex(motion.point(slide.runner, slide.at).v[k]), Symbol("v", stone.name + stone.below)
+        vectors.append(NamedVector(under + stone.letter, ends[under], runner, "sliding", symbol))
     for name, wheel, place in pitch_points(motion, k):
-        pose = motion.poses[wheel]
-        ends[other_than(ends, name.lower())] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
-    for link in linkage.moving:
-        if linkage.links[link].mass:
-            ends[other_than(ends, f"s{link}")] = complex(motion.centre(link).v[k])
-    return Plan((*absolute(ends, "p"), *vectors), ends)
+        pose, letter = motion.poses[wheel], other_than(ends, name.lower())
+        ends[letter] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
+        names[letter] = name
+    for link in massive(linkage):
+        letter = other_than(ends, f"s{link}")
+        ends[letter], names[letter] = complex(motion.centre(link).v[k]), f"S{link}"
+    return Plan((*absolute(ends, "p", "v", names), *vectors), ends)
+
+
+def massive(linkage: Linkage) -> list[str]:
+    """Moving links that have a mass, and so a centre of mass."""
+    return [link for link in linkage.moving if np.any(linkage.links[link].mass != 0)]
 
 
 def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:

@@ -46,7 +46,12 @@ def dxf(drawing: Drawing) -> bytes:
     space = document.modelspace()
     for mark in drawing.marks:
         if isinstance(mark, Text):
-            about = {"layer": mark.layer, **_colour(mark.colour), "style": FONTS[mark.bold, mark.italic][0], "rotation": mark.turn}
+            about = {
+                "layer": mark.layer,
+                **_colour(mark.colour),
+                "style": FONTS[mark.bold, mark.italic][0],
+                "rotation": mark.turn,
+            }
             text = space.add_text(plain(mark.text), height=CAPITALS * mark.size, dxfattribs=about)
             text.set_placement(_xy(mark.at), align=aligned[mark.align])
         else:

@@ -9,10 +9,12 @@ from typing import Any, Literal
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.layout.values import balance_table, forces_table, motion_tables, structure_tables
 from tmm_cli.draw.mechanism import Position, all_positions, detailed, position
-from tmm_cli.draw.plans import forces, lever, motion_plans
+from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.plans import forces, lever
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _
@@ -88,6 +90,7 @@ CONTENTS = (
     Source(1, motion_tables),
     Source(1, diagrams, 160),
     Source(2, position, 200, over="detail"),
+    Source(2, group_loads, 160, over="detail"),
     Source(2, forces, 100, over="detail"),
     Source(2, lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),

@@ -11,7 +11,7 @@ from tmm_cli.draw.drawing import Drawing, Mark
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
 from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
-from tmm_cli.draw.layout.room import Block, Room, within
+from tmm_cli.draw.layout.picture import Picture, Space, within
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
@@ -27,10 +27,10 @@ def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, Drawing]]:
     field = field_of(size, problem.title_texts.block)
     found = [(subject, *_sheet(number, choice, size, field)) for number, subject in enumerate(SUBJECTS)]
     count = sum(len(pages) for __, ___, pages in found)
-    for number, (subject, blocks, pages) in enumerate(found):
+    for number, (subject, pictures, pages) in enumerate(found):
         for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
             titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)
-            yield f"sheet-{number}{letter}", framed([blocks[k] for k in page], field, size, titles)
+            yield f"sheet-{number}{letter}", framed([pictures[k] for k in page], field, size, titles)
 
 
 def field_of(paper: Size, block: str) -> Field:
@@ -40,7 +40,7 @@ def field_of(paper: Size, block: str) -> Field:
     return Field(room.real, room.imag, (taken[0] - EDGE + GAP, taken[1] - EDGE + GAP))
 
 
-def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Block], list[Page]]:
+def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
     """All drawings of a sheet, and which of them stand on which of its pages."""
     shrunk = max(paper) / max(PAPERS["A1"])
     sources = [source for source in CONTENTS if source.sheet == number]
@@ -49,52 +49,57 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
         every = [piece for part in parts for piece in part]
         rooms, pages = arranged(every, field, shrunk)
         wanted = iter(rooms)
-        parts = [_again(source, choice, part, [*islice(wanted, len(part))]) for source, part in zip(sources, parts, strict=True)]
-        blocks = [piece.drawn for part in parts for piece in part]
-        sizes = [block.paper for block in blocks]
+        parts = [
+            _again(source, choice, part, [*islice(wanted, len(part))])
+            for source, part in zip(sources, parts, strict=True)
+        ]
+        pictures = [piece.drawn for part in parts for piece in part]
+        sizes = [picture.paper for picture in pictures]
         if all(pack(spaced(sizes, page), field) is not None for page in pages):
-            return blocks, pages
-    return blocks, filled(sizes, field) or [[k] for k in range(len(sizes))]
+            return pictures, pages
+    return pictures, filled(sizes, field) or [[k] for k in range(len(sizes))]
 
 
 def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
     """The drawings of a source as large as usual."""
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(SMALLEST, min(1.0, math.sqrt(MANY / max(number, 1))))
-    blocks = _drawn(source, choice, repeat(Room(usual and usual * shrunk)))
+    pictures = _drawn(source, choice, repeat(Space(usual and usual * shrunk)))
     if usual is None:
-        return [Piece(block, block.longest / shrunk, LEGIBLE * block.longest) for block in blocks]
-    return [Piece(block, usual) for block in blocks]
+        return [Piece(picture, picture.longest / shrunk, LEGIBLE * picture.longest) for picture in pictures]
+    return [Piece(picture, usual) for picture in pictures]
 
 
 def _again(source: Source, choice: Choice, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
     """The same in other rooms, where they are other ones; what proves too large there is not made larger again."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
-    blocks = _drawn(source, choice, map(Room, rooms))
-    return [replace(piece, drawn=block, most=room) for piece, block, room in zip(pieces, blocks, rooms, strict=True)]
+    pictures = _drawn(source, choice, map(Space, rooms))
+    return [
+        replace(piece, drawn=picture, most=room) for piece, picture, room in zip(pieces, pictures, rooms, strict=True)
+    ]
 
 
-def _drawn(source: Source, choice: Choice, rooms: Iterable[Room]) -> list[Block]:
+def _drawn(source: Source, choice: Choice, rooms: Iterable[Space]) -> list[Picture]:
     """The drawings of a source, each in its room."""
-    every, found = iter(source.drawings(choice)), list[Block]()
+    every, found = iter(source.drawings(choice)), list[Picture]()
     for room in rooms:
         with within(room):
             drawn = next(every, None)
         if drawn is None:
             break
-        if isinstance(drawn[1], Block):
+        if isinstance(drawn[1], Picture):
             found.append(drawn[1])
     return found
 
 
-def framed(blocks: Sequence[Block], field: Field, paper: Size, titles: Titles) -> Drawing:
-    """A sheet with these blocks on its field."""
-    sizes = [(block.paper[0] + GAP, block.paper[1] + GAP) for block in blocks]
+def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> Drawing:
+    """A sheet with these pictures on its field."""
+    sizes = [(picture.paper[0] + GAP, picture.paper[1] + GAP) for picture in pictures]
     places = spread(pack(sizes, field) or [], sizes, field)
     low, high = inner(paper)
     corner = complex(low.real + EDGE, high.imag - EDGE)
     marks: list[Mark] = []
-    for block, (x, y) in zip(blocks, places, strict=True):
-        marks += block.moved(corner + complex(x, -y - block.paper[1])).marks
+    for picture, (x, y) in zip(pictures, places, strict=True):
+        marks += picture.moved(corner + complex(x, -y - picture.paper[1])).marks
     return Drawing(paper, (*marks, frame(paper), *title_block(titles, complex(high.real, low.imag))))

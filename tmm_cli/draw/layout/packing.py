@@ -49,7 +49,12 @@ def _orders(sizes: Sequence[Size]) -> Iterator[Sequence[int]]:
     """Orders in which boxes are put down: as they come, then the large ones first."""
     every = range(len(sizes))
     yield every
-    keys = (lambda k: -sizes[k][1], lambda k: -sizes[k][0] * sizes[k][1], lambda k: -sizes[k][0], lambda k: -sum(sizes[k]))
+    keys = (
+        lambda k: -sizes[k][1],
+        lambda k: -sizes[k][0] * sizes[k][1],
+        lambda k: -sizes[k][0],
+        lambda k: -sum(sizes[k]),
+    )
     for key in keys:
         yield sorted(every, key=key)
     if len(sizes) <= PERMUTED:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
-from tmm_cli.draw.layout.room import Block
-from tmm_cli.plans.record import FACTORS, round_scale
+from tmm_cli.draw.layout.picture import Picture
+from tmm_cli.plans.record import round_scale
 
 GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
@@ -23,7 +23,7 @@ PAGES = 40  # of one sheet at most
 class Piece:
     """A drawing; the room (mm, its longest side) that is usual for it, the least and the largest."""
 
-    drawn: Block
+    drawn: Picture
     usual: float
     least: float = 0.0
     most: float = math.inf
@@ -35,7 +35,7 @@ class Piece:
 
     def fitted(self, room: float) -> float:
         """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
-        return self.length / round_scale(self.length, 0.0, room, room, FACTORS) if self.length else room
+        return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
     def larger(self, room: float) -> float:
         """The next room in which it becomes larger."""
@@ -105,6 +105,9 @@ def grow(pieces: Sequence[Piece], rooms: list[float], page: Page, field: Field, 
         number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
         before, rooms[number] = rooms[number], pieces[number].larger(rooms[number])
         sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
-        if rooms[number] > min(most * pieces[number].usual, pieces[number].most * (1 + 1e-9)) or pack(spaced(sizes, page), field) is None:
+        if (
+            rooms[number] > min(most * pieces[number].usual, pieces[number].most * (1 + 1e-9))
+            or pack(spaced(sizes, page), field) is None
+        ):
             rooms[number] = before
             growing.discard(number)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tmm_cli.draw.drawing import Line, Mark, Text
 from tmm_cli.draw.fonts import width
-from tmm_cli.draw.layout.room import Block, block, longest_for
+from tmm_cli.draw.layout.picture import Picture, longest_for, picture
 from tmm_cli.draw.layout.writing import DARK, cut
 
 SIZE = 3.2  # mm: letters of a table as it comes
@@ -18,8 +18,8 @@ APART = 3.0  # of the size, between two parts
 WIDEST = 24.0  # of the size: a longer text is cut
 
 
-def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> Block:
-    """A block with a table, its letters as large as the room lets them be."""
+def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> Picture:
+    """A table, its letters as large as the room lets them be."""
     cells = [[cut(text, 1.0, WIDEST) for text in row] for row in (heads, *rows)]
     columns = [max(width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
     parts = max(math.ceil(len(rows) / FOLDED), 1)
@@ -32,7 +32,7 @@ def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes
     for part in range(parts):
         here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
         marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
-    return block(marks, title, notes, longest)
+    return picture(marks, title, longest=longest, notes=notes)
 
 
 def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float) -> list[Mark]:

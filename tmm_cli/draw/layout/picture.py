@@ -1,4 +1,4 @@
-"""Room for a drawing that stands on a large sheet beside others: how large it may be, and what becomes of it there."""
+"""A drawing that stands on a large sheet beside others: how large it may be, and what becomes of it there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
 from tmm_cli.draw.fonts import width
 from tmm_cli.draw.layout.writing import CELLS, DARK, LINE, wrap
-from tmm_cli.plans.record import FACTORS, LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
+from tmm_cli.plans.record import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
 
 HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
 NARROW = 70.0  # mm: a heading is not broken into shorter lines
@@ -23,7 +23,7 @@ Size = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Block(Drawing):
+class Picture(Drawing):
     """A drawing with its heading, no larger than they are.
 
     longest: side (mm) that it was drawn for; figure: what is to scale (mm), at `mu` SI a millimetre.
@@ -35,39 +35,39 @@ class Block(Drawing):
 
 
 @dataclass(frozen=True)
-class Room:
+class Space:
     """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes."""
 
     longest: float | None
 
 
-_ROOM: ContextVar[Room | None] = ContextVar("room", default=None)
+_SPACE: ContextVar[Space | None] = ContextVar("space", default=None)
 
 
 @contextmanager
-def within(room: Room) -> Iterator[None]:
-    """What is drawn meanwhile becomes blocks, and has no paper of its own."""
-    token = _ROOM.set(room)
+def within(space: Space) -> Iterator[None]:
+    """What is drawn meanwhile becomes pictures, without papers of their own."""
+    token = _SPACE.set(space)
     try:
         yield
     finally:
-        _ROOM.reset(token)
+        _SPACE.reset(token)
 
 
-def in_room() -> bool:
-    """Whether what is drawn now is to be a block."""
-    return _ROOM.get() is not None
+def on_large_sheet() -> bool:
+    """Whether what is drawn now is to be a picture beside others."""
+    return _SPACE.get() is not None
 
 
 def longest_for(usual: float) -> float:
     """The longest side (mm) of what is drawn now, where it would be this one."""
-    room = _ROOM.get()
-    return usual if room is None or room.longest is None else room.longest
+    space = _SPACE.get()
+    return usual if space is None or space.longest is None else space.longest
 
 
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
     """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
-    if not in_room():
+    if not on_large_sheet():
         best, mu = sheet_scale(points, pad)
         return paper or best, mu
     if paper is not None:
@@ -75,13 +75,14 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
         return (factor * paper[0], factor * paper[1]), 1.0
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(points)
-    mu, edge = round_scale(across, up, longest, longest, FACTORS), 2 * (MARGIN + pad)
+    mu, edge = round_scale(across, up, longest, longest), 2 * (MARGIN + pad)
     return (across / mu + edge, up / mu + edge + STRIP), mu
 
 
-def block(
-    marks: Iterable[Mark], title: str, notes: Sequence[str], longest: float, figure: Size | None = None, mu: float = 1.0
-) -> Block:
+def picture(
+    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float = 1.0, *, longest: float,
+    notes: Sequence[str] = (),
+) -> Picture:  # fmt: skip
     """What was drawn, cut out of its paper, below its title and notes."""
     drawn = list(marks)
     low, high = extremes(drawn)
@@ -92,9 +93,8 @@ def block(
             drawn.append(Text(complex(low.real, y + LINE * size / 2), line, size, DARK, bold=bold))
             y += LINE * size
     low, high = extremes(drawn)
-    moved = [mark.moved(-low) for mark in drawn]
-    moved.sort(key=lambda mark: mark.z)
-    return Block(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
+    moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
+    return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
 
 
 def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:

@@ -1,0 +1,83 @@
+"""The frame's symbols, hatched: supports of hinges and guides of boxes. No rod runs through their hatching."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tmm_cli.draw.forms import Line
+from tmm_cli.draw.scene import BEYOND
+from tmm_cli.draw.sheet import DARK, Sheet, hatch
+from tmm_cli.draw.symbols import GAP, MEASURED, Look, quiet
+from tmm_cli.vectors import Vector, cross, dot, unit
+
+HATCHED, WALL = 1.7, 0.6  # mm: depth of hatching, how far rods keep off it
+GROUND = 2.2  # half widths of a support's triangle: its hatched ground
+PIECE, FINE = 2.0, 0.4  # mm: the shortest piece of a rail, between places along a rod
+
+
+def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = MEASURED) -> complex:
+    """The side of a fixed hinge where its support is: below, else above, else where no rod runs through it."""
+    height, half = look.support
+
+    def through(rod: Line, out: complex) -> bool:
+        places = _places(rod) - at
+        run, off = dot(out, places), np.abs(cross(out, places))
+        wide = np.where(run < height - WALL, half * run / height, GROUND * half) + WALL
+        return bool(np.any((run > look.hinge + WALL) & (run < height + HATCHED + WALL) & (off < wide)))
+
+    ways = [complex(unit(np.pi / 4 * n)) for n in (-2, 2, 0, 4, -1, -3, 1, 3)]
+    crossed = [sum(through(rod, way) for rod in rods) for way in ways]
+    among = next((part for part in (slice(2), slice(2, 4)) if 0 in crossed[part]), slice(None))
+    least = [way for way, count in zip(ways[among], crossed[among], strict=True) if count == min(crossed[among])]
+    return quiet(sheet, at, -1j, 9.0, least, from_=2.2)
+
+
+def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> complex:
+    """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
+    side = 1j * out
+    height, half = look.support
+    foot = at + height * out
+    low, high = foot - half * side, foot + half * side
+    with sheet.on_layer("supports"):
+        sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
+        low, high = foot - GROUND * half * side, foot + GROUND * half * side
+        sheet.line([low, high], DARK, 1.2, z=2.7)
+    hatch(sheet, low, high, out)
+    return high
+
+
+def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[Line]) -> None:
+    """A piece of the frame's guide about a box: hatched rails, open where rods go through."""
+    reach = look.box[0] / 2 + BEYOND
+    for side in (1j * along, -1j * along):
+        rail = at + side * (look.box[1] / 2 + GAP)
+        covered = [run for rod in rods if (run := _covered(rod, rail, along, side)) is not None]
+        for low, high in free_runs(-reach, reach, covered):
+            start, end = rail + low * along, rail + high * along
+            with sheet.on_layer("supports"):
+                sheet.line([start, end], DARK, 1.0, z=2.5)
+            hatch(sheet, start, end, side)
+
+
+def _covered(rod: Line, rail: complex, along: complex, out: complex) -> tuple[float, float] | None:
+    """The run (mm) along a rail in whose hatching a rod is."""
+    places = _places(rod) - rail
+    inside = dot(along, places)[(dot(out, places) > -WALL) & (dot(out, places) < HATCHED + WALL)]
+    return (float(np.min(inside)) - WALL, float(np.max(inside)) + WALL) if len(inside) else None
+
+
+def _places(rod: Line) -> Vector:
+    """Places along a rod, close together."""
+    return np.linspace(rod[0], rod[1], int(abs(rod[1] - rod[0]) / FINE) + 2)
+
+
+def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """What is left from low to high without what is covered; pieces too short for hatching are left out."""
+    edges = [low]
+    for first, last in sorted(covered):
+        edges += [max(first, edges[-1]), max(last, edges[-1])]
+    edges.append(high)
+    pieces = [(first, min(last, high)) for first, last in zip(edges[::2], edges[1::2], strict=True)]
+    return [(first, last) for first, last in pieces if last - first >= PIECE]

@@ -1,0 +1,93 @@
+"""Each group apart, and each driving link: its links to scale under loads and reactions, arms, equations of moments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from tmm_cli.draw.acting import Forces, arms, extent
+from tmm_cli.draw.beneath import Beneath, above
+from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.equations import table_of_arms, table_of_forces, written
+from tmm_cli.draw.mechanism import Position, measured
+from tmm_cli.draw.scene import Scene
+from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_text
+from tmm_cli.errors import _
+from tmm_cli.plans.moments import SPECIAL, LoadedPart, MomentEquation, loaded_parts
+from tmm_cli.plans.record import extent as extent_of
+
+MOST = 12  # arms on one sheet
+
+
+def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
+    """A sheet for each group and each driving link; another one for equations whose arms would crowd the first."""
+    if here.results.reactions is None:
+        return
+    for part in loaded_parts(here.motion, here.results.reactions, here.k):
+        kind = "links" if len(part.links) > 1 else "link"
+        stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
+        for number, equations in enumerate(_sheetfuls(part.equations)):
+            if part.acting:
+                yield stem + (f"-sheet-{number + 1}" if number else ""), _sheet(here, part, equations)
+
+
+def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
+    """Equations in their order, on as many sheets as their arms need."""
+    found: list[list[MomentEquation]] = [[]]
+    for equation in equations:
+        number = sum(len(_letters(e)) for e in found[-1])
+        crowded = number + len(_letters(equation)) > MOST
+        if found[-1] and (crowded or SPECIAL in (equation.about, found[-1][-1].about)):
+            found.append([])
+        found[-1].append(equation)
+    return found
+
+
+def _letters(equation: MomentEquation) -> set[str]:
+    return {t.letter for t in equation.terms if t.letter}
+
+
+def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Drawing:
+    linkage = here.results.linkage
+    linkage = replace(linkage, springs=())  # they are loads here
+    scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)
+    terms = [t for e in equations for t in e.terms]
+    further = [t.acting for t in terms if t.acting.kind == "reaction" and t.acting not in part.acting]
+    places = [*scene.extent(part.links), *(scene.point(p) for n in part.links for p in linkage.links[n].points)]
+    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.letter))]
+    title = _("Links {links} under their loads. {caption}")
+    if part.driving:
+        title = _("Driving link {links} under its loads. {caption}")
+    elif len(part.links) == 1:
+        title = _("Link {links} under its loads. {caption}")
+    lines = [text for e in equations for text in written(e)]
+    units, shown = here.results.problem.units, [*part.acting, *further]
+
+    def beneath(mu: float) -> Beneath:
+        return Beneath(lines, (table_of_forces(shown), table_of_arms(equations, units, mu)))
+
+    sized = [*((place, 0j) for place in places), *extent(shown)]
+    sheet = above(here, title, sized, beneath, links=", ".join(part.links))
+    measured(sheet, scene, links=part.links)
+    bars = sheet.ground.crowd
+    forces = Forces(sheet)
+    forces.draw(part.acting)
+    forces.draw(replace(a, kind="inner") for a in dict.fromkeys(further))
+    for equation in (e for e in equations if e.about == SPECIAL):
+        _special(sheet, part, equation)
+    arms(sheet, equations, bars)
+    if extent_of(places)[0] > 0:
+        sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(_("forces without scale"))
+    sheet.note(_("moments positive counterclockwise"))
+    return sheet.finish()
+
+
+def _special(sheet: Sheet, part: LoadedPart, equation: MomentEquation) -> None:
+    """The point of Assur, and the lines of the reactions that meet there."""
+    at, with_moments = sheet.on(equation.centre), {t.acting.name for t in equation.terms}
+    for one in part.acting:
+        if one.pair and not one.couple and one.name not in with_moments:
+            sheet.line([sheet.on(one.at), at], REACTION, 0.5, "-.", 1.7)
+    sheet.circle(at, 0.6, REACTION, REACTION, 0.5)
+    sheet.label(equation.about, at, 10)

@@ -1,0 +1,59 @@
+"""What is read off a plan: each vector once with its segment and size, and what links turn with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.record import Plan, Symbol
+from tmm_cli.tolerances import NO_VECTOR
+
+
+@dataclass(frozen=True)
+class Reading:
+    """symbols: of all vectors that are the same one; segment: its letters on the plan; size: SI, zero of a point."""
+
+    symbols: tuple[Symbol, ...]
+    segment: str
+    size: float
+
+
+@dataclass(frozen=True)
+class Turn:
+    """What a link turns with, omega (rad/s) or epsilon (rad/s2): positive counter-clockwise."""
+
+    symbol: Symbol
+    value: float
+
+
+def readings(plan: Plan) -> list[Reading]:
+    """Vectors in the order of the plan; absolute ones that are the same vector stand together."""
+    least = NO_VECTOR * plan.size
+    found: dict[complex | int, Reading] = {}
+    for number, vector in enumerate(plan.vectors):
+        size = abs(vector.value)
+        key: complex | int = number
+        if vector.kind == "absolute":
+            key = next(
+                (end for end in found if isinstance(end, complex) and abs(end - vector.end) <= least), vector.end
+            )
+        if key in found:
+            found[key] = Reading((*found[key].symbols, vector.symbol), found[key].segment, found[key].size)
+        else:
+            found[key] = Reading((vector.symbol,), vector.name if size > least else "", size if size > least else 0.0)
+    return list(found.values())
+
+
+def turns(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[Turn]:
+    """Of all links that turn in any of the positions."""
+    letter = {"omega": "ω", "epsilon": "ε"}[what]
+    rates = {link: getattr(motion.link(link), what) for link in motion.linkage.moving}
+    largest = max((float(np.nanmax(np.abs(rate))) for rate in rates.values()), default=0.0)
+    for link, rate in rates.items():
+        if np.nanmax(np.abs(rate)) > NO_VECTOR * largest:
+            value = float(rate[k])
+            yield Turn(Symbol(letter, link), value if abs(value) > NO_VECTOR * largest else 0.0)
