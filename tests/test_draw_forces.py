@@ -1,15 +1,27 @@
-"""Sheets of forces: groups under their loads with arms and equations of moments."""
+"""Sheets of forces: groups under their loads with arms and equations of moments; force plans with their tables."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
+import numpy as np
 import pytest
 from models import PROBLEMS
 from test_draw import plain
 
 from tmm_cli import load, solve
+from tmm_cli.draw.acting import ARM
 from tmm_cli.draw.beneath import Beneath, Table
+from tmm_cli.draw.drawing import Area, Line
+from tmm_cli.draw.equations import written
+from tmm_cli.draw.force_plans import forces, lanes, table
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.mechanism import detailed
+from tmm_cli.draw.script import plain as line
+from tmm_cli.draw.sheet import INERTIA, LOAD, REACTION
+from tmm_cli.plans.forces import force_plans
+from tmm_cli.plans.moments import loaded_parts
+from tmm_cli.plans.record import NamedVector
 
 
 def sheets_of(name, kind):
@@ -19,39 +31,60 @@ def sheets_of(name, kind):
 
 @pytest.fixture(scope="module")
 def loaded():
-    return {stem: plain(sheet) for stem, sheet in sheets_of("shaper", group_loads).items()}
+    return sheets_of("shaper", group_loads)
+
+
+@pytest.fixture(scope="module")
+def equations():
+    """Of the shaper's parts by their links, as they are written."""
+    (here,) = detailed(solve(load(PROBLEMS / "shaper.yaml"), "forces"))
+    parts = loaded_parts(here.motion, here.results.reactions, here.k)
+    return {part.links: [line(words) for e in part.equations for words in written(e)] for part in parts}
 
 
 def test_each_group_and_the_crank_have_a_sheet_under_their_loads(loaded):
     assert list(loaded) == ["group-loads-03-links-4-5", "group-loads-03-links-2-3", "group-loads-03-link-1"]
 
 
-def test_loads_and_parts_of_reactions_are_drawn_where_they_act(loaded):
-    assert {"G4", "U4", "M4", "G5", "U5", "F", "R₃₄ⁿ", "R₃₄ᵗ", "R₀₅"} <= loaded["group-loads-03-links-4-5"]
-    assert {"R₀₁", "R₂₁", "Mb", "G1"} <= loaded["group-loads-03-link-1"]
+def test_loads_and_parts_of_reactions_are_drawn_as_many_as_act(loaded):
+    arrows = [mark for mark in loaded["group-loads-03-links-4-5"].marks if isinstance(mark, Area) and is_head(mark)]
+    assert len(arrows) >= len(["G4", "U4", "M4", "G5", "U5", "F", "R34n", "R34t", "R05"])
+    assert {"R", "34", "05", "τ", "n", "F"} <= plain(loaded["group-loads-03-links-4-5"])
+    assert {"R", "01", "21", "M", "b", "G", "1"} <= plain(loaded["group-loads-03-link-1"])
 
 
-def test_equations_of_moments_stand_beneath_in_letters_then_with_numbers(loaded):
-    texts = loaded["group-loads-03-links-4-5"]
-    assert "ΣM(E), link 4: −R₃₄ᵗ·h₃ + G4·h₁ − U4·h₂ − M4 = 0" in texts
-    assert any(t.endswith("(58.86·0.1041 − 11.89·0.07677 − 0.3608) / 0.21 = 23.1 N") for t in texts)
-    assert any(t.endswith("/ 324.4 = 0.2286 m") for t in texts)  # where the guide's reaction acts, from E
-    assert "Mb = G1·h₁ + R₂₁·h₂ = 58.86·0.01037 + 2308·0.1068 = 247 N*m" in {
-        t.strip() for t in loaded["group-loads-03-link-1"]
-    }
+def is_head(area):
+    """Of an arrow of a force."""
+    return len(area.corners) == 3 and area.face in {LOAD, INERTIA, REACTION}
+
+
+def test_equations_of_moments_stand_beneath_in_letters_then_with_numbers(loaded, equations):
+    first, solved, guide, place = equations["4", "5"]
+    assert first == "ΣM_E, link 4: −R^τ_34·h_3 + G_4·h_1 − U_4·h_2 − M_4 = 0"
+    assert solved.endswith("(58.86·0.1041 − 11.89·0.07677 − 0.3608) / 0.21 = 23.1 N")
+    assert guide == "ΣM_E, link 5: R_05·h_7 − G_5·h_4 + U_5·h_5 − F·h_6 = 0"
+    assert place.endswith("/ 324.4 = 0.2286 m")  # where the guide's reaction acts, from E
+    assert equations["1",][1].strip() == "M_b = G_1·h_1 + R_21·h_2 = 58.86·0.01037 + 2308·0.1068 = 247 N·m"
+    texts = plain(loaded["group-loads-03-links-4-5"])
+    assert any(text.endswith("/ 0.21 = 23.1 N") for text in texts)
 
 
 def test_arms_are_listed_with_their_length_and_as_they_measure_on_paper(loaded):
-    texts = loaded["group-loads-03-links-4-5"]
+    texts = plain(loaded["group-loads-03-links-4-5"])
     (scale,) = [float(t.split()[2]) for t in texts if t.startswith("μ_l")]
-    assert {f"h{n}" for n in "₁₂₃₄₅₆₇"} <= texts
     assert {"104.1", f"{0.1041 / scale:.1f} mm", "228.6", f"{0.2286 / scale:.1f} mm"} <= texts
+    lengths = [
+        abs(mark.places[0] - mark.places[-1])
+        for mark in loaded["group-loads-03-links-4-5"].marks
+        if isinstance(mark, Line) and mark.colour == ARM and len(mark.places) == 2
+    ]
+    assert min(abs(length - 0.228613 / scale) for length in lengths) < 0.01  # drawn as long as the scale says
 
 
 @pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "lifting-boom", "cam-lever", "planetary-dwell-press"])
 def test_groups_of_every_class_are_drawn(name):
     for stem, sheet in sheets_of(name, group_loads).items():
-        assert stem.startswith("group-loads-") and any("ΣM(" in text for text in plain(sheet))
+        assert stem.startswith("group-loads-") and "Σ" in plain(sheet)
 
 
 def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
@@ -59,3 +92,57 @@ def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
     one, wide, narrow = (Beneath((), (table,)).height(width) for width in (20.0, 270.0, 60.0))
     assert wide < narrow < one
     assert Beneath(("x " * 200,)).height(100.0) > 4 * Beneath(("x ",)).height(100.0) / 2
+
+
+@pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])
+def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
+    here = detailed(solve(load(PROBLEMS / f"{name}.yaml"), "forces"))[0]
+    for plan in force_plans(here.results.reactions, here.k):
+        rows = [row.cells for row in table(plan, 7.5) if not row.head]
+        vectors = [*plan.plan.vectors, *plan.full]
+        assert [line(cells[0]) for cells in rows] == [line(vector.symbol) for vector in vectors]
+        for (__, size, length, angle), vector in zip(rows, vectors, strict=True):
+            value = abs(vector.value)
+            assert float(size) == pytest.approx(value, rel=6e-4, abs=1e-9)
+            assert float(length) == pytest.approx(value / 7.5, abs=0.051)
+            if angle:
+                off = vector.value / value * np.exp(-1j * np.radians(float(angle.rstrip("°"))))
+                assert abs(off - 1) < np.radians(0.051)
+
+
+def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
+    here = detailed(solve(load(PROBLEMS / "shaper.yaml"), "forces"))[0]
+    reactions = here.results.reactions
+    found = {v.name: v.value for plan in force_plans(reactions, here.k) for v in plan.full}
+    wanted = {f"R{r.by}{r.on}": complex(r.force[here.k]) for r in reactions.all if r.tangential is not None}
+    assert set(found) == {"R₃₄", "R₁₂", "R₀₃"} and len(wanted) == 3
+    for pair, value in {"34": found["R₃₄"], "12": found["R₁₂"], "03": found["R₀₃"]}.items():
+        assert value == pytest.approx(wanted[f"R{pair}"], rel=1e-12)
+
+
+def test_vectors_of_a_polygon_that_is_a_line_are_drawn_side_by_side():
+    """Forces along one line: 300 N up, 100 N down twice, 100 N down; all but the first would lie on it."""
+    up, down = (
+        [NamedVector("", 0j, 300j, "load")],
+        [NamedVector("", 300j - 100j * n, 200j - 100j * n, "load") for n in range(3)],
+    )
+    aside = lanes([*up, *down], 300.0)
+    assert aside[0] == 0 and len({abs(off) for off in aside[1:]}) == 1 and abs(aside[1]) > 3
+    square = [0j, 1 + 0j, 1 + 1j, 1j, 0j]
+    assert lanes([NamedVector("", a, b, "load") for a, b in pairwise(square)], 1.0) == [0, 0, 0, 0]
+
+
+def test_engine_s_forces_on_one_line_are_spread_apart():
+    for stem, sheet in sheets_of("engine-four", forces).items():
+        shafts = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "vectors" and m.style == "-"]
+        for n, one in enumerate(shafts):
+            for other in shafts[:n]:
+                assert not lie_together(one, other), stem
+
+
+def lie_together(one, other):
+    """Whether two lines on paper (mm) share more than two millimetres, one on the other."""
+    along = (one[-1] - one[0]) / abs(one[-1] - one[0])
+    across = [abs((p - one[0]).imag * along.real - (p - one[0]).real * along.imag) for p in (other[0], other[-1])]
+    runs = sorted(((p - one[0]) * along.conjugate()).real for p in (other[0], other[-1]))
+    return max(across) < 0.5 and min(runs[1], abs(one[-1] - one[0])) - max(runs[0], 0) > 2

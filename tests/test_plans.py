@@ -69,7 +69,7 @@ def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
     assert abs(coriolis.value) == pytest.approx(abs(2 * omega * sliding), rel=1e-14)
     last, middle, driving = force_plans(results.reactions, 3)
     assert (last.links, middle.links, driving.links) == (("4", "5"), ("2", "3"), ("1",))
-    assert last.equation == "R₃₄ⁿ + R₃₄ᵗ + G4 + U4 + G5 + U5 + F + R₀₅ = 0"
+    assert last.equation == "R₃₄ⁿ + R₃₄ᵗ + G₄ + U₄ + G₅ + U₅ + F + R₀₅ = 0"
 
 
 def test_moments_about_the_pole_of_the_drawn_lever_give_the_balancing_moment():
@@ -92,7 +92,7 @@ def test_scale_factors_are_round_and_the_figure_fits(width, height):
 
 
 def test_reactions_are_named_from_link_to_link():
-    assert reaction_name("3", "4", "ᵗ") == "R₃₄ᵗ"
+    assert reaction_name("3", "4", "τ") == "R₃₄ᵗ"
     assert reaction_name("arm", "12") == "R(arm,12)"
 
 

@@ -18,7 +18,7 @@ from tmm_cli.errors import _
 
 COMMANDS = (
     "run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis", "variants",
-    "grade",
+    "grade", "sheets",
 )  # fmt: skip
 GROUPS = ("bench",)  # commands that have commands of their own, in `app`
 

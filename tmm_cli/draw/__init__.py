@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterable
 from tmm_cli.analysis.in_detail import balancing, chosen_here, in_detail
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
+from tmm_cli.draw.force_plans import forces
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.formats import files as every_format
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.mechanism import all_positions, detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
-from tmm_cli.draw.plans import forces, lever
+from tmm_cli.draw.plans import lever
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _

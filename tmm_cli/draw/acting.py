@@ -11,6 +11,7 @@ from tmm_cli.draw.annotations import beside, dimension
 from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.labels import STEP
 from tmm_cli.draw.mechanism import LOAD_MM, couple
+from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, Sheet
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation
@@ -36,12 +37,12 @@ class Forces:
             at, colour = self.sheet.on(one.at), COLOURS[one.kind]
             if one.couple:
                 number = sum(abs(at - other) < 1 for other in self.coupled)
-                couple(self.sheet, at, np.sign(one.moment), colour, one.name, RADII[min(number, len(RADII) - 1)])
+                couple(self.sheet, at, np.sign(one.moment), colour, one.symbol, RADII[min(number, len(RADII) - 1)])
                 self.coupled.append(at)
             else:
-                self._force(at, one.force / abs(one.force), one.name, colour, "--" if one.kind == "inner" else "-")
+                self._force(at, one.force / abs(one.force), one.symbol, colour, "--" if one.kind == "inner" else "-")
 
-    def _force(self, at: complex, along: complex, name: str, colour: str, style: Style) -> None:
+    def _force(self, at: complex, along: complex, name: Words, colour: str, style: Style) -> None:
         start = at
         if self._covered(at, -along) + 3 < self._covered(at, along):
             start = at - LOAD_MM * along
@@ -76,19 +77,19 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
 
     One that would lie on a link stands beside it as a dimension. links: points (mm) that stand for them.
     """
-    drawn: set[str] = set()
+    drawn: set[int] = set()
     for equation in equations:
         centre = sheet.on(equation.centre)
         feet: list[complex] = []
-        for term in sorted((t for t in equation.terms if t.letter), key=lambda t: t.arm):
-            if term.letter in drawn:
+        for term in sorted((t for t in equation.terms if t.number), key=lambda t: t.arm):
+            if term.number in drawn:
                 continue
-            drawn.add(term.letter)
+            drawn.add(term.number)
             at, foot = sheet.on(term.acting.at), sheet.on(term.foot)
             sheet.line([at, foot], ARM, 0.45, "--", 1.6)
             length = abs(foot - centre)
             if length > LEAST and beside(links, centre, foot, ON_BAR) > COVERED * length / STEP:
-                dimension(sheet, centre, foot, term.letter)
+                dimension(sheet, centre, foot, term.letter.name)
                 continue
             sheet.line([centre, foot], ARM, 0.7, z=4.6)
             # arms in one line share its beginning: each letter stands at the part that no shorter one has

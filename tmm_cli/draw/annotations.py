@@ -13,6 +13,7 @@ OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, 
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
+BETWEEN = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
 
 
@@ -36,16 +37,16 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
-    stands = ("between",) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
+    stands = tuple(BETWEEN) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
-        middle = (first + last) / 2
+        middle = first + BETWEEN.get(stand, 0.5) * (last - first)
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
-        if stand != "between":
+        if stand not in BETWEEN:
             reach = 2 * HEAD + 1.5 + width / 2
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * up_of(u), u
@@ -60,7 +61,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
         found += sum(sheet.ground.covered(z, height, height, crowd) for z in squares)
-        return found + 0.25 * offset + 2.0 * (stand == "before") + 1.0 * (stand == "after")
+        return found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5}.get(stand, 0.0)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
     side, offset, stand = min(choices, key=lambda one: cost(*one))

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.labels import Ground
-from tmm_cli.draw.labels import extent as text_extent
 from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Room
-from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.script import Words, width, wrapped
+from tmm_cli.draw.sheet import DARK, GREY_TEXT, THIN, Sheet
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
 
-TEXT, LINE, ROW = 8.0, 4.4, 4.0  # points of letters; mm of a line, of a row
-LETTER = 1.62  # mm: a letter of a line, on the average
-SPACE, GAP, ABOVE = 2.2, 5.0, 3.0  # mm between columns, between tables, above all of it
+TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
+SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 NARROW = 120.0  # mm: what is beneath a drawing on a large sheet is not folded into less
+HANGING = " " * 8
 
 
 @dataclass(frozen=True)
@@ -27,63 +27,63 @@ class Table:
     """A head and rows, all of one length."""
 
     head: tuple[str, ...]
-    rows: Sequence[tuple[str, ...]]
+    rows: Sequence[tuple[Words, ...]]
 
     @property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
-        return [max(text_extent(text, TEXT)[0] for text in column) + SPACE for column in columns]
+        return [max(width(words, TEXT * POINT) for words in column) + SPACE for column in columns]
 
 
 @dataclass(frozen=True)
 class Beneath:
     """Lines (wrapped as needed), and tables below them."""
 
-    lines: Sequence[str] = ()
+    lines: Sequence[Words] = ()
     tables: Sequence[Table] = ()
 
-    def height(self, width: float) -> float:
-        """What it takes of a sheet whose field has this width, mm."""
-        rows = self._rows(width)
-        return ABOVE + LINE * len(self._wrapped(width)) + (ROW * (rows + 1.5) if rows else 0.0)
+    def height(self, across: float) -> float:
+        """What it takes of a sheet whose field is so wide, mm."""
+        rows = self._rows(across)
+        return ABOVE + LINE * len(self._wrapped(across)) + (ROW * (rows + 1.5) if rows else 0.0)
 
-    def put(self, sheet: Sheet, low: complex, width: float) -> None:
+    def put(self, sheet: Sheet, low: complex, across: float) -> None:
         """Write it; low: the lower left corner of the field."""
-        top = low + 1j * (self.height(width) - ABOVE)
-        for text in self._wrapped(width):
-            sheet.text(top - 1j * LINE / 2, text, TEXT)
+        top = low + 1j * (self.height(across) - ABOVE)
+        for words in self._wrapped(across):
+            sheet.text(top - 1j * LINE / 2, words, TEXT)
             top -= 1j * LINE
-        rows = self._rows(width)
+        rows = self._rows(across)
         top -= 0.5j * ROW
-        for table in self.tables:
-            own = math.ceil(len(table.rows) / math.ceil(len(table.rows) / rows)) if table.rows else 1
+        for table in (t for t in self.tables if t.rows):
+            own = math.ceil(len(table.rows) / math.ceil(len(table.rows) / rows))
             for first in range(0, len(table.rows), own):
-                self._column(sheet, top, table, table.rows[first : first + own])
+                _column(sheet, top, table, table.rows[first : first + own])
                 top += sum(table.widths) + GAP
 
-    def _column(self, sheet: Sheet, top: complex, table: Table, rows: Sequence[tuple[str, ...]]) -> None:
-        total = sum(table.widths)
-        for number, row in enumerate((table.head, *rows)):
-            at = top - 1j * ROW * (number + (0.4 if number == 0 else 0.7))
-            for text, width in zip(row, table.widths, strict=True):
-                sheet.text(at, text, TEXT, colour="#404040" if number == 0 else DARK)
-                at += width
-        sheet.line([top - 1j * ROW, top - 1j * ROW + total - SPACE], THIN, 0.6, blocks=False)
+    def _wrapped(self, across: float) -> list[Words]:
+        return [line for words in self.lines for line in wrapped(words, TEXT * POINT, across, HANGING)]
 
-    def _wrapped(self, width: float) -> list[str]:
-        every = (textwrap.wrap(line, int(width / LETTER), subsequent_indent=" " * 8) for line in self.lines)
-        return [text for lines in every for text in lines]
-
-    def _rows(self, width: float) -> int:
+    def _rows(self, across: float) -> int:
         """Rows of the longest column at which all columns fit side by side."""
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
             wide = sum(math.ceil(len(t.rows) / rows) * (sum(t.widths) + GAP) for t in tables) - GAP
-            if wide <= width:
+            if wide <= across:
                 return rows
         return most
+
+
+def _column(sheet: Sheet, top: complex, table: Table, rows: Sequence[tuple[Words, ...]]) -> None:
+    """Some rows of a table under its head."""
+    for number, row in enumerate((table.head, *rows)):
+        at = top - 1j * ROW * (number + (0.4 if number == 0 else 0.7))
+        for words, wide in zip(row, table.widths, strict=True):
+            sheet.text(at, words, TEXT, colour=GREY_TEXT if number == 0 else DARK)
+            at += wide
+    sheet.line([top - 1j * ROW, top - 1j * ROW + sum(table.widths) - SPACE], THIN, 0.6, blocks=False)
 
 
 def above(
@@ -101,13 +101,13 @@ def above(
         found = [(*_scale(paper, places, beneath), paper) for paper in (LANDSCAPE, PORTRAIT)]
         mu, middle, paper = min(found, key=lambda one: (one[0], one[2][1]))
     low, high = ground_of(paper)
-    width = (high - low).real
-    _, across, up, __ = extent([place for place, __ in places])
-    room = Room(paper, mu, 0j, (across / mu, up / mu))
+    across = (high - low).real
+    _, wide, up, __ = extent([place for place, __ in places])
+    room = Room(paper, mu, 0j, (wide / mu, up / mu))
     sheet = Sheet(here.results.problem.title, title.format(caption=here.caption, **words), room=room)
     written = beneath(mu)
-    written.put(sheet, low, width)
-    sheet.ground = Ground(low + 1j * written.height(width), high)
+    written.put(sheet, low, across)
+    sheet.ground = Ground(low + 1j * written.height(across), high)
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - middle
     return sheet
 
@@ -120,9 +120,9 @@ def _tight(
     _, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, longest, longest)
     _, across, up, middle = extent([place / mu + away for place, away in places])
-    width = max(across + 2 * PAD, NARROW)
+    wide = max(across + 2 * PAD, NARROW)
     low, high = ground_of((0.0, 0.0))
-    paper = complex(width, up + 2 * PAD + beneath(mu).height(width)) + low - high
+    paper = complex(wide, up + 2 * PAD + beneath(mu).height(wide)) + low - high
     return mu, middle, (paper.real, paper.imag)
 
 
@@ -131,8 +131,7 @@ def _scale(
 ) -> tuple[float, complex]:
     """The least round scale (SI a millimetre) at which all fits on paper, and the middle of the drawing there, mm."""
     low, high = ground_of(paper)
-    _, across, up, __ = extent([place for place, __ in places])
-    size = max(across, up)
+    size, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:
         room = high - low - 2 * PAD * (1 + 1j) - 1j * beneath(mu).height((high - low).real)
@@ -140,9 +139,3 @@ def _scale(
         if (across <= room.real and up <= room.imag) or size / mu < LEAST:
             return mu, middle
         mu = round_scale(1.01 * mu, 0.0, 1.0, 1.0)
-
-
-def figure(value: float) -> str:
-    """A number with four figures, without powers of ten as far as people write it so."""
-    text = f"{value:.4g}"
-    return text if "e-" in text else f"{float(text):.10g}".replace("e+", "e")

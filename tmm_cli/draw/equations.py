@@ -6,86 +6,99 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.draw.beneath import Table, figure
+from tmm_cli.draw.beneath import Table
+from tmm_cli.draw.script import Words, filled
 from tmm_cli.errors import _
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
+from tmm_cli.plans.record import Symbol
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH
 from tmm_cli.tolerances import NO_MOMENT
 
+INDENT = "    "
+Word = str | Symbol
 
-def written(equation: MomentEquation) -> Iterable[str]:
+
+def written(equation: MomentEquation) -> Iterable[Words]:
     """The sum in letters; then what it gives, in letters, with numbers (N, m) and as a value."""
     found, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
     )
+    moments: tuple[Word, ...] = ("Σ", Symbol("M", equation.about), f", {links}: ")
     if found is None and sought is not None:
         text = (
-            _("ΣM({point}), {links}: nothing has a moment, so {name} goes through {point}")
+            _("{moments}nothing has a moment, so {name} goes through {point}")
             if sought.arm
-            else _("ΣM({point}), {links}: nothing has a moment, so {name} = 0")
+            else _("{moments}nothing has a moment, so {name} = 0")
         )
-        yield text.format(point=equation.about, links=links, name=sought.name)
+        yield filled(text, moments=moments, name=sought.symbol, point=equation.about)
         return
     if not equation.terms:
         return
     others = [t for t in equation.terms if t is not found]
     terms = [*([found] if found else []), *others]
-    yield _("ΣM({point}), {links}: {sum} = 0").format(
-        point=equation.about, links=links, sum=_sum((_letters(t), t.moment) for t in terms)
-    )
+    yield (*moments, *_sum((_letters(t), t.moment) for t in terms), " = 0")
     if found is None or sought is None:
         rest, largest = abs(sum(t.moment for t in terms)), max(abs(t.moment) for t in terms)
-        numbers = _sum((_numbers(t), t.moment) for t in terms)
-        yield f"    {numbers} = {figure(rest if rest > NO_MOMENT * largest else 0.0)} N*m"
+        value = figure(rest if rest > NO_MOMENT * largest else 0.0)
+        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} N·m")
         return
-    sense = -np.sign(found.moment)
+    sense = -float(np.sign(found.moment))
     letters = _sum((_letters(t), sense * t.moment) for t in others)
     numbers = _sum((_numbers(t), sense * t.moment) for t in others)
-    name, unit, divided, by = found.acting.name, "N*m", "", ""
-    if sought.arm and not found.acting.couple:
-        name, unit, divided, by = found.letter, "m", found.acting.name, figure(found.acting.size)
-    elif not found.acting.couple:
-        unit, divided, by = "N", found.letter, figure(found.arm)
-    if divided:
-        letters, numbers = f"({letters}) / {divided}", f"({numbers}) / {by}"
-    yield f"    {name} = {letters} = {numbers} = {figure(equation.value)} {unit}"
+    if found.acting.couple:
+        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *numbers, f" = {figure(equation.value)} N·m")
+        return
+    name, over, by, unit = found.acting.symbol, found.letter, found.arm, "N"
+    if sought.arm:
+        name, over, by, unit = found.letter, found.acting.symbol, found.acting.size, "m"
+    divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {figure(by)}")
+    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {unit}")
 
 
-def _letters(term: Term) -> str:
-    return f"{term.acting.name}·{term.letter}" if term.letter else term.acting.name
+def _letters(term: Term) -> tuple[Word, ...]:
+    return (term.acting.symbol, "·", term.letter) if term.number else (term.acting.symbol,)
 
 
-def _numbers(term: Term) -> str:
-    return f"{figure(term.acting.size)}·{figure(term.arm)}" if term.letter else figure(term.acting.size)
+def _numbers(term: Term) -> tuple[Word, ...]:
+    return (f"{figure(term.acting.size)}·{figure(term.arm)}" if term.number else figure(term.acting.size),)
 
 
-def _sum(terms: Iterable[tuple[str, float]]) -> str:
+def _sum(terms: Iterable[tuple[tuple[Word, ...], float]]) -> list[Word]:
     """a − b + c."""
-    text = " ".join(("− " if sign < 0 else "+ ") + name for name, sign in terms)
-    return text.removeprefix("+ ") if text[:1] == "+" else text.replace("− ", "−", 1)
+    found: list[Word] = []
+    for words, sign in terms:
+        plus = " + " if found else ""
+        found += [plus if sign > 0 else " − " if found else "−", *words]
+    return found
 
 
 def table_of_forces(acting: Iterable[Acting]) -> Table:
     """Sizes, and angles of forces from x."""
-    rows = []
+    rows: list[tuple[Words, ...]] = []
     for one in acting:
         angle = "" if one.couple else f"{round(float(np.degrees(np.angle(one.force))), 1) % 360:.1f}°"
-        size = f"{figure(one.moment)} N*m" if one.couple else f"{figure(one.size)} N"
-        rows.append((one.name, size, angle))
+        size = f"{figure(one.moment)} N·m" if one.couple else f"{figure(one.size)} N"
+        rows.append((one.symbol, size, angle))
     return Table((_("force"), _("size"), _("from x")), rows)
 
 
 def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem, mu: float) -> Table:
     """Of the mechanism, in the unit of lengths, and on paper; mu: m a millimetre."""
-    rows: dict[str, tuple[str, ...]] = {}
-    for term in (t for e in equations for t in e.terms if t.letter):
-        if term.letter in rows:
-            letter, of, *sizes = rows[term.letter]
-            rows[letter] = (letter, f"{of}, {term.acting.name}", *sizes)
-        else:
-            size = figure(units.from_si(term.arm, LENGTH))
-            rows[term.letter] = (term.letter, term.acting.name, size, f"{term.arm / mu:.1f} mm")
-    return Table((_("arm"), _("of"), units.symbol(LENGTH), _("on paper")), list(rows.values()))
+    found: dict[int, list[Term]] = {}
+    for term in (t for e in equations for t in e.terms if t.number):
+        found.setdefault(term.number, []).append(term)
+    rows: list[tuple[Words, ...]] = []
+    for first, *others in found.values():
+        of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
+        size = figure(units.from_si(first.arm, LENGTH))
+        rows.append((first.letter, of, size, f"{first.arm / mu:.1f} mm"))
+    return Table((_("arm"), _("of"), units.symbol(LENGTH), _("on paper")), rows)
+
+
+def figure(value: float) -> str:
+    """A number with four figures, without powers of ten as far as people write it so."""
+    text = f"{value:.4g}"
+    return text if "e-" in text else f"{float(text):.10g}"

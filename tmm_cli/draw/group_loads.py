@@ -43,8 +43,8 @@ def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]
     return found
 
 
-def _letters(equation: MomentEquation) -> set[str]:
-    return {t.letter for t in equation.terms if t.letter}
+def _letters(equation: MomentEquation) -> set[int]:
+    return {t.number for t in equation.terms if t.number}
 
 
 def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Drawing:
@@ -54,7 +54,7 @@ def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]
     terms = [t for e in equations for t in e.terms]
     further = [t.acting for t in terms if t.acting.kind == "reaction" and t.acting not in part.acting]
     places = [*scene.extent(part.links), *(scene.point(p) for n in part.links for p in linkage.links[n].points)]
-    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.letter))]
+    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
     title = _("Links {links} under their loads. {caption}")
     if part.driving:
         title = _("Driving link {links} under its loads. {caption}")
@@ -85,9 +85,9 @@ def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]
 
 def _special(sheet: Sheet, part: LoadedPart, equation: MomentEquation) -> None:
     """The point of Assur, and the lines of the reactions that meet there."""
-    at, with_moments = sheet.on(equation.centre), {t.acting.name for t in equation.terms}
+    at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for one in part.acting:
-        if one.pair and not one.couple and one.name not in with_moments:
+        if one.pair and not one.couple and one.symbol not in with_moments:
             sheet.line([sheet.on(one.at), at], REACTION, 0.5, "-.", 1.7)
     sheet.circle(at, 0.6, REACTION, REACTION, 0.5)
     sheet.label(equation.about, at, 10)

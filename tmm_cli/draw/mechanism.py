@@ -15,6 +15,7 @@ from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.render import Rendered, arrows, render, slider
 from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
 from tmm_cli.draw.wheels import draw as draw_wheels
@@ -22,7 +23,8 @@ from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import PAD, balance_name
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import PAD, balance_symbol
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
 
@@ -195,11 +197,11 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
         if abs(force) > 0:
             if load.kind == "load":
                 belongs(sheet, scene, load.link, at)
-            unscaled(sheet, taken, at, force, load.name, colour)
+            unscaled(sheet, taken, at, force, load_symbols(load)[0], colour)
         if moment != 0:
             radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
             coupled.append(at)
-            couple(sheet, at, np.sign(moment), colour, load.couple_name or load.name, radius)
+            couple(sheet, at, np.sign(moment), colour, load_symbols(load)[1], radius)
     if reactions is not None:
         _balance(sheet, reactions, k)
         sheet.note(_("loads without scale"))
@@ -210,7 +212,7 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
 def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
     for balance in reactions.balances:
         turns = balance.kind == "moment" and balance.moment is not None
-        name = balance_name(balance.driver.link, len(reactions.balances) > 1, turns=turns)
+        name = balance_symbol(balance.driver.link, len(reactions.balances) > 1, turns=turns)
         if turns:
             pivots = [f.at for f in reactions.frames if f.on == balance.driver.link]
             pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
@@ -220,7 +222,7 @@ def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
 
 
 def unscaled(
-    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: str, colour: str
+    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: Words, colour: str
 ) -> None:
     """A force without scale; longer where it would hide others, taken, from the same place and in its direction."""
     along = force / abs(force)
@@ -231,7 +233,7 @@ def unscaled(
     sheet.label(name, end, 9, colour)
 
 
-def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: str, radius: float) -> None:
+def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
     """A couple as an open circle with an arrow head in its sense."""
     if sense == 0:
         return

@@ -1,8 +1,7 @@
-"""Sheets of the force plans and the lever."""
+"""Sheets of the lever."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -10,11 +9,10 @@ import numpy as np
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position, unscaled
-from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, scale_text
 from tmm_cli.errors import _
-from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import NamedVector, balance_name
+from tmm_cli.plans.record import balance_name
 
 
 def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
@@ -22,43 +20,6 @@ def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
-
-
-def forces(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """A sheet for the polygon of each group and of the driving link."""
-    if here.results.reactions is None:
-        return
-    for plan in force_plans(here.results.reactions, here.k):
-        title = _("Force plan of link {links}. {caption}")
-        if plan.driving:
-            title = _("Force plan of the driving link {links}. {caption}")
-        elif len(plan.links) > 1:
-            title = _("Force plan of links {links}. {caption}")
-        places = [p for v in plan.plan.vectors for p in (v.start, v.end)]
-        sheet = here.sheet(title, places, links=", ".join(plan.links))
-        sheet.note(scale_text("F", sheet.mu, "N/mm"))
-        drawn = plan.plan.drawn()
-        for vector in drawn:
-            _force(sheet, vector)
-        small = [v.name for v in plan.plan.vectors if v not in drawn]
-        if small:
-            sheet.note(_("zero: {names}").format(names=", ".join(small)))
-        for line, text in enumerate(textwrap.wrap(plan.equation, 105 if sheet.paper[0] < 250 else 150, max_lines=2)):
-            sheet.text(complex(12, 8 - 4.5 * line), text, 9, colour="#404040")
-        kind = "links" if len(plan.links) > 1 else "link"
-        yield safe("-".join([here.stem("forces"), kind, *plan.links])), sheet.finish()
-
-
-def _force(sheet: Sheet, vector: NamedVector) -> None:
-    start, end = sheet.on(vector.start), sheet.on(vector.end)
-    colour = COLOURS[vector.kind]
-    if vector.kind == "inner":
-        sheet.line([start, end], colour, 1.0, "--", 4)
-        sheet.arrow(start + (end - start) * 0.92, end, colour, 1.0)
-    else:
-        sheet.arrow(start, end, colour, 1.6)
-        sheet.circle(end, 0.45, DARK, DARK, 0.3, 6)
-    sheet.label(vector.name, (start + end) / 2, 10, colour)
 
 
 def lever(here: Position) -> Iterable[tuple[str, Drawing]]:

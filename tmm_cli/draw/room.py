@@ -43,12 +43,15 @@ class Figure:
 
 @dataclass(frozen=True)
 class Room:
-    """paper (mm), SI a millimetre, and where zero is on the paper (mm). figure: width and height of what is there, mm."""
+    """paper (mm), SI a millimetre, where zero is on the paper (mm).
+
+    figure: width and height of what is to scale there, mm; None: nothing is.
+    """
 
     paper: tuple[float, float]
     mu: float
     origin: complex
-    figure: tuple[float, float] = (0.0, 0.0)
+    figure: tuple[float, float] | None = None
 
 
 def room(figure: Figure, block: Block) -> Room:

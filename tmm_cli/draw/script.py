@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import string
+from collections.abc import Iterable, Iterator
 
 from tmm_cli.draw import fonts
 from tmm_cli.plans.record import Symbol
@@ -50,3 +51,46 @@ def width(words: Words, size: float) -> float:
         else fonts.width(part.letter, size) + SMALL * max(fonts.width(part.below, size), fonts.width(part.above, size))
         for part in parts(words)
     )
+
+
+def filled(sentence: str, **words: Words) -> Words:
+    """A sentence with texts in the places of its {names}."""
+    found: list[str | Symbol] = []
+    for before, name, *__ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        found += parts(words[name]) if name else ()
+    return tuple(found)
+
+
+def wrapped(words: Words, size: float, most: float, hanging: str = "") -> Iterator[Words]:
+    """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`."""
+    line: list[str | Symbol] = []
+    for token in _tokens(words):
+        if line and width((*line, *token), size) > most:
+            yield _joined(line)
+            line = [hanging]
+        line += token
+    yield _joined(line)
+
+
+def _joined(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
+    """The same with texts that follow one another in one."""
+    found: list[str | Symbol] = []
+    for part in line:
+        if found and isinstance(part, str) and isinstance(found[-1], str):
+            found[-1] += part
+        else:
+            found.append(part)
+    return tuple(found)
+
+
+def _tokens(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
+    """What stands between two spaces, each with the space before it."""
+    token: list[str | Symbol] = []
+    for part in parts(words):
+        first, *others = part.split(" ") if isinstance(part, str) else [part]
+        token.append(first)
+        for other in others:
+            yield tuple(token)
+            token = [f" {other}"]
+    yield tuple(token)

@@ -14,7 +14,7 @@ from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Lin
 from tmm_cli.draw.fonts import SHARE
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
-from tmm_cli.draw.layout.picture import extremes, on_large_sheet, paper_for, picture
+from tmm_cli.draw.layout.picture import covering, extremes, on_large_sheet, paper_for, picture
 from tmm_cli.draw.room import Room
 from tmm_cli.errors import _
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, ground_of
@@ -44,7 +44,7 @@ class Sheet:
         """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(found)
-        self.caption = caption
+        self.caption, self.remarks = caption, list[str]()
         self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
         self.ground = Ground(*ground_of(self.paper))
@@ -161,7 +161,7 @@ class Sheet:
         self.corner()
         self.settle()
         if on_large_sheet():
-            return picture(self.marks, self.caption, self.figure, self.mu, longest=max(self.figure or self.paper))
+            return picture(self.marks, self.caption, self.figure, self.mu, notes=self.remarks)
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:
@@ -187,7 +187,7 @@ class Sheet:
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
-            shape, at = nearest_free(self.block, *extremes(self.marks), self.ground.crowd)
+            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
         else:
             shape, at = roomiest(self.block, self.ground.low, self.ground.high, self.ground.crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,8 +12,10 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.labels import extent
+from tmm_cli.draw.layout.picture import on_large_sheet, snug
 from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fitted, scale_to
 from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.draw.symbols import PALETTE, STRUCTURAL, numbers, symbol_size
@@ -104,10 +107,15 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
         low, high = ground_of(paper)
         return scale_to(places, high - low - 2 * PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
-    # upright only where the mechanism becomes much larger
-    paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
-    sheet = Sheet(title, _("Structural scheme, {place} (not to scale)").format(place=place), paper=paper)
-    sheet.ground.low += 1j * legend.height(paper[0])
+    subject = _("Structural scheme, {place} (not to scale)").format(place=place)
+    if on_large_sheet():
+        most, room = math.inf, Room(snug(places, PAD, legend.least, legend.height), 1.0, 0j, None)
+        sheet = Sheet(title, subject, room=room)
+    else:
+        # upright only where the mechanism becomes much larger
+        paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
+        sheet = Sheet(title, subject, paper=paper)
+    sheet.ground.low += 1j * legend.height(sheet.paper[0])
     scene = fitted(sheet, scene, links, PAD, most)
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
     drawn = render(sheet, scene, links, pairs, look, hue)
@@ -121,6 +129,8 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
 
 class Legend:
     """The band below the scheme: colours of the parts on the left; formula, mobility and class on the right."""
+
+    least = 230.0  # mm: width of the paper of a scheme on a large sheet
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.parts = structure, parts(structure)

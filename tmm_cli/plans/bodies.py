@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import Kind, balance_name, couple_name, reaction_name
+from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.structure.assur import Pair
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import cross, dot, unit
@@ -24,13 +25,18 @@ class Acting:
     pair: the name of the pair, or DRIVE, that it comes from; empty of loads.
     """
 
-    name: str
+    symbol: Symbol
     kind: Kind
     link: str
     at: complex
     force: complex
     moment: float = 0.0
     pair: str = ""
+
+    @property
+    def name(self) -> str:
+        """In one line."""
+        return self.symbol.name
 
     @property
     def couple(self) -> bool:
@@ -99,8 +105,9 @@ class Loaded:
             if load.link in links:
                 kind: Kind = "inertia" if load.kind == "inertia" else "load"
                 at = complex(self.motion.point(load.link, load.at).x[self.k])
-                yield Acting(load.name, kind, load.link, at, complex(load.force[self.k]))
-                yield Acting(load.couple_name or load.name, kind, load.link, at, 0j, float(load.moment[self.k]))
+                force, couple = load_symbols(load)
+                yield Acting(force, kind, load.link, at, complex(load.force[self.k]))
+                yield Acting(couple, kind, load.link, at, 0j, float(load.moment[self.k]))
 
     def _drives(self, links: Collection[str]) -> Iterable[Acting]:
         for balance in self.reactions.balances:
@@ -112,12 +119,14 @@ class Loaded:
 
     def _drive(self, balance: Balance, link: str, sense: int) -> Acting:
         driver, k, turns = balance.driver, self.k, balance.kind == "moment" and balance.moment is not None
-        name = "−" * (sense < 0) + balance_name(driver.link, len(self.reactions.balances) > 1, turns=turns)
+        symbol = balance_symbol(driver.link, len(self.reactions.balances) > 1, turns=turns)
+        if sense < 0:
+            symbol = replace(symbol, letter=f"−{symbol.letter}")
         if turns:
             moment = sense * float(balance.generalized[k])
-            return Acting(name, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
+            return Acting(symbol, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
         force = sense * complex(balance.vector[k])
-        return Acting(name, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
+        return Acting(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
 
     def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[Acting]:
         """On one of its two links: a guide's where it acts, a hinge's in two parts where it has an axis."""
@@ -130,12 +139,20 @@ class Loaded:
         if reaction.arm is not None and abs(reaction.arm[k]) < FAR * self.size:
             at, couple = at + float(reaction.arm[k]) * self.guide(pair), 0.0
         if axis is None:
-            yield Acting(reaction_name(by, link), "reaction", link, at, force, pair=pair.name)
-            yield Acting(couple_name(by, link), "reaction", link, at, 0j, couple, pair.name)
+            yield Acting(reaction_symbol(by, link), "reaction", link, at, force, pair=pair.name)
+            yield Acting(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
         else:
             across = axis * 1j / abs(axis)
             tangential = across * float(dot(across, force))
             if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
                 tangential = complex(reaction.tangential[k])
-            yield Acting(reaction_name(by, link, "ⁿ"), "normal", link, at, force - tangential, pair=pair.name)
-            yield Acting(reaction_name(by, link, "ᵗ"), "tangential", link, at, tangential, pair=pair.name)
+            yield Acting(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
+            yield Acting(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
+
+
+def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
+    """Of its force and of its couple: of weights and inertia with the number of the link below the line."""
+    names = load.name, load.couple_name or load.name
+    if load.kind in ("weight", "inertia"):
+        return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
+    return Symbol(names[0]), Symbol(names[1])

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
-from tmm_cli.plans.record import Kind, NamedVector, Plan, balance_name, reaction_name
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import Kind, NamedVector, Plan, Symbol, balance_symbol, reaction_symbol
 
-Part = tuple[str, complex, Kind]
+Part = tuple[Symbol, complex, Kind]
 
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group."""
+    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group.
+
+    full: reactions whose parts the polygon has, from the start of the first part to the end of the other.
+    """
 
     links: tuple[str, ...]
     plan: Plan
     driving: bool = False
+    full: tuple[NamedVector, ...] = ()
 
     @property
     def equation(self) -> str:
@@ -38,7 +43,7 @@ def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     parts: list[Part] = []
     for link in group.group.links:
         parts += _borne(group.borne, reactions, group.group.links, link, k)
-        parts += [(reaction_name(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
+        parts += [(reaction_symbol(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
     return ForcePlan(group.group.links, _polygon(parts))
 
 
@@ -49,16 +54,25 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """
     first, last = group.outer
     a, b = group.group.links
-    parts_a = [*_part(first, "ᵗ", k), *_borne(group.borne, reactions, (a, b), a, k)]
-    parts_b = [*_borne(group.borne, reactions, (a, b), b, k), *_part(last, "ᵗ", k)]
+    parts_a = [*_part(first, "τ", k), *_borne(group.borne, reactions, (a, b), a, k)]
+    parts_b = [*_borne(group.borne, reactions, (a, b), b, k), *_part(last, "τ", k)]
     closing_b, closing_a = list(_rest(last, k)), list(_rest(first, k))
     plan = _polygon([*closing_a, *parts_a, *parts_b, *closing_b])
     corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
     inner = group.inner[0]
     force = complex(inner.onto(b)[k])
     # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
-    joined = NamedVector(reaction_name(inner.pair.other(b), b), corner - force, corner, "inner")
-    return ForcePlan((a, b), Plan((*plan.vectors, joined)))
+    symbol = reaction_symbol(inner.pair.other(b), b)
+    joined = NamedVector(symbol.name, corner - force, corner, "inner", symbol)
+    full = [*_full(first, plan.vectors[:2]), *_full(last, plan.vectors[-2:])]
+    return ForcePlan((a, b), Plan((*plan.vectors, joined)), full=tuple(full))
+
+
+def _full(reaction: Reaction, parts: Sequence[NamedVector]) -> Iterable[NamedVector]:
+    """A reaction of which these are the parts."""
+    if reaction.tangential is not None:
+        symbol = reaction_symbol(reaction.by, reaction.on)
+        yield NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
 
 def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
@@ -69,15 +83,15 @@ def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
 
 def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:
     if reaction.tangential is not None:
-        yield reaction_name(reaction.by, reaction.on, mark), complex(reaction.tangential[k]), "tangential"
+        yield reaction_symbol(reaction.by, reaction.on, mark), complex(reaction.tangential[k]), "tangential"
 
 
 def _rest(reaction: Reaction, k: int) -> Iterable[Part]:
     """What closes the polygon: the normal part of a hinge's reaction, or all of a guide's."""
     if reaction.normal is not None:
-        yield reaction_name(reaction.by, reaction.on, "ⁿ"), complex(reaction.normal[k]), "normal"
+        yield reaction_symbol(reaction.by, reaction.on, "n"), complex(reaction.normal[k]), "normal"
     else:
-        yield reaction_name(reaction.by, reaction.on), complex(reaction.force[k]), "reaction"
+        yield reaction_symbol(reaction.by, reaction.on), complex(reaction.force[k]), "reaction"
 
 
 def _borne(
@@ -89,22 +103,24 @@ def _borne(
     """
     for reaction in borne:
         if reaction.by == link:
-            yield reaction_name(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
+            yield reaction_symbol(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
     for load in reactions.applied:
         if load.link == link and load.has_force:
             kind: Kind = "inertia" if load.kind == "inertia" else "load"
-            yield load.name, complex(load.force[k]), kind
+            yield load_symbols(load)[0], complex(load.force[k]), kind
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         own, base = balance.driver.link, balance.driver.base
         if balance.kind == "force" and link in (own, base) and not {own, base} <= {*links}:
-            name, vector = balance_name(own, several), complex(balance.vector[k])
-            yield (name, vector, "load") if link == own else (f"−{name}", -vector, "load")
+            symbol, vector = balance_symbol(own, several), complex(balance.vector[k])
+            if link != own:
+                symbol, vector = replace(symbol, letter=f"−{symbol.letter}"), -vector
+            yield symbol, vector, "load"
 
 
 def _polygon(parts: Iterable[Part]) -> Plan:
     at, vectors = 0j, []
-    for name, value, kind in parts:
-        vectors.append(NamedVector(name, at, at + value, kind))
+    for symbol, value, kind in parts:
+        vectors.append(NamedVector(symbol.name, at, at + value, kind, symbol))
         at += value
     return Plan(tuple(vectors))

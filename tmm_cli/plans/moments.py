@@ -14,31 +14,39 @@ from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.leads import Lead, assur_point, hinges_of, leads_of
-from tmm_cli.plans.record import Kind, balance_name, reaction_name, subscript
+from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
 from tmm_cli.vectors import dot
 
 SPECIAL = "W"  # the special point of a group with three leads
-MARKS = {"tangential": "ᵗ", "normal": "ⁿ"}
+MARKS = {"tangential": "τ", "normal": "n"}
 
 
 @dataclass(frozen=True)
 class Term:
-    """What acts, and its moment about the centre (N m); a force's arm (m) leads from there to the foot on its line."""
+    """What acts, and its moment about the centre (N m); a force's arm (m) leads from there to the foot on its line.
+
+    number: of the arm h₁, h₂, ...; zero of a couple.
+    """
 
     acting: Acting
     moment: float
     arm: float
     foot: complex
-    letter: str = ""
+    number: int = 0
+
+    @property
+    def letter(self) -> Symbol:
+        """Of its arm: h₁."""
+        return Symbol("h", str(self.number))
 
 
 @dataclass(frozen=True)
 class Sought:
     """What an equation gives: a part of the reaction in a pair (or the driver's), or the arm at which that acts."""
 
-    name: str
+    symbol: Symbol
     pair: str
     kind: Kind = "reaction"
     arm: bool = False
@@ -143,8 +151,7 @@ def _of_guides(here: Loaded, group: Group, axes: Mapping[str, complex]) -> Itera
     for pair in (p for p in (*inner, *group.outer) if p.slide is not None):
         sides = [link for link in (pair.i, pair.j) if link in group.links]
         own = min(sides, key=lambda n: (not hinges_of(pairs, (n,)), sum(n in (p.i, p.j) for p in pairs)))
-        name = reaction_name(pair.other(own), own)
-        sought = Sought(name, pair.name, arm=True)
+        sought = Sought(reaction_symbol(pair.other(own), own), pair.name, arm=True)
         yield _equation(here, axes, (own,), *_hinge(here, group, own, pair), sought)
 
 
@@ -152,18 +159,18 @@ def _driving(here: Loaded, frame: Reaction) -> LoadedPart:
     """A crank about its pivot, which gives what balances it; a driven slider about its running point."""
     link, pair = frame.on, frame.pair
     if pair.slide is not None:
-        sought = Sought(reaction_name(frame.by, link), pair.name, arm=True)
+        sought = Sought(reaction_symbol(frame.by, link), pair.name, arm=True)
     else:
         balance = next(b for b in here.reactions.balances if b.driver.link == link)
         turns = balance.kind == "moment"
-        sought = Sought(balance_name(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
+        sought = Sought(balance_symbol(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
     equation = _equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
     return LoadedPart((link,), here.acting((link,), {}), _lettered([equation]), driving=True)
 
 
 def _part(group: Group, pair: Pair, kind: Kind) -> Sought:
     own = group.own(pair)
-    return Sought(reaction_name(pair.other(own), own, MARKS.get(kind, "")), pair.name, kind)
+    return Sought(reaction_symbol(pair.other(own), own, MARKS.get(kind, "")), pair.name, kind)
 
 
 def _hinge(here: Loaded, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
@@ -198,29 +205,24 @@ def _equation(
 def _moved(acting: Acting, place: complex | None) -> Iterable[Acting]:
     if place is None or acting.couple:
         return (acting,)
-    couple = replace(acting, name=f"M({acting.name})", kind="inner", force=0j, moment=acting.about(place), at=place)
+    symbol = replace(acting.symbol, letter="M")
+    couple = replace(acting, symbol=symbol, kind="inner", force=0j, moment=acting.about(place), at=place)
     return (replace(acting, at=place), couple)
 
 
 def _lettered(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
-    """Arms get letters h₁, h₂, ...; the same ones of several forces (weight and inertia in one line) have one."""
+    """Arms get numbers; the same ones of several forces (weight and inertia in one line) have one."""
     found: list[MomentEquation] = []
     feet: list[tuple[complex, complex]] = []
     for equation in equations:
         terms = []
         for term in equation.terms:
-            letter = ""
+            number = 0
             if not term.acting.couple:
-                arm = (equation.centre, term.foot)
-                near = SAME_PLACES * term.arm
-                same = [n for n, (c, f) in enumerate(feet) if abs(c - arm[0]) < near and abs(f - arm[1]) < near]
+                arm, near = (equation.centre, term.foot), SAME_PLACES * term.arm
+                same = [n for n, (c, f) in enumerate(feet, 1) if abs(c - arm[0]) < near and abs(f - arm[1]) < near]
                 feet += [] if same else [arm]
-                letter = arm_letter(same[0] if same else len(feet) - 1)
-            terms.append(replace(term, letter=letter))
+                number = same[0] if same else len(feet)
+            terms.append(replace(term, number=number))
         found.append(replace(equation, terms=tuple(terms)))
     return tuple(found)
-
-
-def arm_letter(number: int) -> str:
-    """h₁ for 0."""
-    return f"h{subscript(str(number + 1))}"

@@ -27,6 +27,12 @@ class Symbol:
     below: str = ""
     above: str = ""
 
+    @property
+    def name(self) -> str:
+        """In one line: R₃₄ᵗ."""
+        below = f"({self.below})" if "," in self.below else self.below.translate(_BELOW)
+        return self.letter + below + self.above.translate(_ABOVE)
+
 
 @dataclass(frozen=True)
 class NamedVector:
@@ -100,28 +106,30 @@ def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[floa
     return best, scales[best]
 
 
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_ABOVE = str.maketrans("τn", "ᵗⁿ")
+
+
 def subscript(text: str) -> str:
     """Figures below the line where the name is a number, else in brackets."""
     return text.translate(_BELOW) if text.isdecimal() and text.isascii() else f"({text})"
 
 
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
 def reaction_name(by: str, on: str, part: str = "") -> str:
-    """R₃₄: from link 3 on link 4; part: ᵗ tangential, ⁿ normal."""
-    return f"R{_from_to(by, on)}{part}"
+    """R₃₄: from link 3 on link 4; part: τ tangential, n normal."""
+    return reaction_symbol(by, on, part).name
 
 
-def couple_name(by: str, on: str) -> str:
-    """M₀₅: the couple of a guide's reaction, or of a cam's, from link 0 on link 5."""
-    return f"M{_from_to(by, on)}"
-
-
-def _from_to(by: str, on: str) -> str:
-    return subscript(by + on if len(by) == len(on) == 1 else f"{by},{on}")
+def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
+    """The same with indices; letter: M of the couple that a guide or a cam bears."""
+    return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
 
 
 def balance_name(link: str, several: bool, *, turns: bool = False) -> str:
     """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
-    return ("Mb" if turns else "Fb") + (subscript(link) if several else "")
+    return balance_symbol(link, several, turns=turns).name
+
+
+def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
+    """The same with indices."""
+    return Symbol("M" if turns else "F", f"b{link}" if several else "b")

@@ -6,18 +6,19 @@ import io
 import re
 from typing import TYPE_CHECKING, get_args
 
-from tmm_cli.draw.drawing import DASHES, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
+from tmm_cli.draw.drawing import DASHES, Area, Circle, Drawing, Layer, Line, Style, Text
 
 if TYPE_CHECKING:
-    from ezdxf.document import Drawing as Document
     from ezdxf.layouts import Modelspace
 
 CAPITALS = 0.729  # height of the capital letters of DejaVu Sans, which DXF counts, of its size
 LINETYPES: dict[Style, str] = {"-": "CONTINUOUS", "--": "TMM_DASHED", ":": "TMM_DOTTED", "-.": "TMM_DASHDOT"}
-FONTS = {
-    (False, False): ("TMM", "DejaVuSans.ttf"), (True, False): ("TMM_BOLD", "DejaVuSans-Bold.ttf"),
-    (False, True): ("TMM_ITALIC", "DejaVuSans-Oblique.ttf"), (True, True): ("TMM_BOLD_ITALIC", "DejaVuSans-BoldOblique.ttf"),
-}  # fmt: skip
+FONTS = {  # bold, italic: style and file
+    (False, False): ("TMM", "DejaVuSans.ttf"),
+    (True, False): ("TMM_BOLD", "DejaVuSans-Bold.ttf"),
+    (False, True): ("TMM_ITALIC", "DejaVuSans-Oblique.ttf"),
+    (True, True): ("TMM_BOLD_ITALIC", "DejaVuSans-BoldOblique.ttf"),
+}
 FOREGROUND = 7  # black on paper, white on a dark screen
 DARKEST = 0x30  # of each part of a colour that is meant as black
 WIDTHS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
@@ -64,6 +65,7 @@ def dxf(drawing: Drawing) -> bytes:
 
 def plain(text: str) -> str:
     """A text in which no code of DXF is read: %%c, ^I, \\U+0416 and their like."""
+    text = "".join(letter if letter.isprintable() else " " for letter in text)
     return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + APART, text).replace("^", "^ ")
 
 

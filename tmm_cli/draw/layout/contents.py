@@ -1,26 +1,26 @@
-"""Which drawings stand on which large sheet, and how large they usually are. A further drawing is a line in CONTENTS."""
+"""Which drawings stand on which large sheet, and how large they usually are; a further one is a line in CONTENTS."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
-from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.force_plans import forces
+from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.layout.values import balance_table, forces_table, motion_tables, structure_tables
 from tmm_cli.draw.mechanism import Position, all_positions, detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
-from tmm_cli.draw.plans import forces, lever
+from tmm_cli.draw.plans import lever
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _
 
 SUBJECTS = (_("Structure and synthesis"), _("Kinematics"), _("Forces"))
-Drawn = Iterable[tuple[str, Drawing]]
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def _groups(results: Results) -> Drawn:
 
 CONTENTS = (
     Source(0, _structure, 240),
-    Source(0, _groups, 300),
+    Source(0, _groups, 150),
     Source(0, synthesised, 200),
     Source(0, structure_tables),
     Source(1, all_positions, 200),

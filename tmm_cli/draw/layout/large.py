@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import chain, islice, repeat
 
-from tmm_cli.draw.drawing import Drawing, Mark
+from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
 from tmm_cli.draw.layout.picture import Picture, Space, within
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 EDGE = 6.0  # mm between the frame and what is drawn
-LEGIBLE = 0.85  # of its letters as they come: a table is not made smaller
+LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
 TRIES = 6  # of drawing all as large as it was thought to become
 
 
-def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, Drawing]]:
+@dataclass(frozen=True)
+class LargeSheet(Drawing):
+    """A framed sheet; pictures: what stands on it, each with its lower left corner (mm)."""
+
+    pictures: tuple[tuple[complex, Picture], ...] = ()
+
+
+def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, LargeSheet]]:
     """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b."""
     problem, size = choice.results.problem, PAPERS[paper]
     field = field_of(size, problem.title_texts.block)
@@ -66,7 +73,8 @@ def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
     usual = source.usual and source.usual * max(SMALLEST, min(1.0, math.sqrt(MANY / max(number, 1))))
     pictures = _drawn(source, choice, repeat(Space(usual and usual * shrunk)))
     if usual is None:
-        return [Piece(picture, picture.longest / shrunk, LEGIBLE * picture.longest) for picture in pictures]
+        least, most = LETTERS
+        return [Piece(one, one.longest / shrunk, least * one.longest, most * one.longest) for one in pictures]
     return [Piece(picture, usual) for picture in pictures]
 
 
@@ -89,17 +97,17 @@ def _drawn(source: Source, choice: Choice, rooms: Iterable[Space]) -> list[Pictu
         if drawn is None:
             break
         if isinstance(drawn[1], Picture):
-            found.append(drawn[1])
+            found.append(replace(drawn[1], stem=drawn[0]))
     return found
 
 
-def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> Drawing:
+def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> LargeSheet:
     """A sheet with these pictures on its field."""
     sizes = [(picture.paper[0] + GAP, picture.paper[1] + GAP) for picture in pictures]
     places = spread(pack(sizes, field) or [], sizes, field)
     low, high = inner(paper)
     corner = complex(low.real + EDGE, high.imag - EDGE)
-    marks: list[Mark] = []
-    for picture, (x, y) in zip(pictures, places, strict=True):
-        marks += picture.moved(corner + complex(x, -y - picture.paper[1])).marks
-    return Drawing(paper, (*marks, frame(paper), *title_block(titles, complex(high.real, low.imag))))
+    placed = [(corner + complex(x, -y - one.paper[1]), one) for (x, y), one in zip(places, pictures, strict=True)]
+    marks = [mark for at, one in placed for mark in one.moved(at).marks]
+    block = title_block(titles, complex(high.real, low.imag))
+    return LargeSheet(paper, (*marks, frame(paper), *block), tuple(placed))

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 Size = tuple[float, float]
 PERMUTED = 5  # boxes of which every order is tried
-EVEN = 0.02  # share of a gap: how finely spaces between boxes are spread
 
 
 @dataclass(frozen=True)
@@ -38,10 +37,14 @@ def pack(sizes: Sequence[Size], field: Field) -> list[Size] | None:
     """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted."""
     if sum(width * height for width, height in sizes) > field.area:
         return None
+    turned = Field(field.height, field.width, field.taken[::-1])
     for order in _orders(sizes):
         places = _in_order(sizes, order, field)
         if places is not None:
             return places
+        places = _in_order([(height, width) for width, height in sizes], order, turned)
+        if places is not None:
+            return [(x, y) for y, x in places]
     return None
 
 
@@ -62,7 +65,7 @@ def _orders(sizes: Sequence[Size]) -> Iterator[Sequence[int]]:
 
 
 def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:
-    """Each box as far up as it goes, then as far left; the skyline is what is below the boxes so far."""
+    """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
     skyline = [(0.0, field.width, 0.0)]  # from, to, down to
     places = [(0.0, 0.0)] * len(sizes)
     for k in order:
@@ -90,7 +93,7 @@ def _lowered(
     for left, right, depth in skyline:
         if left < start - 1e-9:
             yield left, min(right, start), depth
-        if left <= start + 1e-9 < right or left < start < right:
+        if left <= start + 1e-9 < right:
             yield start, end, down
         if right > end + 1e-9:
             yield max(left, end), right, depth

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-import cmath
-import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
 
 from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.draw.fonts import width
-from tmm_cli.draw.layout.writing import CELLS, DARK, LINE, wrap
+from tmm_cli.draw.fonts import corners
+from tmm_cli.draw.layout.writing import DARK, LINE, wrap
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
+from tmm_cli.vectors import Vector
 
 HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
 NARROW = 70.0  # mm: a heading is not broken into shorter lines
+CLOSE = 1.5  # mm between places that stand for a line
 AIR = 2.5  # mm between a heading and what is below it
 MOST = 3  # lines of a heading, and of each note
 
@@ -26,12 +29,13 @@ Size = tuple[float, float]
 class Picture(Drawing):
     """A drawing with its heading, no larger than they are.
 
-    longest: side (mm) that it was drawn for; figure: what is to scale (mm), at `mu` SI a millimetre.
+    longest: side (mm) that it was drawn for; figure: what is to scale (mm), at `mu` SI a millimetre; stem: its name.
     """
 
     longest: float = 0.0
     figure: Size | None = None
     mu: float = 1.0
+    stem: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,16 @@ def longest_for(usual: float) -> float:
     return usual if space is None or space.longest is None else space.longest
 
 
+def snug(
+    places: Sequence[complex], pad: float, least: float = 0.0, below: Callable[[float], float] = lambda _: 0.0
+) -> Size:
+    """The paper (mm) for places that are put on it without a scale; below: what is to be free there at its width."""
+    size, across, up, __ = extent(list(places) or [0j])
+    factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
+    width = max(factor * across + 2 * (MARGIN + pad), least)
+    return width, factor * up + 2 * (MARGIN + pad) + STRIP + below(width)
+
+
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
     """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
     if not on_large_sheet():
@@ -80,10 +94,10 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
 
 
 def picture(
-    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float = 1.0, *, longest: float,
-    notes: Sequence[str] = (),
+    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float = 1.0, *, notes: Sequence[str] = (),
+    usual: float = 0.0,
 ) -> Picture:  # fmt: skip
-    """What was drawn, cut out of its paper, below its title and notes."""
+    """What was drawn, cut out of its paper, below its title and notes. usual: its longest side if nothing says more."""
     drawn = list(marks)
     low, high = extremes(drawn)
     room = max((high - low).real, NARROW)
@@ -94,6 +108,7 @@ def picture(
             y += LINE * size
     low, high = extremes(drawn)
     moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
+    longest = max(figure) if figure else longest_for(usual or max((high - low).real, (high - low).imag))
     return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
 
 
@@ -113,7 +128,20 @@ def _reach(mark: Mark) -> Iterable[complex]:
         case Circle():
             return mark.centre - mark.radius * (1 + 1j), mark.centre + mark.radius * (1 + 1j)
         case Text():
-            long = width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
-            turn = cmath.rect(1, math.radians(mark.turn))
-            start = -CELLS[mark.align] * long
-            return [mark.at + turn * complex(x, y * mark.size) for x in (start, start + long) for y in (-0.5, 0.5)]
+            return corners(mark)
+
+
+def covering(marks: Iterable[Mark]) -> Vector:
+    """Places close together on lines and in texts, mm."""
+    found = [np.zeros(0, complex)]
+    for mark in marks:
+        low, high = extremes([mark])
+        if isinstance(mark, Line):
+            found += [a + (b - a) * np.linspace(0, 1, 2 + int(abs(b - a) / CLOSE)) for a, b in pairwise(mark.places)]
+        elif isinstance(mark, Text):
+            size = high - low
+            across, up = (np.linspace(0, length, 2 + int(length / CLOSE)) for length in (size.real, size.imag))
+            found.append((low + across[:, None] + 1j * up).ravel())
+        else:
+            found.append(np.array([low, high, (low + high) / 2]))
+    return np.concatenate(found)

@@ -13,7 +13,7 @@ from tmm_cli.plans.record import round_scale
 GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
 FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
-STEP = 1.1  # by which a drawing without a scale is made larger
+STEP = 1.04  # by which a drawing without a scale is made larger
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
 PAGES = 40  # of one sheet at most

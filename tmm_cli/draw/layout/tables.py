@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from tmm_cli.draw.drawing import Line, Mark, Text
 from tmm_cli.draw.fonts import width
@@ -32,7 +33,7 @@ def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes
     for part in range(parts):
         here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
         marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
-    return picture(marks, title, longest=longest, notes=notes)
+    return picture(marks, title, notes=notes, usual=longest)
 
 
 def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float) -> list[Mark]:
@@ -48,7 +49,7 @@ def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float)
         Line((complex(x, high[-1]), complex(x, 0)), DARK, BOLD if x in (0.0, edges[-1]) else FINE, layer="text")
         for x in edges
     ]
-    for k, (start, end) in enumerate(zip(edges, edges[1:], strict=False)):
+    for k, (start, end) in enumerate(pairwise(edges)):
         numbers = all(_number(line[k]) for line in cells[1:])
         for line, y in zip(cells, high, strict=False):
             if line[k]:

@@ -82,7 +82,8 @@ def _plain(titles: Titles) -> list[Mark]:
         (0, 24, 105, titles.title), (105, 24, 140, texts.code), (0, 16, 105, titles.subject),
         (105, 16, 140, _("sheet {number} of {count}").format(number=titles.number, count=titles.count)),
         (0, 8, 20, _("Student")), (20, 8, 85, texts.student), (85, 8, 105, _("Group")), (105, 8, 140, texts.group),
-        (0, 0, 20, _("Teacher")), (20, 0, 85, texts.teacher), (85, 0, 105, _("Department")), (105, 0, 140, texts.department),
+        (0, 0, 20, _("Teacher")), (20, 0, 85, texts.teacher), (85, 0, 105, _("Department")),
+        (105, 0, 140, texts.department),
     )  # fmt: skip
     for left, low, right, text in cells:
         marks += written(text, complex(left, low), complex(right, low + 8), USUAL, "left", lines=2)

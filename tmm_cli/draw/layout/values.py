@@ -16,7 +16,15 @@ from tmm_cli.errors import _
 from tmm_cli.plans.record import balance_name, reaction_name, subscript
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import (
-    ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, MOMENT, SPEED, Dimension,
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    SPEED,
+    Dimension,
 )  # fmt: skip
 from tmm_cli.results.reports import walk
 from tmm_cli.tolerances import NO_FORCE
