@@ -94,7 +94,7 @@ def test_sheets_are_full_and_nothing_on_them_overlaps(name):
 def test_scales_are_round(name):
     for sheet in drawn(name).values():
         for __, one in sheet.pictures:
-            if one.figure is not None:
+            if one.mu is not None:
                 assert any(one.mu / 10 ** np.floor(np.log10(one.mu * 1.000001)) == pytest.approx(f) for f in ROUND)
 
 

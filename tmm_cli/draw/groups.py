@@ -11,9 +11,9 @@ import numpy as np
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import Ground
-from tmm_cli.draw.layout.picture import on_large_sheet, snug
+from tmm_cli.draw.layout.picture import on_large_sheet
 from tmm_cli.draw.render import arrows, names, render, spot
-from tmm_cli.draw.room import Room
+from tmm_cli.draw.room import snug
 from tmm_cli.draw.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, safe
 from tmm_cli.draw.structure import Part, parts
@@ -49,7 +49,7 @@ def groups(
 def _alone(title: str, scene: Scene, part: Part, roles: Mapping[str, str]) -> Sheet:
     """One part on a large sheet, below its caption."""
     words = caption(part, scene.structure.pairs, roles, WORDS)
-    sheet = Sheet(title, words[0], room=Room(snug(scene.extent(part.links), PAD[0]), 1.0, 0j, None))
+    sheet = Sheet(title, words[0], room=snug(scene.extent(part.links), PAD[0], 0.0))
     sheet.remarks = words[1:]
     _part(sheet, scene, part, PAD[0])
     return sheet

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
@@ -45,13 +45,14 @@ class Figure:
 class Room:
     """paper (mm), SI a millimetre, where zero is on the paper (mm).
 
-    figure: width and height of what is to scale there, mm; None: nothing is.
+    figure: width and height of what is to scale there, mm; free: it is there without a scale.
     """
 
     paper: tuple[float, float]
     mu: float
     origin: complex
-    figure: tuple[float, float] | None = None
+    figure: tuple[float, float] = (0.0, 0.0)
+    free: bool = False
 
 
 def room(figure: Figure, block: Block) -> Room:
@@ -93,6 +94,18 @@ def _tight(places: Vector, off: Vector, about: Vector) -> Room:
     start, end = ground_of((0.0, 0.0))
     paper = size + start - end
     return Room((paper.real, paper.imag), mu, start - low, (across / mu, up / mu))
+
+
+def snug(
+    places: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
+) -> Room:
+    """For places (SI) that are put on a large sheet without a scale; below: what (mm) is free there at its width."""
+    size, across, up, __ = extent(list(places) or [0j])
+    factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
+    low, high = ground_of((0.0, 0.0))
+    figure = factor * across, factor * up
+    paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
+    return Room((paper.real, paper.imag), 1.0, 0j, figure, free=True)
 
 
 def scales(size: float) -> Iterator[float]:

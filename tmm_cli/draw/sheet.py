@@ -48,6 +48,7 @@ class Sheet:
         __, across, up, middle = extent(found)
         self.caption, self.remarks = caption, list[str]()
         self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
+        self.free = room.free if room else paper is not None
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
@@ -163,7 +164,8 @@ class Sheet:
         self.corner()
         self.settle()
         if on_large_sheet():
-            return picture(self.marks, self.caption, self.figure, self.mu, notes=self.remarks)
+            mu, usual = None if self.free else self.mu, max(self.figure or self.paper)
+            return picture(self.marks, self.caption, self.figure, mu, notes=self.remarks, usual=usual)
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:

@@ -18,6 +18,7 @@ PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 EDGE = 6.0  # mm between the frame and what is drawn
 LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
+NOTABLE = 1.06  # times larger: it is drawn again
 TRIES = 6  # of drawing all as large as it was thought to become
 
 
@@ -52,19 +53,29 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
     shrunk = max(paper) / max(PAPERS["A1"])
     sources = [source for source in CONTENTS if source.sheet == number]
     parts = [_first(source, choice, shrunk) for source in sources]
+    best: tuple[list[Picture], list[Page]] | None = None
     for __ in range(TRIES):
         every = [piece for part in parts for piece in part]
         rooms, pages = arranged(every, field, shrunk)
+        if best and (len(pages) > len(best[1]) or not _larger(rooms, best[0])):
+            return best
         wanted = iter(rooms)
-        parts = [
-            _again(source, choice, part, [*islice(wanted, len(part))])
-            for source, part in zip(sources, parts, strict=True)
-        ]
+        sized = zip(sources, parts, strict=True)
+        parts = [_again(source, choice, part, [*islice(wanted, len(part))]) for source, part in sized]
         pictures = [piece.drawn for part in parts for piece in part]
         sizes = [picture.paper for picture in pictures]
         if all(pack(spaced(sizes, page), field) is not None for page in pages):
-            return pictures, pages
-    return pictures, filled(sizes, field) or [[k] for k in range(len(sizes))]
+            best = pictures, pages
+        elif best:
+            return best
+        else:  # what proves larger than thought is not made larger again
+            parts = [[replace(piece, most=min(piece.most, piece.drawn.longest)) for piece in part] for part in parts]
+    return best or (pictures, filled(sizes, field) or [[k] for k in range(len(sizes))])
+
+
+def _larger(rooms: Sequence[float], drawn: Sequence[Picture]) -> bool:
+    """Whether it is worth while to draw all again."""
+    return any(room > NOTABLE * one.longest for room, one in zip(rooms, drawn, strict=True))
 
 
 def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
@@ -79,13 +90,11 @@ def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
 
 
 def _again(source: Source, choice: Choice, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
-    """The same in other rooms, where they are other ones; what proves too large there is not made larger again."""
+    """The same in other rooms, where they are other ones."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
     pictures = _drawn(source, choice, map(Space, rooms))
-    return [
-        replace(piece, drawn=picture, most=room) for piece, picture, room in zip(pieces, pictures, rooms, strict=True)
-    ]
+    return [replace(piece, drawn=picture) for piece, picture in zip(pieces, pictures, strict=True)]
 
 
 def _drawn(source: Source, choice: Choice, rooms: Iterable[Space]) -> list[Picture]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -29,12 +29,13 @@ Size = tuple[float, float]
 class Picture(Drawing):
     """A drawing with its heading, no larger than they are.
 
-    longest: side (mm) that it was drawn for; figure: what is to scale (mm), at `mu` SI a millimetre; stem: its name.
+    longest: side (mm) that it was drawn for; figure: what of it grows with that (mm), None: all; mu: SI a millimetre,
+    None where it is not to scale; stem: its name.
     """
 
     longest: float = 0.0
     figure: Size | None = None
-    mu: float = 1.0
+    mu: float | None = None
     stem: str = ""
 
 
@@ -69,16 +70,6 @@ def longest_for(usual: float) -> float:
     return usual if space is None or space.longest is None else space.longest
 
 
-def snug(
-    places: Sequence[complex], pad: float, least: float = 0.0, below: Callable[[float], float] = lambda _: 0.0
-) -> Size:
-    """The paper (mm) for places that are put on it without a scale; below: what is to be free there at its width."""
-    size, across, up, __ = extent(list(places) or [0j])
-    factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
-    width = max(factor * across + 2 * (MARGIN + pad), least)
-    return width, factor * up + 2 * (MARGIN + pad) + STRIP + below(width)
-
-
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
     """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
     if not on_large_sheet():
@@ -94,8 +85,8 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
 
 
 def picture(
-    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float = 1.0, *, notes: Sequence[str] = (),
-    usual: float = 0.0,
+    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float | None = None, *,
+    notes: Sequence[str] = (), usual: float = 0.0,
 ) -> Picture:  # fmt: skip
     """What was drawn, cut out of its paper, below its title and notes. usual: its longest side if nothing says more."""
     drawn = list(marks)
@@ -108,7 +99,7 @@ def picture(
             y += LINE * size
     low, high = extremes(drawn)
     moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
-    longest = max(figure) if figure else longest_for(usual or max((high - low).real, (high - low).imag))
+    longest = max(figure) if figure and mu else longest_for(usual or max((high - low).real, (high - low).imag))
     return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
 
 

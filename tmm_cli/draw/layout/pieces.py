@@ -31,7 +31,7 @@ class Piece:
     @property
     def length(self) -> float:
         """The longest side of the figure, SI; none where there is no scale."""
-        return max(self.drawn.figure) * self.drawn.mu if self.drawn.figure else 0.0
+        return max(self.drawn.figure) * self.drawn.mu if self.drawn.figure and self.drawn.mu else 0.0
 
     def fitted(self, room: float) -> float:
         """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
