@@ -57,6 +57,7 @@ class Sheet:
         self.marks: list[Mark] = []
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
+        self.faint = Ground(self.ground.low, self.ground.high)  # lines that labels may cover, and blocks may not
         self.block = Block()
         if not on_large_sheet():
             self._strip(title)
@@ -115,8 +116,7 @@ class Sheet:
         """A polyline through places (mm), of this width (points); places that are not finite interrupt it."""
         for stretch in whole_stretches(places):
             self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
-            for start, end in pairwise(stretch) if blocks else ():
-                self.ground.line(start, end)
+            (self.ground if blocks else self.faint).curve(stretch)
 
     def area(
         self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
@@ -193,7 +193,8 @@ class Sheet:
         if on_large_sheet():
             shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
         else:
-            shape, at = roomiest(self.block, self.ground.low, self.ground.high, self.ground.crowd)
+            crowd = np.concatenate([self.ground.crowd, self.faint.crowd])
+            shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
         for start, end in shape.lines:

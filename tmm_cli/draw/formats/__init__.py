@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from matplotlib.figure import Figure
-
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.fonts import lacking
 from tmm_cli.draw.formats.dxf import dxf
-from tmm_cli.draw.formats.figures import FIGURES
 from tmm_cli.draw.formats.pdf import pdf
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
@@ -17,17 +14,16 @@ from tmm_cli.errors import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
 OF_A_RUN = ("png", "svg")
-Drawn = Iterable[tuple[str, Drawing | Figure]]
+Drawn = Iterable[tuple[str, Drawing]]
 
 
 def files(drawn: Drawn, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
     """Every sheet in the formats of a run, by the name of its file; at last what there is to say of them all."""
     texts: set[str] = set()
     for stem, sheet in drawn:
-        if isinstance(sheet, Drawing):
-            texts.update(sheet.texts())
+        texts.update(sheet.texts())
         for kind in OF_A_RUN:
-            yield f"{stem}.{kind}", FORMATS[kind](sheet) if isinstance(sheet, Drawing) else FIGURES[kind](sheet)
+            yield f"{stem}.{kind}", FORMATS[kind](sheet)
     for note in lacking_in(texts):
         say(note)
 
