@@ -103,7 +103,7 @@ def snug(
     size, across, up, __ = extent(list(places) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
     low, high = ground_of((0.0, 0.0))
-    figure = factor * across, factor * up
+    figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too
     paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
     return Room((paper.real, paper.imag), 1.0, 0j, figure, free=True)
 
