@@ -15,7 +15,7 @@ from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Lin
 from tmm_cli.draw.fonts import SHARE
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
-from tmm_cli.draw.layout.picture import covering, extremes, on_large_sheet, paper_for, picture
+from tmm_cli.draw.layout.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.room import Room
 from tmm_cli.errors import _
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, ground_of
@@ -164,8 +164,11 @@ class Sheet:
         self.corner()
         self.settle()
         if on_large_sheet():
-            mu, usual = None if self.free else self.mu, max(self.figure or self.paper)
-            return picture(self.marks, self.caption, self.figure, mu, notes=self.remarks, usual=usual)
+            longest = max(self.figure or self.paper)
+            if self.free and self.figure:
+                longest = longest_for(longest)
+            mu = None if self.free else self.mu
+            return picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:

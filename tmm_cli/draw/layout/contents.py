@@ -89,7 +89,7 @@ CONTENTS = (
     Source(1, all_positions, 200),
     Source(1, motion_plans, 300, over="plans"),
     Source(1, motion_tables),
-    Source(1, diagrams, 160),
+    Source(1, diagrams, 240),
     Source(2, position, 200, over="detail"),
     Source(2, group_loads, 160, over="detail"),
     Source(2, forces, 100, over="detail"),

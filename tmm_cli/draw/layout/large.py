@@ -10,7 +10,7 @@ from itertools import chain, islice, repeat
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
-from tmm_cli.draw.layout.picture import Picture, Space, within
+from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
 from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 
@@ -86,7 +86,7 @@ def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
     if usual is None:
         least, most = LETTERS
         return [Piece(one, one.longest / shrunk, least * one.longest, most * one.longest) for one in pictures]
-    return [Piece(picture, usual) for picture in pictures]
+    return [Piece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
 
 
 def _again(source: Source, choice: Choice, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:

@@ -19,6 +19,7 @@ from tmm_cli.vectors import Vector
 HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
 NARROW = 70.0  # mm: a heading is not broken into shorter lines
 CLOSE = 1.5  # mm between places that stand for a line
+LEAST_PAPER = 170.0  # mm: longest side of a paper that is asked for; what is on it cannot be smaller
 AIR = 2.5  # mm between a heading and what is below it
 MOST = 3  # lines of a heading, and of each note
 
@@ -76,7 +77,7 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
         best, mu = sheet_scale(points, pad)
         return paper or best, mu
     if paper is not None:
-        factor = longest_for(max(paper)) / max(paper)
+        factor = max(longest_for(max(paper)), LEAST_PAPER) / max(paper)
         return (factor * paper[0], factor * paper[1]), 1.0
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(points)
@@ -85,10 +86,10 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
 
 
 def picture(
-    marks: Iterable[Mark], title: str, figure: Size | None = None, mu: float | None = None, *,
-    notes: Sequence[str] = (), usual: float = 0.0,
+    marks: Iterable[Mark], title: str, longest: float, figure: Size | None = None, mu: float | None = None,
+    notes: Sequence[str] = (),
 ) -> Picture:  # fmt: skip
-    """What was drawn, cut out of its paper, below its title and notes. usual: its longest side if nothing says more."""
+    """What was drawn, cut out of its paper, below its title and notes."""
     drawn = list(marks)
     low, high = extremes(drawn)
     room = max((high - low).real, NARROW)
@@ -99,7 +100,6 @@ def picture(
             y += LINE * size
     low, high = extremes(drawn)
     moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
-    longest = max(figure) if figure and mu else longest_for(usual or max((high - low).real, (high - low).imag))
     return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
 
 

@@ -33,7 +33,7 @@ def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes
     for part in range(parts):
         here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
         marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
-    return picture(marks, title, notes=notes, usual=longest)
+    return picture(marks, title, longest, notes=notes)
 
 
 def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float) -> list[Mark]:
