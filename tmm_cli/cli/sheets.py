@@ -7,8 +7,15 @@ from typing import Annotated, Literal
 
 import typer
 
-from tmm_cli.cli.common import OK, Files, Settings, Variant, Variants, each, say
+from tmm_cli import solve
+from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.reporting import write_sheets
+from tmm_cli.cli.talk import OK, say
+from tmm_cli.draw import remarks
+from tmm_cli.draw.layout.files import files_of_sheets, formats_of
 from tmm_cli.errors import _
+from tmm_cli.results.warnings import warnings
 
 
 def sheets(
@@ -26,13 +33,6 @@ def sheets(
     """Draw the sheets to hand in, framed and to scale, into DIR/<problem>/."""
 
     def work(file: str) -> int:
-        from tmm_cli import solve
-        from tmm_cli.cli.opening import opened, variant_settings
-        from tmm_cli.cli.reporting import write_sheets
-        from tmm_cli.draw import remarks
-        from tmm_cli.draw.layout.files import files_of_sheets, formats_of
-        from tmm_cli.results.warnings import warnings
-
         wanted = formats_of(formats)
         problem = opened(file, variant_settings(file, variants, variant, settings))
         results = solve(problem, "forces")

@@ -13,7 +13,7 @@ from tmm_cli.draw.equations import figure, table_of_arms, table_of_forces, writt
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.script import Words, filled
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.lever import POLE, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
@@ -40,12 +40,13 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
         if crank
         else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90° clockwise. {caption}")
     )
+    unit = "N·m" if crank else "N"
     pairs = [word for pair in plan.pairs for word in _pair(pair)]
-    lines = [*written(plan.equation), *([tuple(pairs)] if pairs else []), *_checked(here)]
+    lines = [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)]
     units = results.problem.units if crank else None
 
     def beneath(mu: float) -> Beneath:
-        return Beneath(lines, (table_of_forces(plan.acting), table_of_arms([plan.equation], units, mu)))
+        return Beneath(lines, (table_of_forces(plan.acting, unit), table_of_arms([plan.equation], units, mu)))
 
     sheet, text = above(here, title, [*((place, 0j) for place in places), *extent(plan.acting)], beneath)
     for bar in plan.bars:
@@ -54,7 +55,7 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     Forces(sheet).draw(plan.acting)
     arms(sheet, [plan.equation], bars)
     letter_points(sheet, plan.ends, POLE)
-    sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
