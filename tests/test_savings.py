@@ -13,13 +13,14 @@ import pytest
 from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
-from tmm_cli import load, solve, structure_of
+from tmm_cli import load, solve
 from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
 from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
 from tmm_cli.kinematics.motion import move
+from tmm_cli.library import structure_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
@@ -64,7 +65,7 @@ def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
 
 
 def test_the_structure_of_a_chain_in_space_builds_no_arrays():
-    from tmm_cli import count
+    from tmm_cli.library import count
     from tmm_cli.problem.build_chain import build_chain
     from tmm_cli.problem.reader import read_file
 

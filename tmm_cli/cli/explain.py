@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli import solve
 from tmm_cli.cli.common import Files, Settings, console, each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import OK
+from tmm_cli.library import solve
 from tmm_cli.results.explain import explain as tables
 from tmm_cli.results.in_words import in_words
 from tmm_cli.results.terminal import show

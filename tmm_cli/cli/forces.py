@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tmm_cli import solve
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report
+from tmm_cli.library import solve
 
 
 def forces(

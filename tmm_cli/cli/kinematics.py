@@ -8,13 +8,13 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli import assemblies, solve
 from tmm_cli.assembly.enumerate import listed
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.library import assemblies, solve
 
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")

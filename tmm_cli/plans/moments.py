@@ -14,7 +14,9 @@ from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.leads import Lead, assur_point, hinges_of, leads_of
+from tmm_cli.plans.projections import ForceSum, along_guides, of_driver
 from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.velocity import other_than
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
 from tmm_cli.vectors import dot
@@ -56,8 +58,8 @@ class Sought:
 class MomentEquation:
     """The moments about a point of all that acts on some links come to nothing; forces through it are left out.
 
-    sought: None where all reactions of the group are found at once. Its term is missing where it has no moment: a part
-    of a reaction is nothing then, and a guide's reaction goes through the point.
+    special: the point is one of Assur. sought: None where all reactions of the group are found at once. Its term is
+    missing where it has no moment: a part of a reaction is nothing then, and a guide's reaction goes through the point.
     """
 
     links: tuple[str, ...]
@@ -65,6 +67,7 @@ class MomentEquation:
     centre: complex
     terms: tuple[Term, ...]
     sought: Sought | None = None
+    special: bool = False
 
     @property
     def found(self) -> Term | None:
@@ -86,11 +89,13 @@ class MomentEquation:
 
 @dataclass(frozen=True)
 class LoadedPart:
-    """A group, or a driving link, apart: all that acts on it from without, and its equations of moments."""
+    """A group, or a driving link, apart: all that acts on it from without, its equations of moments, and sums along
+    its guides."""
 
     links: tuple[str, ...]
     acting: tuple[Acting, ...]
     equations: tuple[MomentEquation, ...]
+    sums: tuple[ForceSum, ...] = ()
     driving: bool = False
 
 
@@ -110,7 +115,8 @@ def _group(here: Loaded, forces: GroupForces) -> LoadedPart:
         equations = [_equation(here, axes, (link,), *_hinge(here, group, link)) for link in group.links]
     else:
         equations += _of_guides(here, group, axes)
-    return LoadedPart(group.links, here.acting(group.links, axes), numbered(equations))
+    sums = along_guides(here, group, leads, axes)
+    return LoadedPart(group.links, here.acting(group.links, axes), numbered(equations), sums)
 
 
 def _of_leads(
@@ -131,7 +137,8 @@ def _of_leads(
         # of a guide's reaction the moment about its link's hinge is known by now, but not where it acts
         carried = {other.pair.name: other.rest[0] for other in leads if other.pair.slide is not None and other.rest}
         sought = _part(group, lead.pair, lead.open_part)
-        yield _equation(here, axes, group.links, SPECIAL, centre, sought, carried)
+        name = other_than({point for link in here.motion.linkage.links.values() for point in link.points}, SPECIAL)
+        yield replace(_equation(here, axes, group.links, name, centre, sought, carried), special=True)
 
 
 def _of_teeth(here: Loaded, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:
@@ -165,7 +172,8 @@ def _driving(here: Loaded, frame: Reaction) -> LoadedPart:
         turns = balance.kind == "moment"
         sought = Sought(balance_symbol(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
     equation = _equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
-    return LoadedPart((link,), here.acting((link,), {}), numbered([equation]), driving=True)
+    sums = of_driver(here, pair) if pair.slide is not None else ()
+    return LoadedPart((link,), here.acting((link,), {}), numbered([equation]), sums, driving=True)
 
 
 def _part(group: Group, pair: Pair, kind: Kind) -> Sought:
