@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.double_double.number import DoubleDouble, Pair, parts
+from tmm_cli.double_double.number import DoubleDouble, Pair, exactly, parts
 
 SPLIT = 2.0**27 + 1  # tears a double into two halves of 26 bits
 LARGEST_POWER = 8  # that is multiplied out
@@ -145,7 +145,7 @@ def absolute(x: DoubleDouble) -> DoubleDouble:
 
 def power(x: Any, n: Any) -> DoubleDouble:
     """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
-    number = float(n)
+    x, number = exactly(x), float(n)
     if number == 0.5:
         return sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:
