@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
@@ -124,6 +126,7 @@ def above(
         return replace(beneath(mu), aside=True)
 
     low, high = ground_of(PORTRAIT)
+    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     alone = _best(places, lambda mu: Beneath())
     best = _best(places, beneath, with_tables_aside)
     if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
