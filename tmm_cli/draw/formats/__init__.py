@@ -7,12 +7,13 @@ from functools import partial
 
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.fonts import lacking
+from tmm_cli.draw.formats.dxf import dxf
 from tmm_cli.draw.formats.pdf import pdf
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
 from tmm_cli.errors import _
 
-FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf}
+FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
 Written = list[tuple[str, bytes]]
@@ -38,12 +39,19 @@ def in_parts(
     for written, lost in way([partial(_written, part) for part in parts]):
         boxes |= lost
         yield from written
-    if boxes:
-        text = _("note: the font of the drawings lacks these characters, boxes stand for them: {characters}")
-        say(text.format(characters=" ".join(sorted(boxes))))
+    for note in lacking_in(boxes):
+        say(note)
 
 
 def _written(part: Callable[[], Drawn]) -> tuple[Written, set[str]]:
     every = list(part())
     lost = lacking("".join(text for __, sheet in every for text in sheet.texts()))
     return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in every for kind in OF_A_RUN], lost
+
+
+def lacking_in(texts: Iterable[str]) -> Iterable[str]:
+    """What there is to say of characters that no drawing can show."""
+    boxes = lacking("".join(texts))
+    if boxes:
+        text = _("note: the font of the drawings lacks these characters, boxes stand for them: {characters}")
+        yield text.format(characters=" ".join(sorted(boxes)))
