@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.draw.annotations import beside, dimension
 from tmm_cli.draw.drawing import Style
-from tmm_cli.draw.labels import STEP
+from tmm_cli.draw.ground import STEP
 from tmm_cli.draw.mechanism import LOAD_MM, couple
 from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, Sheet

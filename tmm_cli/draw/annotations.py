@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import aside, extent, row
+from tmm_cli.draw.boxes import around, aside, row
+from tmm_cli.draw.labels import extent
 from tmm_cli.draw.sheet import DARK, NAMES, THIN, Sheet
 from tmm_cli.vectors import Vector, cross, dot
 
@@ -60,7 +61,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         found += beside(crowd, *stretch, 1.5)
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
-        found += sum(sheet.ground.covered(z, height, height, crowd) for z in squares)
+        found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())
         return found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5}.get(stand, 0.0)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
@@ -113,4 +114,4 @@ def _angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, na
     for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
         if abs(turn) * radius > 7:
             sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK, 0.5, 4.5)
-    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic", far=True)
+    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic")

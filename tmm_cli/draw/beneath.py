@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.draw.drawing import POINT
-from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.ground import Ground
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.script import Words, width, wrapped
 from tmm_cli.draw.sheet import DARK, GREY_TEXT, THIN, Sheet

@@ -100,7 +100,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
         at = sheet.on(scene.point(name))
         if sum(name in link.points for link in linkage.links.values()) == 1:
             sheet.circle(at, 0.6, face=DARK)
-        sheet.label(", ".join(called), at, 10, far=bool(mark) and name in moving)
+        sheet.label(", ".join(called), at, 10)
     for link, form in drawn.forms.items():
         sheet.label(link, form.middle, 10, NAMES, "italic")
     return drawn
@@ -117,7 +117,7 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
     """One position as thin lines."""
     for link in scene.linkage.moving:
         for edge in by_points(sheet, scene, link).edges:
-            sheet.line(edge, colour, width, z=z, blocks=False)
+            sheet.line(edge, colour, width, z=z, faint=True)
 
 
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
@@ -127,7 +127,7 @@ def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
     used = [*fixed_pivots(results.linkage), *(p for path in paths for p in path)]
     sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
     for path in paths:
-        sheet.line([sheet.on(complex(p)) for p in path], THIN, 0.7, "--", 1.5, blocks=False)
+        sheet.line([sheet.on(complex(p)) for p in path], THIN, 0.7, "--", 1.5, faint=True)
     return sheet
 
 
