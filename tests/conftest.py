@@ -5,13 +5,19 @@ That is what it is on Windows and on processors of Apple: results must be as goo
 
 from __future__ import annotations
 
+import gc
 import os
+import sys
 
 import numpy as np
 from hypothesis import settings
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.load_profile("steady")
+
+gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often
+sys.dont_write_bytecode = False  # or each process that a test starts would compile the whole product
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 if os.environ.get("TMM_LONGDOUBLE") == "double":  # before any module of tmm_cli is imported
     np.longdouble, np.clongdouble = np.double, np.cdouble

@@ -194,7 +194,7 @@ def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coef
 
 
 def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr("tmm_cli.draw.formats.FORMATS", {"png": lambda figure: b""})
+    monkeypatch.setattr("tmm_cli.draw.formats.FORMATS", dict.fromkeys(("png", "svg"), lambda drawing: b""))
     text = changed(blocks.SLIDER, "coefficient: 0.1", "coefficient: 10") + "positions: {count: 12, detail: [9]}\n"
     file = tmp_path / "locked.yaml"
     file.write_text(text, encoding="utf-8")

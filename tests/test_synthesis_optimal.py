@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -47,6 +48,7 @@ ROD = """
 """
 
 
+@cache
 def slider(options):
     return build(read_text(SLIDER.replace("OPTIONS", options.strip("\n")), "x.yaml"))
 
@@ -55,9 +57,9 @@ def parameters(problem):
     return {name: value.value for name, value in problem.synthesis.outcome.parameters.items()}
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", ["", "  seed: 2\n"])
 def test_the_shortest_rod_that_keeps_a_pressure_angle_is_that_of_the_closed_formula(seed):
-    problem = slider(ROD + f"  seed: {seed}\n")
+    problem = slider(ROD + seed)
     known = find(Task(stroke=0.12, k=1.08, pressure=np.radians(32)))
     found = parameters(problem)
     assert [found["OA"], found["AB"], found["e"]] == pytest.approx([known.r, known.l, known.e], rel=1e-9)
@@ -75,7 +77,7 @@ def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told(
 
 
 def test_the_same_seed_gives_the_same_answer_to_the_last_bit():
-    assert parameters(slider(ROD)) == parameters(slider(ROD))
+    assert parameters(slider.__wrapped__(ROD)) == parameters(slider(ROD))
 
 
 def test_least_pressure_angle_of_a_crank_slider_is_the_least_that_its_k_allows():

@@ -78,6 +78,7 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
     One that would lie on a link stands beside it as a dimension. links: points (mm) that stand for them.
     """
     drawn: set[int] = set()
+    beside_links: list[tuple[complex, complex, str]] = []
     for equation in equations:
         centre = sheet.on(equation.centre)
         feet: list[complex] = []
@@ -89,7 +90,7 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
             sheet.line([at, foot], ARM, 0.45, "--", 1.6)
             length = abs(foot - centre)
             if length > LEAST and beside(links, centre, foot, ON_BAR) > COVERED * length / STEP:
-                dimension(sheet, centre, foot, term.letter.name)
+                beside_links.append((centre, foot, term.letter.name))
                 continue
             sheet.line([centre, foot], ARM, 0.7, z=4.6)
             # arms in one line share its beginning: each letter stands at the part that no shorter one has
@@ -100,6 +101,8 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
             feet.append(foot)
             if length > LEAST:
                 _right_angle(sheet, foot, way, at)
+    for centre, foot, name in beside_links:  # now that all is drawn that they keep off
+        dimension(sheet, centre, foot, name)
 
 
 def _right_angle(sheet: Sheet, foot: complex, way: complex, at: complex) -> None:

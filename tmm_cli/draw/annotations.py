@@ -58,7 +58,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
         found = 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
-        found += beside(crowd, *stretch, 1.5)
+        found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed(((start, first), (end, last), stretch))
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
         found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())

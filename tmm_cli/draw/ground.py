@@ -94,6 +94,12 @@ class Ground:
         turns = CORNERS if radius < 4 * STEP else np.exp(1j * np.linspace(0, 2 * np.pi, int(6 * radius / STEP)))
         self.path([complex(corner) for corner in place + radius * turns])
 
+    def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
+        """The price of texts that these straight lines would run through."""
+        if not self.boxes:
+            return 0.0
+        return LINE * float(np.count_nonzero(runs(np.array(self.boxes), *np.array(lines).T)))
+
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
         wide = wider(boxes, AIR)

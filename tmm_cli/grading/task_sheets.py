@@ -61,8 +61,10 @@ body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:52rem;margin:2r
 h1{font-size:1.35rem;margin:0}h2{font-size:1.05rem;margin:1.6rem 0 .3rem}.who{font-size:1.1rem;margin:.2rem 0 1rem}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 th,td{text-align:left;padding:.25rem 1.2rem .25rem 0;border-bottom:1px solid #ddd}
-th{border-bottom:2px solid #1a1a1a}img{width:100%;margin:1rem 0}.note{color:#555;font-size:.87rem}
-@media print{body{margin:0;max-width:none;font-size:10.5pt}tr,li,img{break-inside:avoid}@page{margin:18mm}}
+th{border-bottom:2px solid #1a1a1a}.note{color:#555;font-size:.87rem}
+img{display:block;max-width:100%;max-height:36rem;margin:1rem auto}
+@media print{body{margin:0;max-width:none;font-size:10.5pt}img{max-height:130mm}
+tr,li,img{break-inside:avoid}h2{break-after:avoid}@page{margin:18mm}}
 """
 SAFE = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 

@@ -23,7 +23,9 @@ from tmm_cli.results.table import Column
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
+MARKS_WIDTH, ANSWERS_WIDTHS = 13.0, (16.0, 24.0, 24.0, 9.0, 8.0)  # of columns between the first and the last, letters
 ANSWERS_HEADER = ("student", "asked", "answer", "right value", "error, %", "points", "reasons")
+HEAD_HEIGHT = 32  # points: two lines
 WRITTEN = datetime(2000, 1, 1)  # the same marks give the same bytes
 PLAIN = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
 
@@ -46,8 +48,9 @@ def _workbook(book: Gradebook) -> bytes:
         workbook.set_properties({"created": WRITTEN, "title": "marks"})
         formats = {name: workbook.add_format({"bg_color": colour}) for name, colour in COLOURS.items()}
         head = workbook.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
-        _sheets(workbook, "Marks", marks_header(book), marks_rows(book), formats, head)
-        _sheets(workbook, "Answers", ANSWERS_HEADER, _answers(book), formats, head)
+        marks = marks_header(book)
+        _sheets(workbook, "Marks", marks, marks_rows(book), formats, head, [MARKS_WIDTH] * (len(marks) - 2))
+        _sheets(workbook, "Answers", ANSWERS_HEADER, _answers(book), formats, head, ANSWERS_WIDTHS)
         _group(workbook, book, head)
     return stream.getvalue()
 
@@ -58,13 +61,14 @@ def _answers(book: Gradebook) -> Iterator[list[Cell]]:
         name = shown(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
             value = answer.text(mark.right) if mark.judged else ""
-            error = finite(100 * mark.error) if mark.value is not None else None
+            error = finite(float(f"{100 * mark.error:.3g}")) if mark.value is not None else None
             yield [name, answer.name, written(answer, mark), value, error, mark, reasons(mark)]
 
 
 def _sheets(
-    workbook: Any, name: str, header: Sequence[str], rows: Iterable[Sequence[Cell]], formats: dict[str, Any], head: Any
-) -> None:
+    workbook: Any, name: str, header: Sequence[str], rows: Iterable[Sequence[Cell]], formats: dict[str, Any], head: Any,
+    widths: Sequence[float],
+) -> None:  # fmt: skip
     """A table, on further sheets where one cannot hold it."""
     rows = iter(rows)
     for number in count(1):
@@ -74,9 +78,12 @@ def _sheets(
             return
         sheet = workbook.add_worksheet(name if number == 1 else f"{name} {number}")
         sheet.freeze_panes(1, 1)
-        sheet.set_column(0, 0, 24)
-        sheet.set_column(1, len(header) - 2, 10)
-        sheet.set_column(len(header) - 1, len(header) - 1, 60)
+        for k, width in enumerate((24.0, *widths, 60.0)):
+            sheet.set_column(k, k, width)
+        sheet.set_landscape()
+        sheet.fit_to_pages(1, 0)  # as wide as a page, as long as it takes
+        sheet.repeat_rows(0)
+        sheet.set_row(0, HEAD_HEIGHT)
         for k, text in enumerate(header):
             sheet.write_string(0, k, text, head)
         last = 0
@@ -100,7 +107,9 @@ def _group(workbook: Any, book: Gradebook, head: Any) -> None:
     """All tables of the group, one below the other."""
     sheet, at = workbook.add_worksheet("Group"), 0
     sheet.set_column(0, 0, 40)
-    sheet.set_column(1, 7, 14)
+    sheet.set_column(1, 7, 18)
+    sheet.set_landscape()
+    sheet.fit_to_pages(1, 0)
     title = workbook.add_format({"bold": True, "font_size": 13})
     for table in tables(book.task, book.marks):
         sheet.write_string(at, 0, table.title, title)
