@@ -1,6 +1,6 @@
 """What the texts of a drawing cover: other texts, lines, rims of circles, heads of arrows; by how many millimetres.
 
-A text covers what the box of its letters' ink meets. What lies under a white field on which it is written is hidden,
+A text covers what the box of its letters' ink meets. What lies under a filled field on which it is written is hidden,
 and so not covered. Nothing here is shared with the code that puts labels where they are.
 """
 
@@ -120,7 +120,7 @@ def _hidden(drawing: Drawing, boxes: Any) -> Any:
     """Whether a mark is hidden from a text, by a filled field about the text that was drawn over the mark."""
     hidden = np.zeros((len(boxes), len(drawing.marks)), bool)
     for number, mark in enumerate(drawing.marks):
-        if isinstance(mark, Area) and len(mark.corners) == 4:
+        if isinstance(mark, Area):
             corners = np.array(mark.corners)
             sides = np.roll(corners, -1) - corners
             off = (sides.conj()[:, None, None] * (boxes[None] - corners[:, None, None])).imag

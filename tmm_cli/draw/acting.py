@@ -21,6 +21,7 @@ ARM = "#00757d"
 ALIKE, LONGER = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
 NEAR, RIGHT = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
 LEAST, ON_BAR, COVERED = 5.0, 0.6, 0.6  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
+SEEN = 1.5  # mm: a shorter arm is only in the table
 RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 
 
@@ -87,8 +88,10 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
                 continue
             drawn.add(term.number)
             at, foot = sheet.on(term.acting.at), sheet.on(term.foot)
-            sheet.line([at, foot], ARM, 0.45, "--", 1.6)
+            sheet.line([at, foot], ARM, 0.45, "--", 1.6, faint=True)
             length = abs(foot - centre)
+            if length < SEEN:
+                continue
             if length > LEAST and beside(links, centre, foot, ON_BAR) > COVERED * length / STEP:
                 beside_links.append((centre, foot, term.letter.name))
                 continue

@@ -58,7 +58,8 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
         found = 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
-        found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed(((start, first), (end, last), stretch))
+        legs = [(z, foot + 2 * OVER * side) for z, foot in ((start, first), (end, last))]
+        found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
         found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())
@@ -69,7 +70,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
-            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4)
+            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4, faint=True)
     if not inner:
         sheet.line([first, last], DARK, 0.6, z=4.5)
     backs = (last, first) if inner else (first - 2 * HEAD * u, last + 2 * HEAD * u)  # of short ones heads from outside

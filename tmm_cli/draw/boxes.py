@@ -89,6 +89,20 @@ def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, 
         yield tuple(stretch)
 
 
+def crossing(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
+    """Whether each straight line crosses each of others: (line, other)."""
+    way, other = (ends - starts)[:, None], lasts - firsts
+
+    def side(along: NDArray[Any], off: NDArray[Any]) -> NDArray[Any]:
+        found: NDArray[Any] = (along.conj() * off).imag
+        return found
+
+    parted = side(way, firsts - starts[:, None]) * side(way, lasts - starts[:, None]) < 0
+    back = side(other, starts[:, None] - firsts) * side(other, ends[:, None] - firsts) < 0
+    found: NDArray[Any] = parted & back
+    return found
+
+
 def shared(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     """The area that each box shares with each other one, mm²."""
     left, right, low, high = boxes.T[:, :, None]

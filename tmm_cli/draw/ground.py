@@ -98,7 +98,7 @@ class Ground:
         """The price of texts that these straight lines would run through."""
         if not self.boxes:
             return 0.0
-        return LINE * float(np.count_nonzero(runs(np.array(self.boxes), *np.array(lines).T)))
+        return TEXT * float(np.count_nonzero(runs(np.array(self.boxes), *np.array(lines).T)))
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_cli.draw import script
-from tmm_cli.draw.boxes import Boxes, around, asides, gaps, nearest, runs
+from tmm_cli.draw.boxes import Boxes, around, asides, crossing, gaps, nearest, runs
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.ground import LINE, Ground, over
 
@@ -23,7 +23,7 @@ FIRST = 3  # rings that are looked at together first, later ones if there is not
 LEADER = 4.0  # mm from which a line leads from a place to its label
 SHORT = 0.5  # mm by which it ends before the label
 FARTHER, LED, MIDDLE = 0.35, 2.0, 3.0  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
-MISTAKEN, CROSSED = 6.0, 0.4  # of standing nearer to what has another name, of a mm of a leader among lines
+MISTAKEN, CROSSED = 6.0, 0.2  # of standing nearer to what has another name, of a line that a leader crosses
 ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
 CONTENT = 1.5
 SAME = 0.5  # mm: nearer places are one
@@ -80,16 +80,14 @@ class Choice:
             led = away > LEADER
             ends = np.where(led, feet + off * (1 - SHORT / np.maximum(away, SHORT)), feet)
             price = asked + LED * led + self.ground.price(boxes) + self._mistaken(middles, boxes, away, led)
-            if led.any():
-                price[led] += self._crossing(feet[led], ends[led])
+            price[led] += self._crossing(feet[led], ends[led])
             yield Places(middles, boxes, feet, ends, price)
 
     def _crossing(self, feet: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
-        """The price of leaders that run through texts."""
-        texts = np.array(self.ground.boxes)
-        if not len(texts):
-            return np.zeros(len(feet))
-        found: NDArray[Any] = LINE * (runs(texts, feet, ends) > 0).sum(axis=0)
+        """The price of leaders that run through texts, or over lines."""
+        texts, lines = np.array(self.ground.boxes), self.ground.solid.all
+        through = runs(texts, feet, ends) > 0 if len(texts) else np.zeros((0, len(feet)))
+        found: NDArray[Any] = LINE * through.sum(axis=0) + CROSSED * crossing(feet, ends, *lines.T).sum(axis=1)
         return found
 
     def _mistaken(self, middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]) -> NDArray[Any]:

@@ -183,7 +183,7 @@ class Sheet:
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
             if placed.leader:
-                self.line(placed.leader, THIN, 0.5, z=1.1)
+                self.line(placed.leader, THIN, 0.5, z=1.1, faint=True)
         self.labels.clear()
 
     def along(self, at: complex, text: str, size: float, along: complex) -> None:
