@@ -12,8 +12,9 @@ from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.ground import Ground
 from tmm_cli.draw.labels import Label, extent, place
-from tmm_cli.draw.mechanism import all_positions, detailed, position
+from tmm_cli.draw.mechanism import detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.positions import all_positions
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

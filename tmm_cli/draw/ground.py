@@ -44,6 +44,16 @@ class Pieces:
             self.fresh.clear()
         return self.found
 
+    @property
+    def crowd(self) -> NDArray[Any]:
+        """Points on them, close together."""
+        starts, ends = self.all.T
+        counts = np.maximum(2, (np.abs(ends - starts) / STEP).astype(int))
+        whose = np.repeat(np.arange(len(counts)), counts)
+        number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
+        found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
+        return found
+
     def inside(self, boxes: Boxes) -> NDArray[Any]:
         """How long they are in each box, in all."""
         starts, ends = self.all.T
@@ -73,13 +83,8 @@ class Ground:
 
     @property
     def crowd(self) -> NDArray[Any]:
-        """Points on solid lines, close together."""
-        starts, ends = self.solid.all.T
-        counts = np.maximum(2, (np.abs(ends - starts) / STEP).astype(int))
-        whose = np.repeat(np.arange(len(counts)), counts)
-        number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
-        found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
-        return found
+        """Points on solid lines."""
+        return self.solid.crowd
 
     def line(self, start: complex, end: complex) -> None:
         """A line is in the way."""

@@ -118,7 +118,7 @@ class Sheet:
             if faint:
                 self.faint.append(len(self.marks))
             self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
-            if blocks:
+            if faint or blocks:
                 (self.ground.faint if faint else self.ground.solid).path(stretch)
 
     def area(
@@ -196,7 +196,8 @@ class Sheet:
         """Put notes and table where they cover the least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
-        shape, at = roomiest(self.block, self.ground.low, self.ground.high, self.ground.crowd)
+        crowd = np.concatenate([self.ground.crowd, self.ground.faint.crowd])
+        shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
         for start, end in shape.lines:

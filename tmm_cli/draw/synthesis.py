@@ -99,7 +99,7 @@ def extremes(results: Results) -> Sheet:
     for other in others:
         skeleton(sheet, other, INERTIA, 1.6, 2.9)
         for link in linkage.moving:
-            for start, end in by_points(sheet, other, link).edges:
+            for start, end in by_points(sheet, other, link, whole=False).edges:
                 sheet.ground.line(start, end)
         for pair in results.structure.pairs:
             if pair.slide is not None and pair.name not in cylinders(linkage):
