@@ -113,4 +113,4 @@ def _right_angle(sheet: Sheet, foot: complex, way: complex, at: complex) -> None
     back, side = -RIGHT * way, RIGHT * 1j * way
     if dot(side, at - foot) < 0:
         side = -side
-    sheet.line([foot + back, foot + back + side, foot + side], ARM, 0.45, z=4.6, blocks=False)
+    sheet.line([foot + back, foot + back + side, foot + side], ARM, 0.45, z=4.6)

@@ -99,6 +99,10 @@ class Ground:
         turns = CORNERS if radius < 4 * STEP else np.exp(1j * np.linspace(0, 2 * np.pi, int(6 * radius / STEP)))
         self.path([complex(corner) for corner in place + radius * turns])
 
+    def free(self, box: Box) -> bool:
+        """Whether a text there covers nothing."""
+        return bool(self.price(np.array([box]))[0] < LINE)
+
     def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
         """The price of texts that these straight lines would run through."""
         if not self.boxes:
