@@ -38,7 +38,9 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
-    stands = tuple(BETWEEN) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
+    stands = (
+        tuple(BETWEEN) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT) + ("wider",) * inner
+    )
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
@@ -47,7 +49,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         middle = first + BETWEEN.get(stand, 0.5) * (last - first)
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
-        if stand not in BETWEEN:
+        if stand in ("after", "before"):
             reach = 2 * HEAD + 1.5 + width / 2
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * up_of(u), u
@@ -63,7 +65,9 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
         found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())
-        return found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5}.get(stand, 0.0)
+        return (
+            found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}.get(stand, 0.0)
+        )
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
     side, offset, stand = min(choices, key=lambda one: cost(*one))

@@ -86,6 +86,13 @@ class Ground:
         """Points on solid lines."""
         return self.solid.crowd
 
+    @property
+    def written(self) -> NDArray[Any]:
+        """Points in all texts."""
+        left, right, low, high = np.reshape(np.array(self.boxes), (-1, 4)).T
+        found: NDArray[Any] = np.linspace(left, right, 5)[:, None] + 1j * np.linspace(low, high, 2)
+        return found.ravel()
+
     def line(self, start: complex, end: complex) -> None:
         """A line is in the way."""
         self.solid.path([start, end])

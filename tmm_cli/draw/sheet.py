@@ -196,7 +196,7 @@ class Sheet:
         """Put notes and table where they cover the least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
-        crowd = np.concatenate([self.ground.crowd, self.ground.faint.crowd])
+        crowd = np.concatenate([self.ground.crowd, self.ground.faint.crowd, self.ground.written])
         shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
