@@ -14,6 +14,7 @@ OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, 
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
+UNWISHED = {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}  # price of where a text stands
 BETWEEN = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
 
@@ -38,9 +39,8 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
-    stands = (
-        tuple(BETWEEN) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT) + ("wider",) * inner
-    )
+    others = ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT) + ("wider",) * inner
+    stands = tuple(BETWEEN) if fits else others
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
@@ -65,9 +65,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = (first, last, *row(middle, v, width, height))
         found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())
-        return (
-            found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}.get(stand, 0.0)
-        )
+        return found + 0.25 * offset + UNWISHED.get(stand, 0.0)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
     side, offset, stand = min(choices, key=lambda one: cost(*one))

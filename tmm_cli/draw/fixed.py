@@ -24,9 +24,8 @@ def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = M
     def lost(out: complex) -> float:
         """Of its ground, mm, and more for a rod through its triangle."""
         ground = free_runs(-GROUND * half, GROUND * half, _all_covered(rods, at + height * out, 1j * out, out))
-        return (
-            2 * GROUND * half - sum(high - low for low, high in ground) + 2 * half * sum(through(r, out) for r in rods)
-        )
+        free = sum(high - low for low, high in ground)
+        return 2 * half * (GROUND + sum(through(rod, out) for rod in rods)) - free
 
     def through(rod: Line, out: complex) -> bool:
         places = _places(rod) - at

@@ -18,7 +18,7 @@ from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_text, with_unit
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
@@ -115,6 +115,6 @@ def extremes(results: Results) -> Sheet:
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
             sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA)
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("I: start of the working stroke, II: its end"))
     return sheet
