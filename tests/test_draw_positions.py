@@ -16,6 +16,8 @@ from tmm_cli.draw.positions import all_positions, ratio
 from tmm_cli.draw.ruler import TICK, spread
 from tmm_cli.draw.tracks import extreme_states, extremes, output_track
 from tmm_cli.plans.record import ground_of
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
 
 
 def sheet_of(name):
@@ -156,3 +158,24 @@ def test_numbers_beside_the_way_do_not_cover_one_another(name):
             across = min(high.real, other_high.real) - max(low.real, other_low.real)
             up = min(high.imag, other_high.imag) - max(low.imag, other_low.imag)
             assert min(across, up) < 0.3
+
+
+def test_the_way_of_a_point_or_of_a_coupler_is_told_in_words():
+    """Its ends lie on a curve, not on a line or about a pivot."""
+    text = (ROOT / "problems" / "six-bar.yaml").read_text(encoding="utf-8")
+    results = solve(build(read_text(text.replace("output: 5", "output: K"), "x.yaml")), "kinematics")
+    ((__, sheet),) = all_positions(results)
+    assert f"H = {1000 * results.strokes.travel:.4g} mm" in sheet.texts()
+    assert not dimensions(sheet, Area)
+
+
+def test_numbers_of_the_working_stroke_stand_outside_and_the_sheet_says_so():
+    __, sheet = sheet_of("shaper")
+    assert "outer numbers: working stroke" in sheet.texts()
+    (stroke,) = [mark for mark in sheet.marks if isinstance(mark, Text) and mark.text.startswith("H = ")]
+    # H is dimensioned beyond the outer numbers; 3 is in the working stroke, 9 in the idle one
+    outer, inner = (
+        min(abs(mark.at.imag - stroke.at.imag) for mark in sheet.marks if isinstance(mark, Text) and mark.text == text)
+        for text in "39"
+    )
+    assert outer < inner - 4

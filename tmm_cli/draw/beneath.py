@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.ground import Ground
@@ -17,6 +18,7 @@ TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 MOST = 0.5  # of a sheet: more than this is written on another one
+LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
 HANGING = " " * 8
 PAPERS = (LANDSCAPE, PORTRAIT)
 
@@ -33,7 +35,7 @@ class Table:
         """In one column, mm."""
         return complex(sum(self.widths), ROW * (len(self.rows) + 1.5))
 
-    @property
+    @cached_property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
@@ -105,26 +107,24 @@ def above(
     here: Position, title: str, places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath],
     **words: str,
 ) -> tuple[Sheet, Sheet | None]:  # fmt: skip
-    """A sheet for a drawing with what is written by it; on a sheet of its own where that is much.
+    """A sheet for a drawing with what is written by it; this is on a sheet of its own where it is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
     millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
+
+    def with_tables_aside(mu: float) -> Beneath:
+        return replace(beneath(mu), aside=True)
+
     low, high = ground_of(PORTRAIT)
-    if beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
-
-        def with_tables_aside(mu: float) -> Beneath:
-            return replace(beneath(mu), aside=True)
-
-        ways = (beneath, with_tables_aside)
-        sheet, mu = _sheet(name, subject, [_placed(paper, places, way) for way in ways for paper in PAPERS])
-        return sheet, None
-    sheet, mu = _sheet(name, subject, [_placed(paper, places, lambda mu: Beneath()) for paper in PAPERS])
-    further = Sheet(name, subject, paper=PORTRAIT)
-    written = beneath(mu)
+    alone = _best(places, lambda mu: Beneath())
+    best = _best(places, beneath, with_tables_aside)
+    if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
+        return _sheet(name, subject, best), None
+    written, further = beneath(alone.mu), Sheet(name, subject, paper=PORTRAIT)
     written.put(further, low + 1j * written.left(low, high).imag, high)
-    return sheet, further
+    return _sheet(name, subject, alone), further
 
 
 @dataclass(frozen=True)
@@ -137,16 +137,19 @@ class _Placed:
     written: Beneath
 
 
-def _sheet(name: str, subject: str, found: Sequence[_Placed]) -> tuple[Sheet, float]:
-    """A sheet of the placing at which the drawing is largest."""
-    best = min(found, key=lambda one: one.mu)
-    low, high = ground_of(best.paper)
-    sheet, room = Sheet(name, subject, paper=best.paper), best.written.left(low, high)
-    best.written.put(sheet, low, high)
+def _best(places: Sequence[tuple[complex, complex]], *ways: Callable[[float], Beneath]) -> _Placed:
+    """The placing at which the drawing is largest, the first of those that are alike."""
+    return min((_placed(paper, places, way) for way in ways for paper in PAPERS), key=lambda placed: placed.mu)
+
+
+def _sheet(name: str, subject: str, placed: _Placed) -> Sheet:
+    low, high = ground_of(placed.paper)
+    sheet, room = Sheet(name, subject, paper=placed.paper), placed.written.left(low, high)
+    placed.written.put(sheet, low, high)
     sheet.ground = Ground(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
-    sheet.mu = best.mu
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - best.middle
-    return sheet, best.mu
+    sheet.mu = placed.mu
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - placed.middle
+    return sheet
 
 
 def _placed(

@@ -21,7 +21,7 @@ from tmm_cli.draw.ruler import Number, Ruler, draw_ruler, gathered, reach, roomi
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED
-from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track
+from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track, travel
 from tmm_cli.errors import _
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.kinematics.motion import Motion
@@ -111,7 +111,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     whole, track = paths(results), output_track(results)
     marks = view.marks(track) if track is not None else []
     ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
-    notes, rows = list(_notes(view)), lengths(results)
+    notes, rows = list(_notes(view, track, marks)), lengths(results)
     figure = _figure(view, whole)
     off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
     found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
@@ -193,17 +193,20 @@ def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], o
     if view.states is None:
         return
     first, last = _farthest(track.places(view.states))
-    units = view.results.problem.units
     with sheet.on_layer("dimensions"):
         if track.kind == "line":
             ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
-            text = f"H = {units.from_si(abs(last - first), LENGTH):.4g} {units.symbol(LENGTH)}"
-            dimension(sheet, ends[0], ends[1], text)
-        else:
-            pivot = track.pivot
-            swing = abs(float(np.angle((last - pivot) / (first - pivot))))
-            text = f"ψ = {units.from_si(swing, ANGLE):.4g} {units.symbol(ANGLE)}"
-            angle_mark(sheet, sheet.on(pivot), sheet.on(first), sheet.on(last), text, right=False)
+            dimension(sheet, ends[0], ends[1], _size(view))
+        elif travel(view.results) < STRAIGHT:
+            angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)
+
+
+def _size(view: View) -> str:
+    """The stroke H, or the swing ψ."""
+    results, units = view.results, view.results.problem.units
+    turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
+    measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
+    return f"{letter} = {units.from_si(travel(results), measure):.4g} {units.symbol(measure)}"
 
 
 def _farthest(places: Vector) -> tuple[complex, complex]:
@@ -227,8 +230,12 @@ def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
         sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
 
 
-def _notes(view: View) -> Iterable[str]:
-    """Which position is in full, and which are the ends of the output's way."""
+def _notes(view: View, track: Track | None, marks: list[PositionMark]) -> Iterable[str]:
+    """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
     yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
+        if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
+            yield _size(view)
+        if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
+            yield _("outer numbers: working stroke")

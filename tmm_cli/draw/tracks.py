@@ -66,6 +66,14 @@ def extremes(results: Results) -> list[Extreme]:
     return found
 
 
+def travel(results: Results) -> float:
+    """The stroke (m) or the swing (rad) of the main output between its ends."""
+    strokes, travels = results.strokes, results.travels
+    if strokes is not None and strokes.strokes:
+        return strokes.travel
+    return abs(travels[0].high - travels[0].low) if travels else 0.0
+
+
 def output_track(results: Results) -> Track | None:
     """Of the main output; None where there is none."""
     linkage, link = results.linkage, results.mechanism.output
