@@ -14,6 +14,7 @@ OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, 
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
+AT_HEAD = 0.25  # of the price of what a text covers: of what is near a head
 UNWISHED = {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}  # price of where a text stands
 BETWEEN = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
@@ -63,8 +64,9 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         legs = [(z, foot + 2 * OVER * side) for z, foot in ((start, first), (end, last))]
         found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
-        squares = (first, last, *row(middle, v, width, height))
-        found += float(sheet.ground.price(around(np.array(squares), height, height)).sum())
+        squares = np.array([*row(middle, v, width, height), first, last])
+        prices = sheet.ground.price(around(squares, height, height))
+        found += float(prices[:-2].sum() + AT_HEAD * prices[-2:].sum())
         return found + 0.25 * offset + UNWISHED.get(stand, 0.0)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
