@@ -18,6 +18,7 @@ CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a smal
 AIR = 0.35  # mm about a text that are free
 LINE, A_LINE, A_FAINT = 14.0, 2.0, 0.3  # price of covering lines, of each mm of them, of each mm of faint ones
 TEXT, A_TEXT = 40.0, 2.0  # of a text, and of each mm² of it
+HEAD = 1.0  # mm: half the width of the head of an arrow
 OUTSIDE = 200.0  # of a place beyond the edge
 
 
@@ -111,10 +112,10 @@ class Ground:
         return bool(self.price(np.array([box]))[0] < LINE)
 
     def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
-        """The price of texts that these straight lines would run through."""
+        """The price of texts that these straight lines, or heads of arrows on them, would cover."""
         if not self.boxes:
             return 0.0
-        return TEXT * float(np.count_nonzero(runs(np.array(self.boxes), *np.array(lines).T)))
+        return TEXT * float(np.count_nonzero(runs(wider(np.array(self.boxes), HEAD), *np.array(lines).T)))
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
