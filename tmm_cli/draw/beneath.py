@@ -7,9 +7,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.ground import Ground
+from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
 from tmm_cli.draw.mechanism import Position
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.script import Words, width, wrapped
 from tmm_cli.draw.sheet import DARK, GREY_TEXT, THIN, Sheet
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
@@ -18,6 +22,7 @@ TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 MOST = 0.5  # of a sheet: more than this is written on another one
+WIDTHS = (110.0, 150.0, 200.0, 260.0)  # mm: what is beneath a drawing on a large sheet is not folded into less
 LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
 HANGING = " " * 8
 PAPERS = (LANDSCAPE, PORTRAIT)
@@ -114,17 +119,21 @@ def above(
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
 
+    if on_large_sheet():
+        return _sheet(name, subject, places, _beside_others(places, beneath)), None
+
     def with_tables_aside(mu: float) -> Beneath:
         return replace(beneath(mu), aside=True)
 
     low, high = ground_of(PORTRAIT)
+    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     alone = _best(places, lambda mu: Beneath())
     best = _best(places, beneath, with_tables_aside)
     if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
-        return _sheet(name, subject, best), None
+        return _sheet(name, subject, places, best), None
     written, further = beneath(alone.mu), Sheet(name, subject, paper=PORTRAIT)
     written.put(further, low + 1j * written.left(low, high).imag, high)
-    return _sheet(name, subject, alone), further
+    return _sheet(name, subject, places, alone), further
 
 
 @dataclass(frozen=True)
@@ -142,12 +151,32 @@ def _best(places: Sequence[tuple[complex, complex]], *ways: Callable[[float], Be
     return min((_placed(paper, places, way) for way in ways for paper in PAPERS), key=lambda placed: placed.mu)
 
 
-def _sheet(name: str, subject: str, placed: _Placed) -> Sheet:
+def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath]) -> _Placed:
+    """As large as a large sheet lets it be, on a paper no larger than it needs with all that is written beneath it."""
+    longest = longest_for(max(LANDSCAPE))
+    _, across, up, __ = extent([place for place, __ in places])
+    mu = round_scale(across, up, longest, longest)
+    written = beneath(mu)
+    _, across, up, middle = extent([place / mu + away for place, away in places])
+    most = 10 * longest
+    low, edge = ground_of((0.0, 0.0))
+
+    def height(wide: float) -> float:
+        return most - written.left(low, low + complex(wide, most)).imag
+
+    wide = next((wide for wide in WIDTHS if height(wide) < max(wide, up)), WIDTHS[-1])
+    wide = max(wide, across + 2 * PAD)
+    paper = complex(wide, up + 2 * PAD + height(wide)) + low - edge
+    return _Placed((paper.real, paper.imag), mu, middle, written)
+
+
+def _sheet(name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _Placed) -> Sheet:
     low, high = ground_of(placed.paper)
-    sheet, room = Sheet(name, subject, paper=placed.paper), placed.written.left(low, high)
+    _, across, up, __ = extent([place for place, __ in places])
+    on = Room(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
+    sheet, room = Sheet(name, subject, room=on), placed.written.left(low, high)
     placed.written.put(sheet, low, high)
     sheet.ground = Ground(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
-    sheet.mu = placed.mu
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - placed.middle
     return sheet
 
