@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from tmm_cli.draw.drawing import POINT
-from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.ground import Ground
 from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Room
@@ -116,7 +118,7 @@ def above(
     millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
-
+    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     if on_large_sheet():
         return _sheet(name, subject, places, _beside_others(places, beneath)), None
 
