@@ -125,9 +125,7 @@ def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real
     return last
 
 
-def _shaken(
-    evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator
-) -> list[tuple[float, Real]]:
+def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator) -> list[tuple[float, Real]]:
     """Where the best end that are shaken, a little or a lot, again and again."""
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
     found = sorted(won, key=lambda one: one[0])[:last]
