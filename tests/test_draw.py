@@ -10,7 +10,8 @@ from tmm_cli import load, solve
 from tmm_cli.draw import files, remarks, sheets
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import FORMATS
-from tmm_cli.draw.labels import Ground, Label, extent
+from tmm_cli.draw.ground import Ground
+from tmm_cli.draw.labels import Label, extent, place
 from tmm_cli.draw.mechanism import detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
 from tmm_cli.draw.positions import all_positions
@@ -42,12 +43,12 @@ def test_labels_do_not_cover_each_other_or_lines():
     ground = Ground(0j, 200 + 200j)
     ground.line(50 + 100j, 150 + 100j)
     labels = [Label(f"A{k}", 100 + 100j, 10, "k") for k in range(8)]
-    places = [ground.place(label) for label in labels]
-    for k, (place, label) in enumerate(zip(places, labels, strict=True)):
+    places = [placed.middle for placed in place(ground, labels)]
+    for k, (at, label) in enumerate(zip(places, labels, strict=True)):
         width, height = extent(label.text, label.size)
-        assert abs(place.imag - 100) > height / 2  # off the line
+        assert abs(at.imag - 100) > height / 2  # off the line
         for other in places[:k]:
-            assert abs(place.real - other.real) > 0.9 * width or abs(place.imag - other.imag) > 0.9 * height
+            assert abs(at.real - other.real) > width or abs(at.imag - other.imag) > height
 
 
 @pytest.mark.parametrize(
