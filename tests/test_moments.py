@@ -14,7 +14,6 @@ from tmm_cli import load, solve
 from tmm_cli.plans.moments import loaded_parts
 from tmm_cli.vectors import cross, dot
 
-
 IN_DETAIL = [path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "detail: [" in path.read_text(encoding="utf-8")]
 
 
