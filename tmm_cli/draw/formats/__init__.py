@@ -14,6 +14,7 @@ from tmm_cli.draw.formats.svg import svg
 from tmm_cli.errors import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
+WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
 Written = list[tuple[str, bytes]]

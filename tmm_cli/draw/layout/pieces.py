@@ -14,6 +14,7 @@ GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
 FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
 STEP = 1.04  # by which a drawing without a scale is made larger
+EASED = 0.75  # of the largest sizes at which all fits: so much is shared out again, piece by piece
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
 PAGES = 40  # of one sheet at most
@@ -70,6 +71,8 @@ def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list
     if found is None:
         raise ValueError("a drawing is larger than the sheet at its least size")
     rooms, pages = found
+    least = [min(room, max(EASED * room, piece.least)) for piece, room in zip(pieces, rooms, strict=True)]
+    rooms = [piece.fitted(room) for piece, room in zip(pieces, least, strict=True)]
     for page in pages:
         grow(pieces, rooms, page, field, MOST * shrunk)
     return rooms, pages
