@@ -343,13 +343,13 @@ def test_digits_stand_beside_the_values():
     start = lines.index("what value ± rounding ± lengths ± paper unit")
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 10]]
     assert quality == [
-        "stroke H of link 3 120 tiny 0.12 1.5 mm",
+        "stroke H of link 3 120 tiny 0.12 2 mm",
         "coefficient of change of mean speed k 1 tiny 0 0",
         "working stroke starts at 180 tiny 0 0 deg",
-        "link 3 is then at 160 tiny 0.28 1.5 mm",
+        "link 3 is then at 160 tiny 0.28 2 mm",
         "working stroke lasts 180 tiny 0 0 deg",
         "idle stroke starts at 0 tiny 0 0 deg",
-        "link 3 is then at 280 tiny 0.28 1.5 mm",
+        "link 3 is then at 280 tiny 0.28 2 mm",
         "idle stroke lasts 180 tiny 0 0 deg",
     ]
     assert any(line.startswith("cycle s of 3 ") for line in lines)

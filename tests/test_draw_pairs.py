@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from higher import PROBLEMS
 
-from tmm_cli import draw, solve
+from tmm_cli import solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.actuators import BARREL, Cylinder, springs
 from tmm_cli.draw.drawing import Line
@@ -50,8 +50,7 @@ def shaped(name, k):
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_nothing_lies_outside_of_the_sheets_in_millimetres(name, monkeypatch):
-    monkeypatch.setattr(draw, "diagrams", lambda results: ())  # curves have axes of their own
+def test_nothing_lies_outside_of_the_sheets_in_millimetres(name):
     found = dict(sheets(solved(name)))
     assert {"structure", "groups", "mechanism", "position", "velocity"} <= {stem.split("-0")[0] for stem in found}
     for stem, figure in found.items():
@@ -212,10 +211,10 @@ def test_every_force_polygon_closes_with_teeth_springs_friction_and_drivers(name
 
 
 def test_a_driver_between_two_plans_is_in_both_of_them():
-    """Piston 2 is driven along crank 1: the cylinder's force stands in the plan of 1 and, reversed, in that of 2."""
+    """Piston 2 is driven along crank 1: the cylinder's force stands in the plan of 2 and, reversed, in that of 1."""
     results = solve(build(read_text(TELESCOPE, "telescope.yaml")))
     equations = {plan.links: plan.equation for plan in force_plans(results.reactions, 1)}
-    assert "Fb₂" in equations["2",] and "−Fb₂" in equations["1",]
+    assert "Fb₂" in equations["2",] and "F′b₂" in equations["1",]
     for plan in force_plans(results.reactions, 1):
         last = [v for v in plan.plan.vectors if v.kind != "inner"][-1]
         assert abs(last.end) < 1e-9 * plan.plan.size
@@ -264,32 +263,16 @@ def test_a_point_p_is_not_the_pole():
     assert letters(motion.linkage)["P"] == "p′"
     plan = velocity_plan(motion, 2)
     assert plan.ends["p"] == 0 and plan.ends["p′"] == pytest.approx(motion.named("P").v[2])
-    lever = lever_plan(motion, solved("rack").lever, 2)
-    assert lever.ends["p"] == 0 and lever.ends["p′"] == pytest.approx(1j * motion.named("P").first[2])
-
-
-def test_diagrams_show_the_whole_cycle_of_several_turns():
-    for stem in ("diagrams", "reactions", "energy", "pressure"):
-        for axes in drawn("gear")[stem].axes:
-            assert axes.get_xlim() == (0, 720)
-            x, y = axes.lines[0].get_data()
-            assert x[-1] == 720 and y[-1] == pytest.approx(y[0], abs=1e-6 * np.ptp(y))
-
-
-def test_every_output_and_every_driver_has_its_curve():
-    assert [a.get_ylabel().split(",")[0] for a in drawn("two cranks")["diagrams-link-3"].axes] == [
-        "angle of 3", "omega of 3", "epsilon of 3",
-    ]  # fmt: skip
-    last = drawn("two cranks")["diagrams"].axes[-1]
-    assert [t.get_text() for t in last.get_legend().get_texts()] == ["Mb₁", "Mb₄"]
+    lever = lever_plan(motion, solved("rack").reactions, solved("rack").lever, 2)
+    assert lever.ends["p"] == 0 and lever.ends["p′"] == pytest.approx(-1j * motion.named("P").first[2])
 
 
 def test_the_lever_of_several_drivers_says_what_its_sum_is_of():
     figure = drawn("two cranks")["lever-02"]
     told = " ".join(figure.texts())
     balance = {b.driver.link: b.moment[2] for b in solved("two cranks").reactions.balances}
-    assert f"Mb₁ = {balance['1']:.6g} N*m" in told and "Mb₁ -2·Mb₄" in told
-    assert f"= {balance['1'] - 2 * balance['4']:.6g} N*m" in told
+    assert f"Mb₁ = {balance['1']:.6g} N·m" in told and "Mb₁ -2·Mb₄" in told
+    assert f"= {balance['1'] - 2 * balance['4']:.6g} N·m" in told
 
 
 def test_in_a_cycle_of_several_turns_positions_of_one_place_share_a_label():

@@ -1,11 +1,144 @@
-"""One symbol for one thing: guides and supports that no rod runs through, hinges, centres of mass."""
+"""One symbol for one thing, on the scheme and to scale, whatever the problem of the bank."""
 
 from __future__ import annotations
 
-import pytest
+from functools import cache
 
+import numpy as np
+import pytest
+from test_commands import PROBLEMS, moved
+
+from tmm_cli.draw.drawing import Area, Circle, Line
 from tmm_cli.draw.fixed import free_runs, support_side
-from tmm_cli.draw.sheet import Sheet
+from tmm_cli.draw.labels import gathered
+from tmm_cli.draw.render import render
+from tmm_cli.draw.scene import fitted, to_scale
+from tmm_cli.draw.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.structure import at_sketch
+from tmm_cli.draw.symbols import MEASURED, PLATE, STRUCTURAL, mass_centre, tint
+from tmm_cli.linkage import FRAME
+from tmm_cli.vectors import cross, dot
+
+LOOKS = {"scheme": STRUCTURAL, "to scale": MEASURED}
+NEAR = 0.35  # mm
+
+
+@cache
+def drawn(path, look):
+    """A mechanism at its sketch, with its sheet."""
+    scene, links = at_sketch(moved(path))[1], moved(path).structure.links
+    if look.measured:
+        linkage = scene.linkage
+        places = [scene.point(name) for link in linkage.links.values() for name in link.points]
+        sheet = Sheet("", "", to_scale(scene, places))
+    else:
+        sheet = Sheet("", "")
+        scene = fitted(sheet, scene, links, 20, 150)
+    found = render(sheet, scene, links, scene.structure.pairs, look, dict.fromkeys((FRAME, *links), DARK))
+    return sheet, found
+
+
+def every(test):
+    test = pytest.mark.parametrize("look", LOOKS.values(), ids=list(LOOKS))(test)
+    return pytest.mark.parametrize("path", PROBLEMS, ids=lambda path: path.stem)(test)
+
+
+def distance(place, line):
+    """Of a place from a piece of a line."""
+    start, end = line
+    span = end - start
+    share = np.clip(dot(span, place - start) / (abs(span) ** 2 or 1.0), 0, 1)
+    return abs(place - start - share * span)
+
+
+def meet(one, other):
+    """Whether two pieces of lines cross or touch."""
+    turns = [cross(b - a, z - a) for (a, b), ends in ((one, other), (other, one)) for z in ends]
+    crossing = turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0
+    return crossing or min(distance(z, line) for line, ends in ((one, other), (other, one)) for z in ends) < NEAR
+
+
+@every
+def test_no_rod_runs_through_hatching(path, look):
+    sheet, found = drawn(path, look)
+    strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
+    assert strokes or not any(FRAME in (p.i, p.j) for p in found.scene.structure.pairs if p.lower)
+    for link, form in found.forms.items():
+        for start, end in form.edges:
+            assert not any(meet((start, end), (stroke[0], stroke[-1])) for stroke in strokes), link
+
+
+@every
+def test_all_parts_of_a_link_touch_one_another(path, look):
+    _sheet, found = drawn(path, look)
+    for link, form in found.forms.items():
+        parts = list(form.edges)
+        reached, parts = parts[:1], parts[1:]
+        while parts:
+            part = next((p for p in parts if any(meet(p, other) for other in reached)), None)
+            assert part is not None, link
+            parts.remove(part)
+            reached.append(part)
+        for joint in form.joints:
+            assert not reached or min(distance(joint, part) for part in reached) < NEAR or len(form.hull) > 2, link
+
+
+@every
+def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(path, look):
+    sheet, found = drawn(path, look)
+    lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
+    plates = [m.corners for m in sheet.marks if isinstance(m, Area) and m.face in (PLATE, tint(DARK))]
+    linkage = found.scene.linkage
+    for slide in linkage.slides:
+        if slide.carrier == FRAME or slide.name in {d.joint for d in linkage.drivers}:
+            continue
+        stone, along = sheet.on(found.scene.place(slide.runner, slide.at)), found.scene.along(slide)
+        before, after = stone - look.stone[0] / 2 * along, stone + look.stone[0] / 2 * along
+        bars = [p for p in lines if max(distance(end, (p[0], p[-1])) for end in (before, stone, after)) < NEAR]
+        assert bars, slide.name
+        named = [sheet.on(found.scene.place(slide.carrier, p)) for p in linkage.links[slide.carrier].points.values()]
+        if min((abs(stone - place) for place in named), default=1.0) > NEAR:
+            assert all(abs(corner - stone) > NEAR for corners in plates for corner in corners), slide.name
+
+
+@every
+def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(path, look):
+    sheet, found = drawn(path, look)
+    circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links"]
+    lines = [m for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
+    for pair in found.scene.structure.pairs:
+        at = sheet.on(found.scene.at(pair))
+        circle = max((m for m in circles if abs(m.centre - at) < NEAR), key=lambda m: m.z, default=None)
+        for link in (pair.i, pair.j):
+            if pair.kind != "R" or link == FRAME:
+                continue
+            arms = [end - at for line in found.forms[link].lines for end in line if distance(at, line) < 0.1]
+            arms = [arm / abs(arm) for arm in arms if abs(arm) > 2.5]
+            if any(dot(one, other) < -1 + 1e-6 for one in arms for other in arms):
+                ends = at + look.hinge * 0.5 * arms[0], at - look.hinge * 0.5 * arms[0]
+                over = [m.places for m in lines if m.z > circle.z]
+                assert any(max(distance(end, (p[0], p[-1])) for end in ends) < 0.1 for p in over), (pair.name, link)
+
+
+@every
+def test_a_hinge_has_a_circle_for_every_pair_in_it(path, look):
+    sheet, found = drawn(path, look)
+    circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links" and m.face == "white"]
+    hinges = gathered((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
+    for at, pairs in hinges:
+        radii = {round(m.radius, 3) for m in circles if abs(m.centre - at) < NEAR}
+        assert len(radii) >= len(pairs), pairs
+
+
+def test_a_centre_of_mass_is_a_circle_with_two_dark_quarters():
+    sheet = Sheet("", "")
+    mass_centre(sheet, 100 + 100j)
+    quarters = [m for m in sheet.marks if isinstance(m, Area)]
+    (circle,) = (m for m in sheet.marks if isinstance(m, Circle))
+    assert circle.face == "white" and len(quarters) == 2
+    middles = [np.mean(m.corners) - circle.centre for m in quarters]
+    assert middles[0] == pytest.approx(-middles[1])
+    assert all(abs(corner - circle.centre) <= circle.radius + 1e-9 for m in quarters for corner in m.corners)
 
 
 def test_a_rail_is_open_where_rods_go_through_it():

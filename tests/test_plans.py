@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from models import PROBLEMS
 from test_commands import SHAPER
 from test_properties import CHAINS, SEEDS, generic, solved
 
@@ -17,7 +18,7 @@ from tmm_cli.plans.lever import lever_plan
 from tmm_cli.plans.readings import Reading, readings, turns
 from tmm_cli.plans.record import ROUND, Symbol, reaction_name, round_scale
 from tmm_cli.plans.velocity import velocity_plan
-from tmm_cli.vectors import cross
+from tmm_cli.vectors import cross, dot
 
 
 @given(SEEDS, CHAINS)
@@ -72,16 +73,33 @@ def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
     assert last.equation == "R₃₄ⁿ + R₃₄ᵗ + G₄ + U₄ + G₅ + U₅ + F + R₀₅ = 0"
 
 
-def test_moments_about_the_pole_of_the_drawn_lever_give_the_balancing_moment():
+@pytest.mark.parametrize("name", ["shaper", "lifting-boom", "cylinder", "five-bar", "excavator", "engine-four"])
+def test_moments_about_the_pole_of_the_drawn_lever_come_to_nothing_with_what_balances_them(name):
+    results = solve(load(PROBLEMS / f"{name}.yaml"), "forces")
+    for k in np.flatnonzero(results.motion.moving):
+        plan = lever_plan(results.motion, results.reactions, results.lever, k)
+        moments = [a.moment if a.couple else cross(a.at, a.force) for a in plan.acting]
+        assert abs(sum(moments)) <= 1e-11 * sum(map(abs, moments))
+        for term in (t for t in plan.equation.terms if t.number):
+            # the foot of an arm lies on the force's line, across the arm
+            force = term.acting.force
+            assert abs(cross(term.foot - term.acting.at, force)) < 1e-9 * abs(force)
+            assert abs(dot(term.foot, force)) < 1e-9 * abs(force)
+        if len(results.reactions.balances) == 1 and plan.equation.found:
+            balance = results.reactions.balance
+            wanted = abs(balance.generalized[k] if balance.kind == "moment" else balance.force[k])
+            assert plan.equation.value == pytest.approx(wanted, rel=1e-9)
+
+
+def test_the_crank_of_the_lever_lies_along_the_crank_and_couples_are_pairs_of_forces():
     results = solve(load(str(SHAPER)))
-    for k in range(12):
-        plan = lever_plan(results.motion, results.lever, k)
-        # the plan is turned by +90 degrees, so that force x arm is force . velocity
-        moments = sum(cross(force.force, force.at) for force in plan.forces) + sum(m for _, m in plan.couples)
-        assert abs(moments) == pytest.approx(abs(results.reactions.balance.moment[k]), rel=1e-9)
-        for force in plan.forces:  # the foot of the arm lies on the force's line, across the arm
-            assert abs(cross(force.foot - force.at, force.force)) < 1e-9 * abs(force.force)
-            assert abs((force.foot * force.force.conjugate()).real) < 1e-9 * abs(force.force)
+    plan = lever_plan(results.motion, results.reactions, results.lever, 3)
+    assert plan.ends["a"] == pytest.approx(results.motion.named("A").x[3])  # O is the origin
+    assert {"s1", "s3", "s5"} <= set(plan.ends)
+    fourth = plan.pairs[1]
+    assert (fourth.points, fourth.distance) == (("D", "E"), pytest.approx(0.21))
+    forces = {a.symbol.name: a.force for a in plan.acting}
+    assert abs(forces["P₄"]) == pytest.approx(abs(fourth.moment) / 0.21) and forces["P′₄"] == -forces["P₄"]
 
 
 @given(st.floats(1e-9, 1e9), st.floats(1e-9, 1e9))

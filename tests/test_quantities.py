@@ -8,8 +8,9 @@ import pytest
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
+from tmm_cli.draw.lever import lever
 from tmm_cli.draw.mechanism import detailed
-from tmm_cli.draw.plans import lever, motion_plans
+from tmm_cli.draw.motion_plans import motion_plans
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
@@ -104,12 +105,15 @@ def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
     assert shown["B"] == shown["x"] == "-" and float(shown["K"])
 
 
-def test_units_are_written_one_way_in_tables_in_the_schema_and_on_drawings(shaper):
+def test_units_are_written_one_way_in_tables_and_the_schema_and_one_way_on_drawings(shaper):
+    """As they are typed, and as they are printed."""
     told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
     described = json.dumps(schema(), ensure_ascii=False)
     position = detailed(shaper)[0]
     notes = [text for draw in (motion_plans, lever) for __, sheet in draw(position) for text in sheet.texts()]
-    assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("m/s^2/mm") for note in notes)
-    assert any(note.endswith(" N*m") for note in notes)
+    assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("(m/s²)/mm") for note in notes)
+    assert any(note.endswith(" N·m") for note in notes)
     for other in ("m/s2", "m/s²", "N·m", "N m"):
-        assert not [text for text in (*told, described, *notes) if other in text], other
+        assert not [text for text in (*told, described) if other in text], other
+    for other in ("m/s2", "m/s^2", "N*m", "N m"):
+        assert not [text for text in notes if other in text], other

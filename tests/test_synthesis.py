@@ -203,11 +203,8 @@ def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
     line = Line("largest pressure angle", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
     dots = Line("k", np.array([0.15]), np.array([1.0]), dots=True)
     drawn = Diagram("family", "A family", ("stroke", "length"), axis, (line, dots))
-    figure = diagram("A task", drawn, UnitSystem())
-    (axes,) = figure.axes
-    assert axes.get_ylabel() == "largest pressure angle, deg" and axes.get_xlabel() == "stroke, mm"
-    assert list(axes.lines[0].get_xdata()) == pytest.approx([100, 200])
-    assert list(axes.lines[0].get_ydata()) == pytest.approx([0, 180])
+    sheet = diagram("A task", drawn, UnitSystem())
+    assert {"largest pressure angle, deg", "stroke, mm", "100", "200", "180", "k"} <= set(sheet.texts())
 
 
 def test_the_schema_for_editors_knows_the_keys_of_every_task():

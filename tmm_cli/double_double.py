@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from decimal import Context, Decimal, localcontext
 from functools import cache, reduce
 from itertools import accumulate
+from math import frexp
 from typing import Any
 
 import numpy as np
@@ -199,7 +200,7 @@ def fast_two_sum(a: Any, b: Any) -> Pair:
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """a b of real numbers, and exactly what rounding took from it."""
+    """a b, one of them real, and exactly what rounding took from it."""
     product = a * b
     torn = SPLIT * a
     a1 = torn - (torn - a)
@@ -210,9 +211,12 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def _add(x: Any, y: Any) -> DoubleDouble:
-    (a, b), (c, d) = _parts(x), _parts(y)
-    total, error = two_sum(a, c)
-    lower, rest = two_sum(b, d)
+    if not isinstance(y, DoubleDouble):
+        x, y = y, x
+    total, error = two_sum(y.hi, x.hi if isinstance(x, DoubleDouble) else x)
+    if not isinstance(x, DoubleDouble):
+        return DoubleDouble(*fast_two_sum(total, error + y.lo))
+    lower, rest = two_sum(x.lo, y.lo)
     total, error = fast_two_sum(total, error + lower)
     return DoubleDouble(*fast_two_sum(total, error + rest))
 
@@ -222,50 +226,41 @@ def _negative(x: DoubleDouble) -> DoubleDouble:
 
 
 def _subtract(x: Any, y: Any) -> DoubleDouble:
-    c, d = _parts(y)
-    return _add(x, DoubleDouble(-c, -d))
-
-
-def _real_product(x: Pair, y: Pair) -> Pair:
-    product, error = two_product(x[0], y[0])
-    return fast_two_sum(product, error + (x[0] * y[1] + x[1] * y[0]))
+    return _add(x, -y)
 
 
 def _multiply(x: Any, y: Any) -> DoubleDouble:
-    for one, other in ((x, y), (y, x)):
-        if isinstance(one, int | float | complex) and one in (1, -1, 1j, -1j):
-            return DoubleDouble(one * other.hi, one * other.lo)
-    x, y = _parts(x), _parts(y)
-    kinds = x[0].dtype.kind == "c", y[0].dtype.kind == "c"
-    if not any(kinds):
-        return DoubleDouble(*_real_product(x, y))
-    shape = np.broadcast_shapes(x[0].shape, y[0].shape)
-    if not all(kinds):
-        real, other = (y, x) if kinds[0] else (x, y)
-        hi, lo = _real_product(real, (_planes(shape, other[0]), _planes(shape, other[1])))
-        return DoubleDouble(_joined(hi), _joined(lo))
-    (a, rest_a), (b, rest_b) = x, y
-    left, right = _planes(shape, a.real, a.imag, a.real, a.imag), _planes(shape, b.real, -b.imag, b.imag, b.real)
-    products, errors = two_product(left, right)
-    total, error = two_sum(products[::2], products[1::2])
-    rest = a * rest_b + rest_a * b
-    error += errors[::2] + errors[1::2] + _planes(shape, rest)
-    return DoubleDouble(*map(_joined, fast_two_sum(total, error)))
+    if not isinstance(y, DoubleDouble):
+        x, y = y, x
+    if isinstance(x, DoubleDouble):
+        one, rest = x.hi, x.hi * y.lo + x.lo * y.hi
+    elif _only_scales(x):
+        return DoubleDouble(x * y.hi, x * y.lo)
+    else:
+        one, rest = np.asarray(x), x * y.lo
+    other = y.hi
+    if one.dtype.kind == "c" and other.dtype.kind == "c":
+        one, other = (one, other) if one.ndim >= other.ndim else (other, one)
+        products, errors = two_product(_planes(one), other)
+        product, error = two_sum(products[0], 1j * products[1])
+        error = error + (errors[0] + 1j * errors[1])
+    else:
+        product, error = two_product(one, other)
+    return DoubleDouble(*fast_two_sum(product, error + rest))
 
 
-def _planes(shape: tuple[int, ...], *parts: Any) -> Any:
-    """Real numbers on a first axis; real and imaginary part of one complex array."""
-    parts = parts if len(parts) > 1 else (parts[0].real, parts[0].imag)
-    planes = np.empty((len(parts), *shape))
-    for k, part in enumerate(parts):
-        planes[k] = part
+def _only_scales(x: Any) -> bool:
+    """Whether products with it are exact: a power of two, or i."""
+    if isinstance(x, complex):
+        return x in (1j, -1j)
+    return isinstance(x, int | float) and abs(frexp(x)[0]) == 0.5
+
+
+def _planes(values: Any) -> Any:
+    """Real and imaginary parts on a first axis."""
+    planes = np.empty((2, *values.shape))
+    planes[0], planes[1] = values.real, values.imag
     return planes
-
-
-def _joined(planes: Any) -> Any:
-    found = np.empty(planes.shape[1:], complex)
-    found.real, found.imag = planes
-    return found
 
 
 def _divide(x: Any, y: Any) -> DoubleDouble:
@@ -273,8 +268,9 @@ def _divide(x: Any, y: Any) -> DoubleDouble:
     if y.dtype.kind == "c":
         return _divide(_multiply(x, y.conjugate()), _square(y))
     first = x.hi / y.hi
-    rest = _subtract(x, _multiply(y, first))
-    return _finite(DoubleDouble(*fast_two_sum(first, rest.hi / y.hi)), first)
+    product, error = two_product(first, y.hi)
+    rest = (x.hi - product) - error + (x.lo - first * y.lo)
+    return _finite(DoubleDouble(*fast_two_sum(first, rest / y.hi)), first)
 
 
 def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
@@ -286,20 +282,25 @@ def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
 
 
 def _square(z: DoubleDouble) -> DoubleDouble:
-    planes = DoubleDouble(_planes(z.shape, z.hi), _planes(z.shape, z.lo))
-    real, imag = _multiply(planes, planes)
-    return _add(real, imag)
+    parts = _planes(z.hi)
+    squares, errors = two_product(parts, parts)
+    total, error = two_sum(squares[0], squares[1])
+    rest = errors + 2 * parts * _planes(z.lo)
+    return DoubleDouble(*fast_two_sum(total, error + (rest[0] + rest[1])))
 
 
 def _sqrt(x: DoubleDouble) -> DoubleDouble:
     root = np.sqrt(x.hi)
-    rest = _subtract(x, DoubleDouble(*two_product(root, root)))
-    found = DoubleDouble(*fast_two_sum(root, rest.hi / np.where(root == 0, 1.0, 2 * root)))
-    return _finite(found, root)
+    square, error = two_product(root, root)
+    rest = (x.hi - square) - error + x.lo
+    return _finite(DoubleDouble(*fast_two_sum(root, rest / np.where(root == 0, 1.0, 2 * root))), root)
 
 
 def _absolute(x: DoubleDouble) -> DoubleDouble:
-    return _sqrt(_square(x)) if x.dtype.kind == "c" else _where(x.hi < 0, _negative(x), x)
+    if x.dtype.kind == "c":
+        return _sqrt(_square(x))
+    sign = np.copysign(1.0, x.hi)
+    return DoubleDouble(sign * x.hi, sign * x.lo)
 
 
 def _power(x: Any, n: Any) -> DoubleDouble:
@@ -309,7 +310,7 @@ def _power(x: Any, n: Any) -> DoubleDouble:
         return _sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:
         return DoubleDouble(np.power(x.hi, number))
-    found = reduce(_multiply, [x] * int(abs(number)), DoubleDouble(np.ones(np.shape(x))))
+    found = reduce(_multiply, [x] * int(abs(number))) if number else DoubleDouble(np.ones(np.shape(x)))
     return found if number >= 0 else _divide(1.0, found)
 
 
@@ -327,9 +328,8 @@ def _turn(x: DoubleDouble) -> DoubleDouble:
     if x.turn is None:
         steps, directions, series = _tables()
         number = np.round(x.hi * (PARTS / (2 * np.pi)))
-        rest = x
-        for part in steps:
-            rest = _subtract(rest, DoubleDouble(*two_product(number, part)))
+        product, error = two_product(number, steps[0])
+        rest = DoubleDouble(*two_sum(x.hi - product, x.lo - error)) - number * steps[1]
         square = _multiply(rest, rest)
         column = (slice(None), *(None,) * x.ndim)
         small: Any = 0.0
@@ -337,9 +337,11 @@ def _turn(x: DoubleDouble) -> DoubleDouble:
             small = series[k].hi[column] + square.hi * small
         found = DoubleDouble(small)
         for k in range(PRECISE - 1, -1, -1):
-            found = _add(_multiply(square, found), series[k][column])
+            power, less = series[k], _multiply(square, found)
+            total, error = fast_two_sum(power.hi[column], less.hi)
+            found = DoubleDouble(*fast_two_sum(total, error + (power.lo[column] + less.lo)))
         sine = _multiply(found[1], rest)
-        near = DoubleDouble(_joined(np.stack((found.hi[0], sine.hi))), _joined(np.stack((found.lo[0], sine.lo))))
+        near = DoubleDouble(found.hi[0] + 1j * sine.hi, found.lo[0] + 1j * sine.lo)
         x.turn = _multiply(directions[np.nan_to_num(number).astype(int) % PARTS], near)
     return x.turn
 
@@ -407,11 +409,11 @@ def _rounded(numbers: Sequence[Decimal]) -> DoubleDouble:
 
 @cache
 def _tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
-    """A part of a turn in three doubles; the directions it leads to; coefficients of cosine and sine by powers."""
+    """A part of a turn in two doubles; the directions it leads to; coefficients of cosine and sine by powers."""
     with localcontext(EXACT):
         step = 2 * Decimal(PI) / PARTS
         steps, rest = [], step
-        for _ in range(3):
+        for _ in range(2):
             steps.append(float(rest))
             rest -= Decimal(steps[-1])
         cosine, sine, term = Decimal(0), Decimal(0), Decimal(1)

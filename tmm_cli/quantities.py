@@ -170,7 +170,8 @@ class Quantity:
         if value is None:
             parts = repeat(None)
         elif self.vector:
-            parts = (np.abs(value),) if len(self.headers) == 1 else (value.real, value.imag, np.abs(value))
+            parts = () if len(self.headers) == 1 else (value.real, value.imag)
+            parts = parts if len(self.headers) == len(parts) else (*parts, np.abs(value))
         headers = (self.of_slider[0],) if slider and self.of_slider is not None else self.headers
         for header, part in zip(headers, parts, strict=False):
             yield header, part, self.measures(slider)

@@ -65,7 +65,7 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float
     states = link_states(linkage, upto, beside, 0, blank=False)
     at = states.placements[-1]
     det = np.abs(at.det)
-    if not at.dead[2] or not np.all(states.placed) or max(det[0] / det[1], det[4] / det[3]) > SIMPLE:
+    if not at.dead[2] or not np.all(states.placed) or det[0] > SIMPLE * det[1] or det[4] > SIMPLE * det[3]:
         return None
     return best
 

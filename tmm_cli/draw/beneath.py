@@ -16,7 +16,9 @@ from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_s
 TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
+MOST = 0.5  # of a sheet: more than this is written on another one
 HANGING = " " * 8
+PAPERS = (LANDSCAPE, PORTRAIT)
 
 
 @dataclass(frozen=True)
@@ -86,34 +88,45 @@ def _column(sheet: Sheet, top: complex, table: Table, rows: Sequence[tuple[Words
 def above(
     here: Position, title: str, places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath],
     **words: str,
-) -> Sheet:  # fmt: skip
-    """A sheet for a drawing with what is written beneath it, upright or not as the drawing is larger then.
+) -> tuple[Sheet, Sheet | None]:  # fmt: skip
+    """A sheet for a drawing with what is written beneath it; on a sheet of its own where that is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
-    millimetre.
+    millimetre. The paper is upright or not as the drawing is larger then.
     """
-    found = [(_scale(paper, places, beneath), paper) for paper in (LANDSCAPE, PORTRAIT)]
+    apart = all(beneath(1.0).height(_field(paper).real) > MOST * _field(paper).imag for paper in PAPERS)
+    kept = (lambda mu: Beneath()) if apart else beneath
+    found = [(_scale(paper, places, kept), paper) for paper in PAPERS]
     (mu, middle), paper = min(found, key=lambda one: (one[0][0], one[1][1]))
-    low, high = ground_of(paper)
-    across = (high - low).real
-    sheet = Sheet(here.results.problem.title, title.format(caption=here.caption, **words), paper=paper)
-    written = beneath(mu)
+    (low, high), across = ground_of(paper), _field(paper).real
+    name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
+    sheet, written = Sheet(name, subject, paper=paper), kept(mu)
     written.put(sheet, low, across)
     sheet.ground = Ground(low + 1j * written.height(across), high)
     sheet.mu = mu
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - middle
-    return sheet
+    if not apart:
+        return sheet, None
+    further, written = Sheet(name, subject, paper=PORTRAIT), beneath(mu)
+    across = _field(PORTRAIT).real
+    written.put(further, ground_of(PORTRAIT)[1] - across - 1j * written.height(across), across)
+    return sheet, further
+
+
+def _field(paper: tuple[float, float]) -> complex:
+    low, high = ground_of(paper)
+    return high - low
 
 
 def _scale(
     paper: tuple[float, float], places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath]
 ) -> tuple[float, complex]:
     """The least round scale (SI a millimetre) at which all fits on paper, and the middle of the drawing there, mm."""
-    low, high = ground_of(paper)
+    field = _field(paper)
     size, across, up, __ = extent([place for place, __ in places])
-    mu = round_scale(across, up, (high - low).real, (high - low).imag)
+    mu = round_scale(across, up, field.real, field.imag)
     while True:
-        room = high - low - 2 * PAD * (1 + 1j) - 1j * beneath(mu).height((high - low).real)
+        room = field - 2 * PAD * (1 + 1j) - 1j * beneath(mu).height(field.real)
         _, across, up, middle = extent([place / mu + away for place, away in places])
         if (across <= room.real and up <= room.imag) or size / mu < LEAST:
             return mu, middle

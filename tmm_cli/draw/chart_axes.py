@@ -46,12 +46,3 @@ def errors(axes: Any, powers: range) -> None:
     axes.set_yscale("log")
     axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
     axes.yaxis.set_minor_formatter(NullFormatter())
-
-
-def chart(size: tuple[float, float], title: str, caption: str) -> Figure:
-    """A figure of a size (mm) for curves, with its title."""
-    figure = Figure(figsize=(size[0] * MM, size[1] * MM))
-    FigureCanvasAgg(figure)
-    figure.text(0.06, 0.965, title[:90], fontsize=12, weight="bold", parse_math=False)
-    figure.text(0.06, 0.945, caption, fontsize=9, color="#404040", parse_math=False)
-    return figure

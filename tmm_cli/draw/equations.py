@@ -26,7 +26,7 @@ def written(equation: MomentEquation) -> Iterable[Words]:
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
     )
-    moments: tuple[Word, ...] = ("Σ", Symbol("M", equation.about), f", {links}: ")
+    moments: tuple[Word, ...] = ("Σ", Symbol("M", equation.about), f", {links}: " if equation.links else ": ")
     if found is None and sought is not None:
         text = (
             _("{moments}nothing has a moment, so {name} goes through {point}")
@@ -85,17 +85,17 @@ def table_of_forces(acting: Iterable[Acting]) -> Table:
     return Table((_("force"), _("size"), _("from x")), rows)
 
 
-def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem, mu: float) -> Table:
-    """Of the mechanism, in the unit of lengths, and on paper; mu: m a millimetre."""
+def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> Table:
+    """In the unit of lengths (none: they are ratios) and on paper; mu: SI a millimetre."""
     found: dict[int, list[Term]] = {}
     for term in (t for e in equations for t in e.terms if t.number):
         found.setdefault(term.number, []).append(term)
     rows: list[tuple[Words, ...]] = []
     for first, *others in found.values():
         of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
-        size = figure(units.from_si(first.arm, LENGTH))
+        size = figure(units.from_si(first.arm, LENGTH) if units else first.arm)
         rows.append((first.letter, of, size, f"{first.arm / mu:.1f} mm"))
-    return Table((_("arm"), _("of"), units.symbol(LENGTH), _("on paper")), rows)
+    return Table((_("arm"), _("of"), units.symbol(LENGTH) if units else "", _("on paper")), rows)
 
 
 def figure(value: float) -> str:

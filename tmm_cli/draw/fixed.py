@@ -34,7 +34,7 @@ def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = M
     return quiet(sheet, at, -1j, 9.0, least, from_=2.2)
 
 
-def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> complex:
+def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED, rods: Sequence[Line] = ()) -> complex:
     """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
     side = 1j * out
     height, half = look.support
@@ -42,23 +42,24 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED) -> c
     low, high = foot - half * side, foot + half * side
     with sheet.on_layer("supports"):
         sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-        low, high = foot - GROUND * half * side, foot + GROUND * half * side
-        sheet.line([low, high], DARK, 1.2, z=2.7)
-    hatch(sheet, low, high, out)
-    return high
+    _wall(sheet, foot, side, out, GROUND * half, rods)
+    return foot + GROUND * half * side
 
 
 def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[Line]) -> None:
     """A piece of the frame's guide about a box: hatched rails, open where rods go through."""
-    reach = look.box[0] / 2 + BEYOND
     for side in (1j * along, -1j * along):
-        rail = at + side * (look.box[1] / 2 + GAP)
-        covered = [run for rod in rods if (run := _covered(rod, rail, along, side)) is not None]
-        for low, high in free_runs(-reach, reach, covered):
-            start, end = rail + low * along, rail + high * along
-            with sheet.on_layer("supports"):
-                sheet.line([start, end], DARK, 1.0, z=2.5)
-            hatch(sheet, start, end, side)
+        _wall(sheet, at + side * (look.box[1] / 2 + GAP), along, side, look.box[0] / 2 + BEYOND, rods)
+
+
+def _wall(sheet: Sheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Line]) -> None:
+    """A line with hatching on its outer side, open where rods go through."""
+    covered = [run for rod in rods if (run := _covered(rod, middle, along, out)) is not None]
+    for low, high in free_runs(-reach, reach, covered):
+        start, end = middle + low * along, middle + high * along
+        with sheet.on_layer("supports"):
+            sheet.line([start, end], DARK, 1.2, z=2.7)
+        hatch(sheet, start, end, out)
 
 
 def _covered(rod: Line, rail: complex, along: complex, out: complex) -> tuple[float, float] | None:

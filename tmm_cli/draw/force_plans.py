@@ -16,7 +16,7 @@ from tmm_cli.draw.script import Words, wrapped
 from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
 from tmm_cli.errors import _
 from tmm_cli.plans.forces import ForcePlan, force_plans
-from tmm_cli.plans.record import NamedVector
+from tmm_cli.plans.record import NamedVector, extent
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import cross, dot
 
@@ -90,16 +90,21 @@ def table(plan: ForcePlan, mu: float) -> list[Row]:
 
 
 def lanes(vectors: Sequence[NamedVector], size: float) -> list[complex]:
-    """How far each vector is drawn off its place (mm, across it) so that none lies on another; long ones stay."""
+    """How far each vector is drawn off its place (mm, across it) so that none lies on another.
+
+    Long ones of the polygon stay where they are; the others go outward.
+    """
+    middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
     taken: dict[int, int] = {}
     found = [0j] * len(vectors)
-    for number in sorted(range(len(vectors)), key=lambda n: -abs(vectors[n].value)):
+    for number in sorted(range(len(vectors)), key=lambda n: (vectors[n].kind == "inner", -abs(vectors[n].value))):
         vector = vectors[number]
         used = {lane for other, lane in taken.items() if _cover(vector, vectors[other], size)}
         taken[number] = next(n for n in range(len(vectors) + 1) if n not in used)
         along = vector.value / abs(vector.value)
         upward = along if (round(along.imag, 6), along.real) > (0, 0) else -along
-        found[number] = -1j * upward * LANE * taken[number]
+        inward = dot(-1j * upward, (vector.start + vector.end) / 2 - middle) < -NEAR * size
+        found[number] = (1j if inward else -1j) * upward * LANE * taken[number]
     return found
 
 

@@ -14,13 +14,14 @@ import numpy as np
 from tmm_cli.draw.actuators import Cylinder, cylinders
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
 from tmm_cli.draw.sheet import Sheet, border
+from tmm_cli.draw.wheels import bars as follower_bars
+from tmm_cli.draw.wheels import outline as outline_of
 from tmm_cli.linkage import Slide
 from tmm_cli.vectors import cross, dot
 
 Line = tuple[complex, complex]
-NARROW = 1.87  # mm: a plate of a scheme that is nowhere wider is drawn as a bar
 GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it
-OVER = 7.0  # mm: how far such a bar goes on beyond the way of its stone, to scale
+STONE, OVER = 3.75, 7.0  # mm, to scale: half a stone; how far such a bar goes on beyond the way of its middle
 
 
 @dataclass
@@ -116,9 +117,9 @@ def by_points(sheet: Sheet, scene: Scene, link: str) -> Form:
         bar = _bar(bars, stone, along)
         for end, side in (((low - here) / sheet.mu, -along), ((high - here) / sheet.mu, along)):
             tip = stone + end * along
-            if not any(bar.meets(j) and dot(side, j - tip) > -ON_LINE for j in joints):
+            if not any(bar.meets(j) and dot(side, j - tip) > STONE for j in joints):
                 bar.take(border(stone, tip + OVER * side, *sheet.field))
-    return _joined(sheet, scene, link, joints, bars, ON_LINE)
+    return _joined(sheet, scene, link, joints, bars)
 
 
 def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
@@ -134,7 +135,7 @@ def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
         for end in scene.ends(link):
             if bar.meets(sheet.on(end)):
                 bar.take(sheet.on(end))
-    return _joined(sheet, scene, link, joints, bars, NARROW)
+    return _joined(sheet, scene, link, joints, bars)
 
 
 def _guides(scene: Scene, link: str) -> list[Slide]:
@@ -152,7 +153,7 @@ def _bar(bars: list[Bar], at: complex, along: complex) -> Bar:
     return same
 
 
-def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar], narrow: float) -> Form:
+def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar]) -> Form:
     """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]
@@ -173,7 +174,7 @@ def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], ba
             welds.append((foot, near - foot, _longer(bar, foot)))
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
-    hull = _flat(outline(loose), narrow) if len(loose) > 1 else ()
+    hull = _flat(outline(loose)) if len(loose) > 1 else ()
     driven = cylinders(scene.linkage)
     boxes = []
     for pair in scene.of(link):
@@ -181,16 +182,18 @@ def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], ba
             struts.append(Cylinder.of(sheet, scene, pair.slide).part(link))
         elif pair.slide is not None and pair.slide.runner == link:
             boxes.append(sheet.on(scene.at(pair)))
+    for mesh in scene.linkage.meshes:
+        struts += [(sheet.on(start), sheet.on(end)) for start, end in follower_bars(outline_of(scene, mesh), link)]
     return Form(joints, boxes, hull, bars, struts, welds)
 
 
-def _flat(hull: Sequence[complex], narrow: float) -> Sequence[complex]:
-    """Corners of a plate; the two ends of a plate that is hardly wider (mm) than a bar."""
+def _flat(hull: Sequence[complex]) -> Sequence[complex]:
+    """Corners of a plate; the two ends of one whose corners lie on a line."""
     if len(hull) < 3:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
     along = (end - start) / abs(end - start)
-    return hull if max(abs(cross(along, p - start)) for p in hull) > narrow else (start, end)
+    return hull if max(abs(cross(along, p - start)) for p in hull) > ON_LINE else (start, end)
 
 
 def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:

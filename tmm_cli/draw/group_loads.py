@@ -26,9 +26,9 @@ def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     for part in loaded_parts(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
         stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
-        for number, equations in enumerate(_sheetfuls(part.equations)):
-            if part.acting:
-                yield stem + (f"-sheet-{number + 1}" if number else ""), _sheet(here, part, equations)
+        sheets = [sheet for few in _sheetfuls(part.equations) for sheet in _sheets(here, part, few)]
+        for number, sheet in enumerate(sheets if part.acting else ()):
+            yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
 
 def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
@@ -47,7 +47,7 @@ def _letters(equation: MomentEquation) -> set[int]:
     return {t.number for t in equation.terms if t.number}
 
 
-def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Drawing:
+def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Iterable[Sheet]:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
     scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)
@@ -60,14 +60,14 @@ def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]
         title = _("Driving link {links} under its loads. {caption}")
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
-    lines = [text for e in equations for text in written(e)]
+    lines = [line for e in equations for line in written(e)]
     units, shown = here.results.problem.units, [*part.acting, *further]
 
     def beneath(mu: float) -> Beneath:
         return Beneath(lines, (table_of_forces(shown), table_of_arms(equations, units, mu)))
 
     sized = [*((place, 0j) for place in places), *extent(shown)]
-    sheet = above(here, title, sized, beneath, links=", ".join(part.links))
+    sheet, text = above(here, title, sized, beneath, links=", ".join(part.links))
     measured(sheet, scene, links=part.links)
     bars = sheet.ground.crowd
     forces = Forces(sheet)
@@ -80,7 +80,7 @@ def _sheet(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]
         sheet.note(scale_text("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
-    return sheet.finish()
+    return (sheet,) if text is None else (sheet, text)
 
 
 def _special(sheet: Sheet, part: LoadedPart, equation: MomentEquation) -> None:

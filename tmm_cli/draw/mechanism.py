@@ -80,7 +80,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
         if not pair.lower:
             draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
         elif pair.slide is not None and pair.slide.runner in links:
-            slider(sheet, scene, pair, MEASURED, DARK)
+            slider(sheet, drawn.scene, pair, MEASURED, DARK)
     names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
     for link in shown:
         own, centre = linkage.links[link], f"S{link}"
@@ -98,7 +98,8 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
                 names[point].append(centre)
     for name, called in names.items():
         at = sheet.on(scene.point(name))
-        if sum(name in link.points for link in linkage.links.values()) == 1:
+        hinged = any(abs(at - sheet.on(scene.point(hinge.point))) <= MEASURED.hinge for hinge in linkage.hinges)
+        if not hinged:  # a dot in a circle would look like two pairs
             sheet.circle(at, 0.6, face=DARK)
         sheet.label(", ".join(called), at, 10, far=bool(mark) and name in moving)
     for link, form in drawn.forms.items():

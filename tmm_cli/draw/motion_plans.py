@@ -9,8 +9,8 @@ from typing import Literal
 from tmm_cli.draw.blocks import Block, Row
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import aside
+from tmm_cli.draw.lever import letter_points
 from tmm_cli.draw.mechanism import Position
-from tmm_cli.draw.plans import letter_points
 from tmm_cli.draw.room import Figure, room
 from tmm_cli.draw.sheet import COLOURS, THIN, scale_text
 from tmm_cli.errors import _

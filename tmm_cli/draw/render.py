@@ -15,7 +15,7 @@ from tmm_cli.draw.fixed import guide, support, support_side
 from tmm_cli.draw.forms import Form, Line, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.rigid import rigid
-from tmm_cli.draw.scene import BEYOND, Scene, spread
+from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, spread
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
 from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, sliding_arrow, turning_arrow
 from tmm_cli.draw.wheels import CHAIN, CamShape, contact
@@ -85,7 +85,9 @@ def _render(
         joined = {link for pair in here if pair in pairs for link in (pair.i, pair.j)}
         if FRAME not in joined:
             continue
-        end = support(sheet, at, support_side(sheet, at, rods, look), look)
+        stones = [place for link in joined if link in forms for place in forms[link].boxes]
+        here_look = look.raised() if any(abs(at - place) < ON_LINE for place in stones) else look
+        end = support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
         if not look.measured:
             sheet.label(FRAME, end, 9, DARK, "italic")
     return drawn

@@ -11,7 +11,7 @@ from tmm_cli.draw.symbols import WELD, weld
 from tmm_cli.draw.wheels import CamShape, Disc, Outline
 from tmm_cli.vectors import cross, dot
 
-STEEP = 0.35  # rad from a straight line: there is hardly a corner to fill
+SAME, STEEP = 0.02, 0.7  # rad: of one direction; from a straight line, there is hardly a corner to fill
 SPOKE, THROUGH = 1.2, 2.0  # points wide
 
 
@@ -51,7 +51,7 @@ def _spoke(sheet: Sheet, disc: Disc, form: Form, colour: str) -> None:
 
 def _corner(sheet: Sheet, at: complex, arm: complex, form: Form, colour: str, hinge: float) -> None:
     """A follower's arm and the bar that is next to it at the same hinge."""
-    others = [other for other in _arms(form, at) if abs(arm) > ON_LINE]
+    others = [other for other in _arms(form, at) if abs(arm) > ON_LINE and abs(np.angle(other / arm)) > SAME]
     if not others:
         return
     nearest = min(others, key=lambda other: abs(float(np.angle(other / arm))))

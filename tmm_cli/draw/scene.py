@@ -87,9 +87,10 @@ class Scene:
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
     def joints(self, link: str) -> list[complex]:
-        """Places at which a link is hinged or runs on a guide; of a link with one of them, its named points too."""
+        """Places at which a link is hinged or runs on a guide; of a bar with one of them, its named points too."""
         found = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
-        if len(found) + len(self.guides(link)) < 2:
+        disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
+        if len(found) + len(self.guides(link)) < 2 and not disk:
             found += self.ends(link)
         return found
 
@@ -132,18 +133,19 @@ def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: f
 
 def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
     """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
-    boxes = [(p, sheet.on(scene.at(p))) for link in links for p in scene.of(link) if p.slide is not None]
+    boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
     every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
-    for pair, at in boxes:
-        slide = pair.slide
-        if slide is None or slide.carrier != FRAME:
+    for pair in (p for link in links for p in scene.of(link)):
+        if pair.slide is None or pair.slide.carrier != FRAME:
             continue
-        if any(abs(place - at) < APART for other, place in boxes if other.name != pair.name):
-            others = [place for place in every if abs(place - at) > ON_LINE]
-            choices = [at + side * ASIDE * scene.along(slide) for side in (1, -1)]
+        at = boxes[pair.name]
+        if any(abs(place - at) < APART for name, place in boxes.items() if name != pair.name):
+            others = [place for place in (*every, *boxes.values()) if abs(place - at) > ON_LINE]
+            choices = [at + side * ASIDE * scene.along(pair.slide) for side in (1, -1)]
             # farther from the others; without any, lower
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
+            boxes[pair.name] = free
             moved[pair.name] = (free - at) * sheet.mu
     return replace(scene, moved=moved) if moved else scene
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
@@ -30,6 +31,7 @@ COLOURS = {
 GREY_TEXT = "#505050"  # of titles of columns
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 LEADER = 4.0  # mm from which a line leads from a place to its label
 
 
@@ -243,7 +245,12 @@ def scale_text(symbol: str, mu: float, unit: str) -> str:
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """A title of an axis."""
-    return ", ".join(part for part in (words, units.symbol(dimension)) if part)
+    return ", ".join(part for part in (words, on_paper(units.symbol(dimension))) if part)
+
+
+def on_paper(unit: str) -> str:
+    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
+    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(RAISED), unit).replace("*", "·")
 
 
 def safe(name: str) -> str:

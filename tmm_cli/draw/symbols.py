@@ -49,6 +49,11 @@ class Look:
         box = (size * length, size * width)
         return replace(self, hinge=size * self.hinge, box=box, stone=box, support=(size * height, size * half))
 
+    def raised(self) -> Look:
+        """With supports that reach beyond a stone on their hinge."""
+        height, half = self.support
+        return replace(self, support=(height + self.stone[1] / 2, half))
+
 
 MEASURED = Look(True, 1.3, (9.0, 5.0), (7.5, 4.2), (5.6, 3.4), 2.4, (0j,))
 STRUCTURAL = Look(False, 1.7, (10.0, 6.0), (10.0, 6.0), (6.0, 3.4), 2.7, (0.8j, -0.8j))

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import cycle
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.actuators import cylinders
-from tmm_cli.draw.chart_axes import chart
+from tmm_cli.draw.axes import across, filling, limits
+from tmm_cli.draw.chart import Across, Curve, Plot, chart, room
 from tmm_cli.draw.construction import construction
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, GREY, INERTIA, LOAD, REACTION, THIN, Sheet, scale_text, with_unit
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_text, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import KINDS, Dimension
+from tmm_cli.quantities import ANGLE, KINDS, Dimension
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.record import Outcome
 
@@ -32,7 +32,7 @@ ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 
 def sheets(
     title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
-) -> Iterable[tuple[str, Drawing | Figure]]:
+) -> Iterable[tuple[str, Drawing]]:
     """What the task draws, and the extreme positions, if there is a mechanism with strokes.
 
     names: of parameters, standard name to that in the file.
@@ -47,48 +47,42 @@ def sheets(
         yield "synthesis-extremes", extremes(results).finish()
 
 
-def synthesised(results: Results) -> Iterable[tuple[str, Drawing | Figure]]:
+def synthesised(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The sheets of a problem whose file has a synthesis."""
     found = results.problem.synthesis
     if found is not None:
         yield from sheets(results.problem.title, found.outcome, results, results.problem.units, found.names)
 
 
-def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Figure:
+def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     """Curves over one quantity, in the units of the file."""
-    figure = chart(LANDSCAPE, title, drawn.title)
-    axes = figure.add_axes((0.1, 0.11, 0.85, 0.74))
-    x_words, x_kind = drawn.x
-    across = KINDS[x_kind].dimension
+    sheet = Sheet(title, drawn.title, paper=LANDSCAPE)
+    words, kind = drawn.x
+    wide = KINDS[kind].dimension
+    over = limits([np.asarray(line.x, dtype=float) / units.factor(wide) for line in (*drawn.lines, *drawn.lower)])
+    degrees = wide == ANGLE and units.symbol(ANGLE) == "deg"
+    start, most = room(sheet)
+    axis = filling(*over, start, most) if drawn.equal else across(*over, start, most, degrees=degrees)
+    plots = [_plot(drawn.lines, drawn.y, wide, units)]
     if drawn.lower:
-        axes.set_position((0.1, 0.42, 0.85, 0.43))
-        below = figure.add_axes((0.1, 0.11, 0.85, 0.25), sharex=axes)
-        below.set_yscale("log")
-        _panel(below, drawn.lower, drawn.lower_y, across, units)
-        axes.tick_params(labelbottom=False)
-    _panel(axes, drawn.lines, drawn.y, across, units)
-    if drawn.equal:
-        axes.set_aspect("equal", adjustable="datalim")
-    (below if drawn.lower else axes).set_xlabel(with_unit(x_words, across, units), parse_math=False)
-    return figure
+        plots.append(replace(_plot(drawn.lower, drawn.lower_y, wide, units), logarithmic=True, share=0.6))
+    chart(sheet, plots, Across(axis, with_unit(words, wide, units)), same_scale=drawn.equal)
+    return sheet.finish()
 
 
-def _panel(axes: Axes, lines: Iterable[Line], y: tuple[str, str], across: Dimension, units: UnitSystem) -> None:
-    """Curves with their legend and the axis upwards."""
-    y_words, y_kind = y
-    up, number = KINDS[y_kind].dimension, 0
-    for line in lines:
-        xs, ys = (
-            np.asarray(values, dtype=float) / units.factor(kind) for values, kind in ((line.x, across), (line.y, up))
+def _plot(lines: Iterable[Line], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> Plot:
+    """Curves of a panel, those behind the others first."""
+    words, kind = y
+    high = KINDS[kind].dimension
+    colours = cycle((DARK, LOAD, INERTIA, REACTION))
+    curves = [
+        Curve(
+            np.asarray(line.x, dtype=float) / units.factor(wide), np.asarray(line.y, dtype=float) / units.factor(high),
+            line.text, THIN if line.faint else next(colours), width=1.0 if line.faint else 1.3, dots=line.dots,
         )
-        style = {"ls": "none", "marker": "o", "ms": 4} if line.dots else {"lw": 1.0 if line.faint else 1.4}
-        colour = THIN if line.faint else (DARK, LOAD, INERTIA, REACTION)[number % 4]
-        axes.plot(xs, ys, color=colour, label=line.text, zorder=2 if line.faint else 3, **style)
-        number += not line.faint
-    axes.set_ylabel(with_unit(y_words, up, units), parse_math=False)
-    axes.grid(color=GREY, lw=0.4)
-    if len(axes.lines) > 1:
-        axes.legend(fontsize=9)
+        for line in sorted(lines, key=lambda line: not line.faint)
+    ]  # fmt: skip
+    return Plot(with_unit(words, high, units), curves)
 
 
 def extremes(results: Results) -> Sheet:

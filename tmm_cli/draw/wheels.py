@@ -28,7 +28,9 @@ DASHED: Style = "--"
 TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how many are hinted at
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
+AXLE = 0.9  # mm: the circle in the middle of a roller
 STEPS = 361
+ABOVE = 2.3  # plates do not hide wheels
 LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
 
 
@@ -93,6 +95,13 @@ def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
 def contact(found: Outline) -> complex:
     """Where the two links touch, m."""
     return found.pitch if isinstance(found, Teeth) else found.touch
+
+
+def bars(found: Outline, link: str) -> list[tuple[complex, complex]]:
+    """Straight parts of a cam's follower, m: its stem, and its face or none where it has a roller."""
+    if isinstance(found, Teeth) or found.mesh.j != link:
+        return []
+    return [part for part in (found.stem, found.face) if part[0] != part[1]]
 
 
 def extent(found: Iterable[Outline], size: float, links: Collection[str] | None = None) -> list[complex]:
@@ -214,16 +223,16 @@ def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
     ways = unit(np.linspace(0, 2 * np.pi, number + 1))
-    _curve(sheet, centre + radius * ways, colour, 0.8, CHAIN, 2.05)
+    _curve(sheet, centre + radius * ways, colour, 0.8, CHAIN, ABOVE)
     outside = radius + RIM if disc.ring else radius
     if disc.ring:
-        _curve(sheet, centre + outside * ways, colour, 1.2, "-", 2.05)
+        _curve(sheet, centre + outside * ways, colour, 1.2, "-", ABOVE)
     if disc.link == FRAME:
         out = 1.0 if disc.ring else -1.0
         number = int(np.clip(2 * np.pi * outside / 3.2, 12, 900))
         for way in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
             stroke = centre + way * np.array([outside, outside + 1.7 * out + 1.2j])
-            _curve(sheet, stroke, THIN, 0.6, "-", 2.0)
+            _curve(sheet, stroke, THIN, 0.6, "-", ABOVE)
     _tooth_hint(sheet, centre, radius, pitch, along, colour)
 
 
@@ -264,7 +273,7 @@ def _rack_bar(sheet: Sheet, found: Teeth, colour: str, span: tuple[float, float]
 
 
 def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str]) -> None:
-    """The disk, and the follower's face with its stem or its arm with the roller."""
+    """The disk, and the follower's roller; its other parts are bars of its link."""
     disk = [sheet.on(complex(p)) for p in found.disk]
     if found.mesh.i in hue:
         sheet.area(disk[:-1], "#f1f3f6", hue[found.mesh.i], 1.2, 1.9)
@@ -273,12 +282,7 @@ def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str]) -> None:
     if found.mesh.j not in hue:
         return
     own = hue[found.mesh.j]
-    stem = [sheet.on(p) for p in found.stem]
-    if abs(stem[1] - stem[0]) > 1.0:
-        sheet.line(stem, own, 1.8, z=2.9)
     if found.roller:
-        sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 3.3)
-        sheet.circle(sheet.on(found.face[0]), 0.5, own, own, 0.3, 3.4)
-    else:
-        sheet.line([sheet.on(p) for p in found.face], own, 2.2, z=3.4)
+        sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 2.9)
+        sheet.circle(sheet.on(found.face[0]), AXLE, "white", own, 1.0)
     sheet.circle(sheet.on(found.touch), 0.55, DARK, DARK, 0.3, 6.4)

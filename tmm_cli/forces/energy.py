@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.vectors import Real, dot
+from tmm_cli.vectors import Real, dot, square
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
         centre, turning = motion.centre(name), motion.link(name)
-        inertia = inertia + link.mass * np.abs(centre.first) ** 2 + link.inertia * turning.first**2
+        inertia = inertia + link.mass * square(centre.first) + link.inertia * turning.first**2
         slope = slope + 2 * (
             link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second
         )

@@ -6,9 +6,9 @@ section 2.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -111,14 +111,15 @@ class Reactions:
         """Every pair's reaction, the drivers' first, then groups in solving order."""
         return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
 
-    @property
-    def directed(self) -> Iterator[Reaction]:
+    @cached_property
+    def directed(self) -> tuple[Reaction, ...]:
         """The same with the angles of their forces; one that is zero to rounding has neither angle nor arm (nan)."""
-        largest = reduce(np.maximum, [np.abs(r.force) for r in self.all])
-        for r in self.all:
-            there = np.abs(r.force) > NO_FORCE * largest
-            arm = None if r.arm is None else np.where(there, r.arm, np.nan)
-            yield replace(r, angle=np.where(there, np.angle(r.force), np.nan), arm=arm)
+        sizes = [np.abs(r.force) for r in self.all]
+        least, found = NO_FORCE * reduce(np.maximum, sizes), []
+        for r, size in zip(self.all, sizes, strict=True):
+            arm = None if r.arm is None else np.where(size > least, r.arm, np.nan)
+            found.append(replace(r, angle=np.where(size > least, np.angle(r.force), np.nan), arm=arm))
+        return tuple(found)
 
     def of(self, name: str) -> Reaction:
         """The reaction in a pair, by the pair's name."""

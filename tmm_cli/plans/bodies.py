@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
@@ -121,7 +121,7 @@ class Loaded:
         driver, k, turns = balance.driver, self.k, balance.kind == "moment" and balance.moment is not None
         symbol = balance_symbol(driver.link, len(self.reactions.balances) > 1, turns=turns)
         if sense < 0:
-            symbol = replace(symbol, letter=f"−{symbol.letter}")
+            symbol = symbol.primed
         if turns:
             moment = sense * float(balance.generalized[k])
             return Acting(symbol, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)

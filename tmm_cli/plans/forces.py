@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.plans.bodies import load_symbols
@@ -114,7 +114,7 @@ def _borne(
         if balance.kind == "force" and link in (own, base) and not {own, base} <= {*links}:
             symbol, vector = balance_symbol(own, several), complex(balance.vector[k])
             if link != own:
-                symbol, vector = replace(symbol, letter=f"−{symbol.letter}"), -vector
+                symbol, vector = symbol.primed, -vector
             yield symbol, vector, "load"
 
 

@@ -2,71 +2,141 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tmm_cli.forces.lever import Item, Lever
+import numpy as np
+
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.lever import Lever
+from tmm_cli.forces.plan import Balance, Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.plans.record import NamedVector
-from tmm_cli.plans.velocity import absolute, ends_of, relative
+from tmm_cli.linkage import FRAME
+from tmm_cli.plans.bodies import DRIVE, Acting, load_symbols
+from tmm_cli.plans.moments import MomentEquation, Sought, numbered, terms
+from tmm_cli.plans.record import Kind, NamedVector, Symbol, balance_symbol
+from tmm_cli.plans.velocity import absolute, ends_of, massive, other_than, relative
+
+POLE = "p"
+TURNED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense
+MOST = 22  # forces on a lever, those of couples among them; with more of them couples stay couples
 
 
 @dataclass(frozen=True)
-class LeverForce:
-    """A force (N) at a place of the lever (m per unit of the driver's motion), and the foot of its arm."""
+class Pair:
+    """A couple M (N m) on a link as two forces, P and P′, M over the distance (m) of two of its points, each."""
 
-    name: str
-    at: complex
-    force: complex
-    foot: complex
+    symbol: Symbol
+    couple: Symbol
+    moment: float
+    points: tuple[str, str]
+    distance: float
 
 
 @dataclass(frozen=True)
 class LeverPlan:
-    """ends: lettered points of the turned plan. bars: its lines.
+    """ends: lettered points of the turned plan (m per unit of the driver's motion). bars: its lines.
 
-    A couple on a link of two points and more is the pair of forces in `forces` that has its moment; couples has the
-    others: name and moment on the lever, N m.
+    acting: all forces, at these places, and couples: those that balance, and M′ = M ω/ω₁ where M is not a pair of
+    forces (on links of one point, and on levers with many forces). equation: their moments about the pole.
     """
 
     ends: dict[str, complex]
     bars: tuple[NamedVector, ...]
-    forces: tuple[LeverForce, ...]
-    couples: tuple[tuple[str, float], ...]
-    balancing: float
+    acting: tuple[Acting, ...]
+    pairs: tuple[Pair, ...]
+    equation: MomentEquation
 
 
-def lever_plan(motion: Motion, lever: Lever, k: int) -> LeverPlan:
-    """Velocities per unit of the driver's motion, turned by +90 degrees; forces keep their directions."""
+def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> LeverPlan:
+    """Velocities per unit of the driver's motion, turned clockwise; forces keep their directions.
+
+    One driver is found from the moments of the loads; of several the force plan says what they do.
+    """
     linkage = motion.linkage
-    ends = ends_of(linkage, "p", lambda point: 1j * complex(motion.named(point).first[k]))
-    bars = (*absolute(ends, "p"), *relative(linkage, ends))
-    forces, couples = [], []
-    for item in lever.items:
-        if item.end is None or item.force is None:
-            pair = _couple(motion, item, k)
-            forces += pair
-            if not pair:
-                couples.append((item.name, float(item.moment[k])))
-        elif item.force[k] != 0:
-            forces.append(_force(item.name, 1j * complex(item.end[k]), complex(item.force[k])))
-    return LeverPlan(ends, bars, tuple(forces), tuple(couples), float(lever.balancing[k]))
+    ends = ends_of(linkage, POLE, lambda point: TURNED * complex(motion.named(point).first[k]))
+    bars = (*absolute(ends, POLE), *relative(linkage, ends))
+    for link in massive(linkage):
+        ends[other_than(ends, f"s{link}")] = TURNED * complex(motion.centre(link).first[k])
+    acting: list[Acting] = []
+    pairs: list[Pair] = []
+    crowded = sum(1 + 2 * (load.moment[k] != 0) for load in reactions.applied) > MOST
+    for load in reactions.applied:
+        acting += _force(motion, load, k)
+        pair = None if crowded else _pair(motion, load, k)
+        if pair is None:
+            acting += _couple(motion, load, k)
+        else:
+            pairs.append(pair)
+            acting += _forces_of(motion, load, pair, k)
+    several = len(reactions.balances) > 1
+    for balance in reactions.balances:
+        acting += _balance(motion, balance, k, None if several else float(lever.balancing[k]), several=several)
+    first = reactions.balance
+    turns = first.kind == "moment"
+    sought = None if several else Sought(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
+    size = max((abs(end) for end in ends.values()), default=0.0)
+    found = tuple(a for a in acting if a.size > 0)
+    (equation,) = numbered([MomentEquation((), POLE, 0j, terms(found, 0j, size), sought)])
+    return LeverPlan(ends, bars, found, tuple(pairs), equation)
 
 
-def _force(name: str, at: complex, force: complex) -> LeverForce:
-    along = force / abs(force)
-    return LeverForce(name, at, force, at - along * (at * along.conjugate()).real)
+def _kind(load: Applied) -> Kind:
+    return "inertia" if load.kind == "inertia" else "load"
 
 
-def _couple(motion: Motion, item: Item, k: int) -> list[LeverForce]:
-    """A couple as two forces across the line of the link's first two points, at the ends of their velocities."""
-    link = motion.linkage.links[item.link]
-    size = float(item.size[k])
-    if len(link.points) < 2 or size == 0:
-        return []
-    one, other, *_ = link.points.values()
-    if one == other:
-        return []
-    arm = complex((other - one) * motion.poses[item.link].z[k])
-    force = 1j * arm * (size / abs(arm) ** 2)
-    ends = (1j * complex(motion.point(item.link, local).first[k]) for local in (one, other))
-    return [_force(item.name, end, f) for end, f in zip(ends, (-force, force), strict=True)]
+def _force(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
+    end = TURNED * complex(motion.point(load.link, load.at).first[k])
+    yield Acting(load_symbols(load)[0], _kind(load), load.link, end, complex(load.force[k]))
+
+
+def _couple(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
+    """M′, with the ratio of the link's speed to the driver's in it."""
+    ratio, at = float(motion.link(load.link).first[k]), TURNED * complex(motion.point(load.link, load.at).first[k])
+    symbol = load_symbols(load)[1].primed
+    yield Acting(symbol, _kind(load), load.link, at, 0j, float(load.moment[k]) * ratio)
+
+
+def _pair(motion: Motion, load: Applied, k: int) -> Pair | None:
+    """Of the couple on a link of two points and more: at the first two of them."""
+    points = list(motion.linkage.links[load.link].points.items())
+    if load.moment[k] == 0 or len(points) < 2 or points[0][1] == points[1][1]:
+        return None
+    couple = load_symbols(load)[1]
+    symbol = Symbol("P", couple.below or couple.letter)
+    distance = abs(complex(points[1][1] - points[0][1]))
+    return Pair(symbol, couple, float(load.moment[k]), (points[0][0], points[1][0]), distance)
+
+
+def _forces_of(motion: Motion, load: Applied, pair: Pair, k: int) -> Iterable[Acting]:
+    """Across the line of the two points, at the ends of their velocities."""
+    one, other = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
+    arm = (other - one) * complex(motion.poses[load.link].z[k])
+    force = 1j * arm * (pair.moment / abs(arm) ** 2)
+    for local, symbol, sense in ((one, pair.symbol.primed, -1), (other, pair.symbol, 1)):
+        end = TURNED * complex(motion.point(load.link, local).first[k])
+        yield Acting(symbol, _kind(load), load.link, end, sense * force)
+
+
+def _balance(motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool) -> Iterable[Acting]:
+    """What balances a driver; moment: what the lever gives for a single one (N m, or N), else the force plan's."""
+    driver, turns = balance.driver, balance.kind == "moment"
+    symbol = balance_symbol(driver.link, several, turns=turns)
+    ratio = float(np.broadcast_to(motion.drives[driver.link].first, motion.q.shape)[k])
+    total = float(balance.generalized[k]) * ratio if moment is None else moment
+    if turns:
+        yield Acting(symbol, "reaction", driver.link, 0j, 0j, total, DRIVE)
+        return
+    own, base = (_first(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base))
+    force = (own - base) * (total / abs(own - base) ** 2)
+    yield Acting(symbol, "reaction", driver.link, TURNED * own, force, pair=DRIVE)
+    if driver.base != FRAME:
+        yield Acting(symbol.primed, "reaction", driver.base, TURNED * base, -force)
+
+
+def _first(motion: Motion, link: str, place: complex, k: int) -> complex:
+    """Velocity of a point of a link per unit of the driver's motion."""
+    if link == FRAME:
+        return 0j
+    pose = motion.poses[link]
+    return complex(motion.point(link, complex((place - pose.x[k]) / pose.z[k])).first[k])

@@ -110,7 +110,7 @@ def _group(here: Loaded, forces: GroupForces) -> LoadedPart:
         equations = [_equation(here, axes, (link,), *_hinge(here, group, link)) for link in group.links]
     else:
         equations += _of_guides(here, group, axes)
-    return LoadedPart(group.links, here.acting(group.links, axes), _lettered(equations))
+    return LoadedPart(group.links, here.acting(group.links, axes), numbered(equations))
 
 
 def _of_leads(
@@ -165,7 +165,7 @@ def _driving(here: Loaded, frame: Reaction) -> LoadedPart:
         turns = balance.kind == "moment"
         sought = Sought(balance_symbol(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
     equation = _equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
-    return LoadedPart((link,), here.acting((link,), {}), _lettered([equation]), driving=True)
+    return LoadedPart((link,), here.acting((link,), {}), numbered([equation]), driving=True)
 
 
 def _part(group: Group, pair: Pair, kind: Kind) -> Sought:
@@ -189,28 +189,37 @@ def _equation(
     sought: Sought | None = None, carried: Mapping[str, complex] | None = None,
 ) -> MomentEquation:  # fmt: skip
     """Moments of all that acts on these links. carried: to which places guides' reactions go, each with a couple."""
-    terms = []
-    for acting in here.acting(links, axes):
-        for one in _moved(acting, (carried or {}).get(acting.pair)):
-            if one.size <= NO_COORDINATE * (acting.size * here.size if one.couple else acting.size):
-                continue
-            along = one.force / abs(one.force) if not one.couple else 0j
-            foot = one.at - along * float(dot(one.at - centre, along))
-            arm = abs(foot - centre) if not one.couple else 0.0
-            if one.couple or arm > NO_COORDINATE * here.size:
-                terms.append(Term(one, one.about(centre), arm, foot))
-    return MomentEquation(tuple(links), about, centre, tuple(terms), sought)
+    to = carried or {}
+    acting = [one for given in here.acting(links, axes) for one in _moved(given, to.get(given.pair), here.size)]
+    return MomentEquation(tuple(links), about, centre, terms(acting, centre, here.size), sought)
 
 
-def _moved(acting: Acting, place: complex | None) -> Iterable[Acting]:
+def terms(acting: Iterable[Acting], centre: complex, size: float) -> tuple[Term, ...]:
+    """Moments about a place; without what goes through it but for rounding of a size (m)."""
+    found = []
+    for one in acting:
+        if one.couple:
+            found.append(Term(one, one.moment, 0.0, one.at))
+            continue
+        along = one.force / abs(one.force)
+        foot = one.at - along * float(dot(one.at - centre, along))
+        if abs(foot - centre) > NO_COORDINATE * size:
+            found.append(Term(one, one.about(centre), abs(foot - centre), foot))
+    return tuple(found)
+
+
+def _moved(acting: Acting, place: complex | None, size: float) -> Iterable[Acting]:
     if place is None or acting.couple:
-        return (acting,)
-    symbol = replace(acting.symbol, letter="M")
-    couple = replace(acting, symbol=symbol, kind="inner", force=0j, moment=acting.about(place), at=place)
-    return (replace(acting, at=place), couple)
+        yield acting
+        return
+    yield replace(acting, at=place)
+    moment = acting.about(place)
+    if abs(moment) > NO_COORDINATE * acting.size * size:
+        symbol = replace(acting.symbol, letter="M")
+        yield replace(acting, symbol=symbol, kind="inner", force=0j, moment=moment, at=place)
 
 
-def _lettered(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
+def numbered(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
     """Arms get numbers; the same ones of several forces (weight and inertia in one line) have one."""
     found: list[MomentEquation] = []
     feet: list[tuple[complex, complex]] = []

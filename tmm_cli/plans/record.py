@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from tmm_cli.tolerances import NO_VECTOR
@@ -32,6 +32,11 @@ class Symbol:
         """In one line: R₃₄ᵗ."""
         below = f"({self.below})" if "," in self.below else self.below.translate(_BELOW)
         return self.letter + below + self.above.translate(_ABOVE)
+
+    @property
+    def primed(self) -> Symbol:
+        """P′ of P."""
+        return replace(self, letter=f"{self.letter}′")
 
 
 @dataclass(frozen=True)

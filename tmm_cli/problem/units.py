@@ -52,7 +52,9 @@ class Unit:
 
     def si(self, number: float) -> float:
         """The number of these units in SI and radians, in the number's own precision."""
-        return number * _pi(number) ** self.pi * self.scale.numerator / self.scale.denominator
+        if self.pi:
+            number = number * _pi(number) ** self.pi
+        return number * self.scale.numerator / self.scale.denominator
 
     def from_si(self, value: Any) -> Any:
         """A value, or an array of them, in SI and radians in these units."""

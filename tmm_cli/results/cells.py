@@ -72,13 +72,15 @@ def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
     return [[(c.dimension == ANGLE, table.name, k, row) for row in rows] for k, c in enumerate(table.columns)]
 
 
-def _leaves(value: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
+def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], Any]]:
     """Numbers and arrays of nested content with their paths; items of lists are known by their number."""
+    found: list[tuple[tuple[str, ...], Any]] = []
     for name, part in _parts(value):
         if isinstance(part, dict | list):
-            yield from _leaves(part, (*path, name))
+            found += _leaves(part, (*path, name))
         else:
-            yield (*path, name), float(part) if isinstance(part, float | np.floating) else part
+            found.append(((*path, name), float(part) if isinstance(part, float | np.floating) else part))
+    return found
 
 
 def _parts(value: Any) -> Iterable[tuple[str, Any]]:

@@ -61,21 +61,20 @@ class AccuracyReport:
         """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
         worst: list[tuple[str | float, ...]] = []
         for table in map(self.table, tables):
-            worst += [(table.name, *row) for row in _worst(table)] if self.full else []
-            yield table
+            rows = list(_worst(table)) if self.full else []
+            worst += [(table.name, *row) for row in rows]
+            yield replace(table, notes=(*table.notes, _note(rows))) if rows else table
         if self.full:
             yield self.summary(worst)
 
     def table(self, table: Table) -> Table:
-        """The same table, its numbers with their bounds and sensitivities, and a note of the worst of them."""
+        """The same table, its numbers with their bounds and sensitivities."""
         keys = keys_of(table, len(self.relative))
         columns = [
             replace(column, **self._parts(table, column, None if keys is None else keys[k]))
             for k, column in enumerate(table.columns)
         ]
-        told = replace(table, columns=tuple(columns))
-        note = _note(told, self.digits.mu) if self.full else ""
-        return replace(told, notes=(*table.notes, note)) if note else told
+        return replace(table, columns=tuple(columns))
 
     def _parts(self, table: Table, column: Column, keys: list[Hashable] | None) -> dict[str, Any]:
         """The bounds of a column, and its sensitivities if wanted. keys: of its rows at one position, if any."""
@@ -162,32 +161,31 @@ def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
 
     Of a table in which every row has a unit of its own, the same of each row, beside the largest value of that unit.
     """
-    units = table.columns[-1].values if table.columns[-1].header == _("unit") else None
+    units = np.array(table.columns[-1].values) if table.columns[-1].header == _("unit") else None
     for column in table.columns:
         if column.bound is None:
             continue
-        values, *digits = [column.array, *(getattr(column, part) for part in PARTS)]
-        rows = [(slice(None), column.header)] if units is None else enumerate(table.columns[0].values)
-        for k, name in rows:
-            size = _most(values if units is None else values[[unit == units[k] for unit in units]])
-            bound, share, paper = (_most(part[k]) for part in digits)
+        parts = np.stack([column.array, *(getattr(column, part) for part in PARTS)])
+        rows = [(slice(None), slice(None), column.header)]
+        if units is not None:
+            rows = [(slice(k, k + 1), units == unit, table.columns[0].values[k]) for k, unit in enumerate(units)]
+        for own, alike, name in rows:
+            (size,), (bound, share, paper) = _most(parts[:1, alike]), _most(parts[1:, own])
             if size > 0 and bound < size:  # else it is nothing but rounding
                 true = np.floor(-np.log10(2 * max(bound / size, ROUNDOFF)))
                 yield name, bound / size, true, 100 * share / size, 100 * paper / size
 
 
-def _most(values: Any) -> float:
-    """The largest number; nan where there is none."""
-    values = np.abs(np.atleast_1d(np.asarray(values, dtype=float)))
-    values = values[np.isfinite(values)]
-    return float(np.max(values)) if values.size else float("nan")
+def _most(values: Real) -> Real:
+    """The largest number of each row; nan where there is none."""
+    values = np.abs(values)
+    sound = np.isfinite(values)
+    return np.where(sound.any(axis=1), np.max(values, axis=1, where=sound, initial=0.0), np.nan)
 
 
-def _note(table: Table, mu: float) -> str:
-    rows = list(_worst(table))
-    if not rows:
-        return ""
-    bound, share, paper = (max(rows, key=lambda row: np.nan_to_num(row[k])) for k in (1, 3, 4))
+def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
+    """What to know of the worst columns of a table."""
+    bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
     if not share[3] > 0:
         return _("Rounding: at most {bound} of the largest value of a column.").format(bound=f"{bound[1]:.1e}")
     return _(
@@ -212,7 +210,10 @@ def _mu(results: Results) -> float:
     places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
     for name in linkage.moving:
         for point in linkage.links[name].points:
-            places += [complex(x) for x in motion.spot(point) if np.isfinite(x)]
+            way = motion.spot(point)
+            way = way[np.isfinite(way)]
+            if way.size:
+                places += [complex(most(way.real), most(way.imag)) for most in (np.min, np.max)]
     return sheet_scale(places)[1]
 
 

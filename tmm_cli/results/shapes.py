@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from operator import attrgetter
 from typing import Any
 
@@ -67,9 +68,12 @@ class Field:
     def is_there(self, found: Any) -> bool:
         return self.there(found) if callable(self.there) else getattr(found, self.there) is not None
 
+    @cached_property
+    def reader(self) -> Callable[[Any], Any]:
+        return self.read if callable(self.read) else attrgetter(self.read or self.key)
+
     def content(self, found: Any) -> Any:
-        read = self.read if callable(self.read) else attrgetter(self.read or self.key)
-        return self.shape.content(read(found))
+        return self.shape.content(self.reader(found))
 
 
 def contents(fields: Iterable[Field], found: Any) -> Iterator[tuple[str, Any]]:

@@ -1,0 +1,157 @@
+"""Diagrams: every axis at a round scale, curves broken where a load begins or ends, legends that cover no curve."""
+
+import math
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from higher import PROBLEMS
+from test_commands import ROOT, SHAPER
+
+from tmm_cli import load, solve
+from tmm_cli.draw.axes import across, decades, equal, round_up, upwards
+from tmm_cli.draw.chart import Across, Curve, Plot, chart, room
+from tmm_cli.draw.diagrams import LINES, diagrams
+from tmm_cli.draw.drawing import POINT, Circle, Line, Text
+from tmm_cli.draw.fonts import corners
+from tmm_cli.draw.sheet import Sheet
+from tmm_cli.plans.record import LANDSCAPE
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+
+
+def shaper(*changes):
+    text = SHAPER.read_text(encoding="utf-8")
+    for old, new in changes:
+        text = re.sub(old, new, text)
+    return solve(build(read_text(text, "shaper.yaml")))
+
+
+@cache
+def drawn(name):
+    problem = build(read_text(PROBLEMS[name], "x.yaml")) if name in PROBLEMS else load(f"{ROOT}/problems/{name}.yaml")
+    return dict(diagrams(solve(problem)))
+
+
+def curves(drawing):
+    """Polylines of quantities, from the highest panel down."""
+    found = [m for m in drawing.marks if isinstance(m, Line) and m.width == pytest.approx(1.3 * POINT)]
+    return [line for line in found if len(line.places) > 2]
+
+
+def scale(drawing, symbol):
+    """A scale factor as it is written on a sheet."""
+    return next(float(found[1]) for t in drawing.texts() if (found := re.search(rf"μ_{symbol} = (\S+) ", t)))
+
+
+@pytest.mark.parametrize(("low", "high"), [(-3.7, 12.1), (0, 0.0042), (1e5, 1.02e5), (-900, -3), (5, 5), (0, 0)])
+def test_an_axis_has_a_round_scale_holds_its_values_and_numbers_that_stand_apart(low, high):
+    axis = upwards(low, high, 40, 60)
+    assert round_up(axis.mu) == pytest.approx(axis.mu)
+    assert np.all((axis.on([low, high]) >= 40) & (axis.on([low, high]) <= 100))
+    places = [axis.on(value) for value, __ in axis.ticks(6)]
+    assert len(places) > 2 and min(np.diff(places)) >= 6 - 1e-9
+
+
+def test_a_turn_of_the_crank_ends_its_axis_and_is_numbered_by_angles():
+    axis = across(0, 360, 20, 170, degrees=True)
+    assert (axis.mu, axis.length) == (2.5, 144)
+    assert [text for __, text in axis.ticks(11)] == [str(30 * k) for k in range(13)]
+
+
+def test_a_logarithmic_axis_has_whole_powers_of_ten_and_keeps_zero_at_its_end():
+    axis = decades(0.004, 20, 10, 50)
+    assert [text for __, text in axis.ticks(6)] == ["1e-3", "1e-2", "1e-1", "1", "1e1", "1e2"]
+    assert axis.on([0.0, 1e-3, 100]) == pytest.approx([10, 10, 60])
+
+
+def test_a_path_is_drawn_to_one_scale_both_ways():
+    both = upwards(0, 100, 20, 200), upwards(0, 30, 20, 100)
+    x, y = equal(both, [(0, 100), (0, 30)])
+    assert x.mu == y.mu and x.on(50) == 120 and y.on(15) == 70
+
+
+def test_a_curve_measures_what_the_scales_say():
+    drawing = drawn("shaper")["diagrams"]
+    run = curves(drawing)[0]
+    heights = [place.imag for place in run.places]
+    results = solve(load(str(SHAPER)), "kinematics")
+    assert np.ptp(heights) * scale(drawing, "s") == pytest.approx(results.strokes.travel, rel=1e-6)
+    assert abs(run.places[-1].real - run.places[0].real) * scale(drawing, "φ") == pytest.approx(360)
+
+
+def test_positions_are_numbered_beside_degrees_and_the_strokes_named():
+    texts = drawn("shaper")["diagrams"].texts()
+    assert {*map(str, range(13)), "30", "360", "working stroke", "idle stroke"} <= set(texts)
+    assert "a of 5, m/s²" in texts and "balancing moment Mb, N·m" in texts
+
+
+def test_the_border_of_the_strokes_stands_where_the_output_turns_back():
+    drawing = drawn("shaper")["diagrams"]
+    borders = {round(m.places[0].real, 6) for m in drawing.marks if isinstance(m, Line) and m.style == "-."}
+    run = curves(drawing)[0]
+    lowest = min(run.places, key=lambda place: place.imag)
+    assert list(borders) == pytest.approx([lowest.real], abs=0.5)
+
+
+def test_a_load_of_the_working_stroke_leaves_a_gap_in_the_balancing_moment_with_both_values():
+    results = shaper(
+        (r"  F: .*", "  brake: {on: 1, moment: -120, when: working stroke}"), (r"from: working stroke, ", "")
+    )
+    drawing = dict(diagrams(results))["diagrams"]
+    moment = [line for line in curves(drawing) if line.places[0].imag < 100]
+    ends = [place for line in moment for place in (line.places[0], line.places[-1])]
+    inner = sorted(ends, key=lambda place: place.real)[1:-1]
+    assert len(moment) == 3
+    mu = scale(drawing, "M")
+    assert [abs(b.imag - a.imag) * mu for a, b in zip(inner[::2], inner[1::2], strict=True)] == pytest.approx(
+        [120, 120], abs=0.1
+    )
+    rings = [m for m in drawing.marks if isinstance(m, Circle) and m.face == "white"]
+    assert len(rings) == 4 and {"116.6", "123.4"} <= set(drawing.texts())
+
+
+@pytest.mark.parametrize("stem", ["diagrams", "reactions", "energy", "pressure"])
+def test_diagrams_show_the_whole_cycle_of_several_turns(stem):
+    drawing = drawn("gear")[stem]
+    ends = [(line.places[0], line.places[-1]) for line in curves(drawing)]
+    first, last = min(start.real for start, __ in ends), max(end.real for __, end in ends)
+    assert (last - first) * scale(drawing, "φ") == pytest.approx(720)
+    whole = [(start, end) for start, end in ends if end.real - start.real == last - first]
+    assert all(end.imag == pytest.approx(start.imag, abs=1e-6) for start, end in whole)
+
+
+def test_every_output_and_every_driver_has_its_curve():
+    texts = drawn("two cranks")["diagrams-link-3"].texts()
+    assert {"angle of 3, deg", "omega of 3, rad/s", "epsilon of 3, rad/s²"} <= set(texts)
+    assert {"Mb₁", "Mb₄"} <= set(drawn("two cranks")["diagrams"].texts())
+
+
+def test_no_text_of_a_chart_covers_a_curve():
+    for name in ("shaper", "gear", "two cranks"):
+        for stem, drawing in drawn(name).items():
+            places = np.concatenate([line.places for line in curves(drawing)])
+            for text in (mark for mark in drawing.marks if isinstance(mark, Text)):
+                low, __, high, __ = corners(text)
+                inside = (places.real > low.real) & (places.real < high.real)
+                inside &= (places.imag > low.imag) & (places.imag < high.imag)
+                assert not inside.any(), (name, stem, text)
+
+
+def test_a_panel_of_many_curves_has_a_legend_of_several_rows_above_it():
+    sheet = Sheet("title", "caption", paper=LANDSCAPE)
+    x = np.linspace(0, 10, 5)
+    every = [Curve(x, k * x, f"a curve with a long name, number {k}", LINES[k % len(LINES)]) for k in range(9)]
+    (panel,) = chart(sheet, [Plot("value, N", every)], Across(across(0, 10, *room(sheet)), "time, s"))
+    named = [m for m in sheet.marks if isinstance(m, Text) and m.text.startswith("a curve")]
+    assert len(named) == 9 and len({round(m.at.imag, 3) for m in named}) > 1
+    assert all(m.at.imag > panel.y.end and corners(m)[1].real < LANDSCAPE[0] for m in named)
+
+
+def test_values_that_there_are_not_interrupt_a_curve():
+    sheet = Sheet("title", "caption", paper=LANDSCAPE)
+    ys = [1, 2, math.nan, 3, 4]
+    chart(sheet, [Plot("y", [Curve(np.arange(5.0), ys)])], Across(across(0, 4, *room(sheet)), "x"))
+    drawn_lines = [m for m in sheet.marks if isinstance(m, Line) and m.width == pytest.approx(1.3 * POINT)]
+    assert [len(line.places) for line in drawn_lines] == [2, 2]
