@@ -11,8 +11,9 @@ from tmm_cli.draw import files, remarks, sheets
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.labels import Ground, Label, extent
-from tmm_cli.draw.mechanism import all_positions, detailed, position
+from tmm_cli.draw.mechanism import detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.positions import all_positions
 from tmm_cli.draw.sheet import Sheet
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

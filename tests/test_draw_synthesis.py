@@ -9,11 +9,10 @@ import pytest
 
 from tmm_cli import load, solve
 from tmm_cli.draw.construction import PAD, SMALLER, construction, granted, inside
-from tmm_cli.draw.drawing import Area, Text
+from tmm_cli.draw.drawing import Area, Line, Text
 from tmm_cli.draw.fonts import corners
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.sheet import LOAD, border
-from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.draw.sheet import LOAD, THIN, border
 from tmm_cli.draw.synthesis import sheets
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
@@ -176,15 +175,22 @@ def test_the_history_is_never_empty():
 
 
 @pytest.mark.parametrize("k", [1.1, 2.0])
-def test_no_label_stands_on_the_hatching_of_a_guide(k):
+def test_neither_label_nor_rod_stands_on_the_hatching_of_a_guide(k):
     for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.6)):
         sheet = construction("", one, UnitSystem())
-        guide = next(s for s in one.segments if s.style == "guide")
-        left, right = sorted(sheet.on(z).real for z in (guide.start, guide.end))
-        rail = sheet.on(guide.start).imag - MEASURED.box[1] / 2 - 0.5
-        for name, a, b, low, high in boxes(sheet.finish())[2:]:
+        strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
+        middles = [(stroke[0] + stroke[-1]) / 2 for stroke in strokes]
+        stones = [sheet.on(spot.at) for spot in one.spots if spot.mark == "slider"]
+        middles = [at for at in middles if min(abs(at - stone) for stone in stones) < 13]
+        assert len(middles) > 20
+        for name, left, right, low, high in boxes(sheet.finish())[2:]:
             if name not in {s.name for s in one.spots}:  # a point may be on the rail
-                assert min(b, right) - max(a, left) < 0.5 or min(high, rail) - max(low, rail - 1.5) < 0.3, name
+                assert not any(left < at.real < right and low < at.imag < high for at in middles), name
+        for rod in (s for s in one.segments if s.style.startswith("link")):
+            start, end = sheet.on(rod.start), sheet.on(rod.end)
+            shares = [((at - start) / (end - start)).real for at in middles]
+            aside = [abs(((at - start) / (end - start)).imag) * abs(end - start) for at in middles]
+            assert not any(0 < share < 1 and off < 0.5 for share, off in zip(shares, aside, strict=True)), rod
 
 
 @pytest.mark.parametrize("rows", [
@@ -216,13 +222,14 @@ def test_a_curve_that_comes_back_is_on_the_sheet_as_a_whole():
     assert (low, high) == pytest.approx((-1.2 - 0.8j, 1.3 + 1j), abs=0.1)
 
 
-def test_a_size_too_short_for_its_text_has_it_beside_the_arrows():
+def test_a_size_too_short_for_its_text_has_it_beside_or_beyond_the_arrows():
     (one,) = slider(1.02, 4.0)
     sheet = construction("", one, UnitSystem())
     size = next(s for s in one.sizes if s.name == "e")
-    middle = (sheet.on(size.start).imag + sheet.on(size.end).imag) / 2
+    first, last = sorted((sheet.on(size.start).imag, sheet.on(size.end).imag))
     _, left, right, low, high = next(text for text in boxes(sheet.finish()) if text[0].startswith("e = "))
-    assert right - left > high - low and low < middle < high
+    beside = right - left > high - low and low < (first + last) / 2 < high
+    assert last - first < max(right - left, high - low) and (beside or low > last or high < first)
 
 
 @pytest.mark.parametrize("k, ratio, cut", [(1.08, 3.5, 1), (1.2, 3.0, 1), (1.8, 1.5, 0)])

@@ -298,4 +298,4 @@ def test_statistics_are_of_those_who_handed_in(own):
 def test_a_group_without_an_answer_has_no_figures(own):
     assert [table.name for table in tables(own, [absent("Ann", "no such file")])] == ["problems"]
     assert [table.name for table in tables(own, [])] == []
-    assert [text.get_text() for text in chart(own, [absent("Ann")]).axes[2].texts] == ["none was recognised"]
+    assert "none was recognised" in chart(own, [absent("Ann")]).texts()

@@ -127,3 +127,13 @@ def test_a_link_driven_in_two_pairs_has_the_angle_of_their_power():
     assert np.allclose(power, 60 * results.motion.link("4").omega, rtol=1e-12)
     assert np.allclose(np.cos(found.angles), np.abs(power) / most, rtol=0, atol=1e-12)
     assert found.largest >= np.max(found.angles)
+
+
+def test_it_is_a_right_angle_at_an_end_where_the_rocker_is_stretched():
+    problem = FOUR_BAR | {"links": FOUR_BAR["links"] | {"1": {"points": ["O", "A"], "length": 0.3}}}
+    problem |= {"positions": {"count": 4}}
+    results = results_of(problem, "kinematics")
+    (found,), limits = results.pressure, results.driver_range.limits
+    assert found.largest == math.pi / 2 and found.transmission == 0 and math.isinf(found.gain)
+    assert found.place in [limit.place for limit in limits], "coupler and rocker in line: 0.6 from A to D"
+    assert abs(math.hypot(0.3 * math.cos(found.place) - 0.4, 0.3 * math.sin(found.place)) - 0.6) < 1e-12

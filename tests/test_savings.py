@@ -232,7 +232,7 @@ def test_explain_says_of_every_stage_what_the_stage_does():
 
 def test_every_saving_is_one(tmp_path, monkeypatch):
     monkeypatch.setattr("tmm_cli.bench.savings.FEW", 1)
-    monkeypatch.setattr("tmm_cli.draw.formats.FORMATS", {"png": lambda figure: b"", "svg": lambda figure: b""})
+    monkeypatch.setattr("tmm_cli.bench.figures.FIGURES", {"png": lambda figure: b"", "svg": lambda figure: b""})
     done = tmm("bench", "savings", "--reduced", "--json", "-o", tmp_path)
     assert done.returncode == 0
     found = json.loads(done.stdout)

@@ -72,6 +72,7 @@ NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign ch
 NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly
 SMOOTH = 1e-13  # of the largest value: what a polynomial leaves of a smooth function
 ALIKE_ANGLES = 1e-12  # rad: largest pressure angles that differ by less are one, found at several places
+RIGHT_ANGLE = 1e-8  # rad: a pressure angle that goes to a right one at a dead position by less is one there
 NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for rounding has no largest place
 NO_COORDINATE = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 NO_COSINE = 2.5e-16  # the cosine of the double next to a right angle is below this

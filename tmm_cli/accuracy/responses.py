@@ -145,14 +145,14 @@ class _Beside:
     def pressure(self, pressure: Pressure) -> tuple[Real, Real]:
         """Of the place of a largest pressure angle, and of that angle, each (lengths,).
 
-        At an end where its group stops the driver it is a right angle, whatever the lengths.
+        At an end where a group stops the driver and it is a right angle it stays one, whatever the lengths.
         """
         driver_range = self.driver_range
         of, close = _angle(pressure), AT_END * (driver_range.end - driver_range.start)
         for k, end in () if driver_range.full else enumerate((driver_range.start, driver_range.end)):
             if abs(pressure.place - end) <= close:
                 moved = _at_end(self.ends[k])
-                if pressure.group in self.stops(end):
+                if pressure.largest == np.pi / 2:
                     return moved, np.zeros(len(self.data))
                 slopes, rates = self.by_end(k, of)
                 return moved, _at_end(rates + slopes[:, None] * moved)

@@ -132,10 +132,14 @@ class Wide:
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
+        driver_range = self.results.mechanism.driver_range
+        limit = next((limit for limit in driver_range.limits if limit.place == place), None)
+        if limit is not None and largest == np.pi / 2:
+            return 2 * ROUNDOFF, self.end(place, -1 if place == driver_range.start else 1, limit.group, span)
         states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
-        driver_range, edge = self.results.mechanism.driver_range, 2 * GUESS * span
+        edge = 2 * GUESS * span
         for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
             if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from tmm_cli.bench.accuracy import NAMED, TARGETS, Accuracy, Row
+from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, ORANGE, RED, bare, decades, errors, page
 from tmm_cli.bench.methods.case import QUANTITIES
-from tmm_cli.draw.chart_axes import BLUE, DARK, GREEN, ORANGE, RED, bare, decades, errors, page
 from tmm_cli.errors import _
 
 LOW, HIGH = 1e-20, 1e4  # of the error axis; what lies beyond is drawn on its edge

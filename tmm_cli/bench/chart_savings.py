@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.bench.chart_axes import BLUE, DARK, ORANGE, page
 from tmm_cli.bench.savings import COUNTED, NAMED, Savings
-from tmm_cli.draw.chart_axes import BLUE, DARK, ORANGE, page
 from tmm_cli.errors import _
 
 SHARE = 0.75  # of the height of a landscape sheet

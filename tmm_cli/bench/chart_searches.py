@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
+from tmm_cli.bench.chart_axes import DARK, bare, page
 from tmm_cli.bench.searches import NAMES, NEAR, PER_SECOND, Searches
-from tmm_cli.draw.chart_axes import DARK, bare, page
 from tmm_cli.errors import _
 
 COLOURS = dict(zip(NAMES, ("#b3261e", "#1f4e9c", "#1d7a3a"), strict=True))

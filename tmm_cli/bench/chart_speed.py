@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, GREY, RED, bare, decades, page
 from tmm_cli.bench.speed import GROWING, Growth, Speed
-from tmm_cli.draw.chart_axes import BLUE, DARK, GREEN, GREY, RED, bare, decades, page
 from tmm_cli.errors import _
 
 COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}

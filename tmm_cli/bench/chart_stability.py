@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tmm_cli.bench.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
 from tmm_cli.bench.families import BY_NAME
 from tmm_cli.bench.stability import OURS, Row, Stability
-from tmm_cli.draw.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
 from tmm_cli.errors import _
 
 PANELS = 5  # on a sheet; the sixth place is the key's

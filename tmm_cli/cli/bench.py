@@ -158,7 +158,7 @@ def _finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | N
 
 def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
     """name.json, name.csv of the lines or of the one table, charts."""
-    from tmm_cli.draw.formats.figures import FIGURES
+    from tmm_cli.bench.figures import FIGURES
     from tmm_cli.problem.units import UnitSystem
     from tmm_cli.results.files import write_whole
     from tmm_cli.results.text import csv_text, json_bytes

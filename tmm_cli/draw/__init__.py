@@ -13,8 +13,9 @@ from tmm_cli.draw.formats import files as every_format
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.lever import lever
-from tmm_cli.draw.mechanism import all_positions, detailed, position
+from tmm_cli.draw.mechanism import detailed, position
 from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.positions import all_positions
 from tmm_cli.draw.structure import at_sketch, scheme
 from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _

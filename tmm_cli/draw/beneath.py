@@ -94,7 +94,8 @@ def above(
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
     millimetre. The paper is upright or not as the drawing is larger then.
     """
-    apart = all(beneath(1.0).height(_field(paper).real) > MOST * _field(paper).imag for paper in PAPERS)
+    upright = _field(PORTRAIT)
+    apart = beneath(1.0).height(upright.real) > MOST * upright.imag
     kept = (lambda mu: Beneath()) if apart else beneath
     found = [(_scale(paper, places, kept), paper) for paper in PAPERS]
     (mu, middle), paper = min(found, key=lambda one: (one[0][0], one[1][1]))
@@ -108,8 +109,7 @@ def above(
     if not apart:
         return sheet, None
     further, written = Sheet(name, subject, paper=PORTRAIT), beneath(mu)
-    across = _field(PORTRAIT).real
-    written.put(further, ground_of(PORTRAIT)[1] - across - 1j * written.height(across), across)
+    written.put(further, ground_of(PORTRAIT)[1] - upright.real - 1j * written.height(upright.real), upright.real)
     return sheet, further
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_cli.draw.axes import Axis, decades, equal, limits, upwards
+from tmm_cli.draw.axes import TICKS, Axis, decades, equal, limits, round_up, upwards
 from tmm_cli.draw.drawing import POINT, Align, Style
 from tmm_cli.draw.fonts import width as width_of
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
@@ -164,15 +164,13 @@ class Panel:
             self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
-        """Short lines at positions, and as many of their numbers as there is room for."""
-        last = -np.inf
-        for value, text in numbers:
+        """Short lines at positions and their numbers, a round share of them where all are too many."""
+        widest = max((width_of(text, SMALL * POINT) for __, text in numbers), default=0.0)
+        crowd = len(numbers) * (widest + 2) / self.x.length
+        for value, text in numbers[:: max(1, round(round_up(crowd, TICKS)))] if numbers else ():
             place = float(self.x.on(value))
             self.line(complex(place, self.y.start), complex(place, self.y.start - 0.8), DARK, 0.6)
-            half = width_of(text, SMALL * POINT) / 2
-            if place - half > last + 0.8:
-                self.text(complex(place, self.y.start - 0.65 * ROW), text, "center", SMALL, SOFT)
-                last = place + half
+            self.text(complex(place, self.y.start - 0.65 * ROW), text, "center", SMALL, SOFT)
 
     def fill(self, plot: Plot) -> None:
         """Its curves, and where they leap."""

@@ -8,10 +8,11 @@ import numpy as np
 
 from tmm_cli.draw.annotations import angle_mark, dimension
 from tmm_cli.draw.drawing import Style
-from tmm_cli.draw.fixed import support
+from tmm_cli.draw.fixed import guide, support, support_side
+from tmm_cli.draw.forms import Line
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, hatch, scale_text
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_text
 from tmm_cli.draw.symbols import MEASURED, box
 from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage
@@ -22,7 +23,7 @@ from tmm_cli.synthesis.construction import Arc, Centre, Construction, Size, Spot
 
 STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
     "link": (DARK, 2.2, "-"), "link2": (INERTIA, 2.2, "-"), "thin": (THIN, 0.8, "-"), "dashed": (THIN, 0.7, "--"),
-    "axis": (THIN, 0.7, "-."), "bold": (LOAD, 1.5, "-"), "guide": (DARK, 1.0, "-"),
+    "axis": (THIN, 0.7, "-."), "bold": (LOAD, 1.5, "-"),
 }  # fmt: skip
 PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
 SMALLER = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
@@ -41,14 +42,12 @@ def construction(
     drawn, letters = rename(drawn, linkage, names or {})
     sheet = Sheet(title, drawn.title.format(**letters), granted(drawn), pad=PAD)
     sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
+    rods = [(sheet.on(s.start), sheet.on(s.end)) for s in drawn.segments if s.style.startswith("link")]
     for spot in drawn.spots:
-        _spot(sheet, spot)
+        _spot(sheet, spot, rods)
     lines: list[Label] = []
     for s in drawn.segments:
         start, end = sheet.on(s.start), sheet.on(s.end)
-        if s.style == "guide":
-            _guide(sheet, start, end)
-            continue
         sheet.line([start, end], *STYLES[s.style], z=3 if s.style.startswith("link") else 1.5)
         if s.name:
             lines.append(Label(s.name, (start + end) / 2, 10, NAMES, "italic", (start, end)))
@@ -173,26 +172,19 @@ def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
     sheet.labels.append(Label(text, (ahead[0] + ahead[1]) / 2, 9, DARK, line=ahead))
 
 
-def _spot(sheet: Sheet, spot: Spot) -> None:
+def _spot(sheet: Sheet, spot: Spot, rods: Sequence[Line]) -> None:
     at = sheet.on(spot.at)
     if spot.mark in BOXES:
-        box(sheet, at, spot.along / abs(spot.along), DARK, BOXES[spot.mark], MEASURED)
+        along = spot.along / abs(spot.along)
+        box(sheet, at, along, DARK, BOXES[spot.mark], MEASURED)
+        if spot.mark == "slider":
+            guide(sheet, at, along, MEASURED, rods)
     if spot.mark == "support":
-        support(sheet, at, -1j)
+        support(sheet, at, support_side(sheet, at, rods), rods=rods)
     if spot.mark == "dot":
         sheet.circle(at, 0.6, face=DARK)
     elif spot.mark != "none":
         sheet.circle(at, MEASURED.hinge)
-
-
-def _guide(sheet: Sheet, start: complex, end: complex) -> None:
-    """The guide of a slider: its axis, and a hatched rail under the boxes."""
-    along = (end - start) / abs(end - start)
-    sheet.line([start, end], *STYLES["axis"], z=1.5)
-    down = -1j * along if (1j * along).imag >= 0 else 1j * along
-    shift = (MEASURED.box[1] / 2 + 0.5) * down
-    sheet.line([start + shift, end + shift], DARK, 1.0, z=2.5)
-    hatch(sheet, start + shift, end + shift, down)
 
 
 def _size(sheet: Sheet, size: Size, units: UnitSystem) -> None:

@@ -37,7 +37,7 @@ from tmm_cli.structure.cycle import DENSE
 from tmm_cli.vectors import Real
 
 MOST_POINTS = 1440  # of a curve over a cycle
-MARKS = 360  # computed positions that are marked on a curve; more of them would hide it
+MARKS = 90  # computed positions that are marked on a curve; more of them would hide it
 MOST_PANELS = 5  # of a sheet
 BESIDE = 1e-6  # rad: so far before and after the border of a stroke a curve is computed
 LEAP = 1e-3  # of all a curve runs through: what it does there in one step is a jump

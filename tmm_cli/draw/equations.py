@@ -20,8 +20,8 @@ INDENT = "    "
 Word = str | Symbol
 
 
-def written(equation: MomentEquation) -> Iterable[Words]:
-    """The sum in letters; then what it gives, in letters, with numbers (N, m) and as a value."""
+def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
+    """The sum in letters; then what it gives, in letters, with numbers (N, m) and as a value; unit: of moments."""
     found, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
@@ -43,19 +43,21 @@ def written(equation: MomentEquation) -> Iterable[Words]:
     if found is None or sought is None:
         rest, largest = abs(sum(t.moment for t in terms)), max(abs(t.moment) for t in terms)
         value = figure(rest if rest > NO_MOMENT * largest else 0.0)
-        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} N·m")
+        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} {unit}")
         return
     sense = -float(np.sign(found.moment))
     letters = _sum((_letters(t), sense * t.moment) for t in others)
     numbers = _sum((_numbers(t), sense * t.moment) for t in others)
     if found.acting.couple:
-        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *numbers, f" = {figure(equation.value)} N·m")
+        value = figure(equation.value)
+        summed = () if numbers == [value] else (*numbers, " = ")
+        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {unit}")
         return
-    name, over, by, unit = found.acting.symbol, found.letter, found.arm, "N"
+    name, over, by, of = found.acting.symbol, found.letter, found.arm, "N"
     if sought.arm:
-        name, over, by, unit = found.letter, found.acting.symbol, found.acting.size, "m"
+        name, over, by, of = found.letter, found.acting.symbol, found.acting.size, "m"
     divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {figure(by)}")
-    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {unit}")
+    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {of}")
 
 
 def _letters(term: Term) -> tuple[Word, ...]:
@@ -72,15 +74,15 @@ def _sum(terms: Iterable[tuple[tuple[Word, ...], float]]) -> list[Word]:
     for words, sign in terms:
         plus = " + " if found else ""
         found += [plus if sign > 0 else " − " if found else "−", *words]
-    return found
+    return [word for word in found if word]
 
 
-def table_of_forces(acting: Iterable[Acting]) -> Table:
-    """Sizes, and angles of forces from x."""
+def table_of_forces(acting: Iterable[Acting], unit: str = "N·m") -> Table:
+    """Sizes, and angles of forces from x; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
         angle = "" if one.couple else f"{round(float(np.degrees(np.angle(one.force))), 1) % 360:.1f}°"
-        size = f"{figure(one.moment)} N·m" if one.couple else f"{figure(one.size)} N"
+        size = f"{figure(one.moment)} {unit}" if one.couple else f"{figure(one.size)} N"
         rows.append((one.symbol, size, angle))
     return Table((_("force"), _("size"), _("from x")), rows)
 

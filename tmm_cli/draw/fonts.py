@@ -1,14 +1,17 @@
-"""How wide a text is: advances of the letters of DejaVu Sans, the font that comes with matplotlib."""
+"""Letters of DejaVu Sans, the font that comes with matplotlib: how wide a text is, and its outlines."""
 
 from __future__ import annotations
 
 import cmath
 import math
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.ft2font import FT2Font
+from numpy.typing import NDArray
 
 from tmm_cli.draw.drawing import Text
 
@@ -30,14 +33,32 @@ def font(bold: bool = False, italic: bool = False) -> FT2Font:
 
 
 @cache
-def _advance(letter: str, bold: bool, italic: bool) -> float:
+def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
+    """Of size 1: its advance, the places of its outline (x + iy, from its foot on), and matplotlib's codes of them."""
     glyph = font(bold, italic).load_char(ord(drawable(letter)))
-    return float(glyph.linearHoriAdvance) / 65536 / UNITS
+    places, codes = font(bold, italic).get_path()
+    return float(glyph.linearHoriAdvance) / 65536 / UNITS, (places[:, 0] + 1j * places[:, 1]) / UNITS, codes
+
+
+@lru_cache(10_000)
+def _width(text: str, bold: bool, italic: bool) -> float:
+    return sum(_letter(letter, bold, italic)[0] for letter in text)
 
 
 def width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
     """Width of a line of text, in the unit of its size."""
-    return size * sum(_advance(letter, bold, italic) for letter in text)
+    return size * _width(text, bold, italic)
+
+
+def outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Of a line of text of size 1: places from the left end of its base line on, and matplotlib's codes of them."""
+    along, places, codes = 0.0, [], []
+    for letter in text:
+        advance, own, its_codes = _letter(letter, bold, italic)
+        places.append(own + along)
+        codes.append(its_codes)
+        along += advance
+    return np.concatenate(places), np.concatenate(codes)
 
 
 def start(mark: Text) -> complex:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
@@ -64,6 +65,15 @@ class Ground:
         number = max(2, int(abs(end - start) / STEP))
         if math.isfinite(abs(end - start)) and number < 5000:
             self.points.append(start + (end - start) * np.linspace(0, 1, number))
+
+    def curve(self, places: Sequence[complex]) -> None:
+        """A line through places is in the way; of a smooth one they stand for it."""
+        array = np.array(places)
+        if len(array) > 2 and np.abs(np.diff(array)).max() < 2 * STEP:
+            self.points.append(array)
+        else:
+            for start, end in pairwise(places):
+                self.line(start, end)
 
     def spot(self, place: complex, radius: float = 1.0) -> None:
         """A small figure is in the way."""

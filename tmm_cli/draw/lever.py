@@ -40,12 +40,13 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
         if crank
         else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90° clockwise. {caption}")
     )
+    unit = "N·m" if crank else "N"
     pairs = [word for pair in plan.pairs for word in _pair(pair)]
-    lines = [*written(plan.equation), *([tuple(pairs)] if pairs else []), *_checked(here)]
+    lines = [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)]
     units = results.problem.units if crank else None
 
     def beneath(mu: float) -> Beneath:
-        return Beneath(lines, (table_of_forces(plan.acting), table_of_arms([plan.equation], units, mu)))
+        return Beneath(lines, (table_of_forces(plan.acting, unit), table_of_arms([plan.equation], units, mu)))
 
     sheet, text = above(here, title, [*((place, 0j) for place in places), *extent(plan.acting)], beneath)
     for bar in plan.bars:

@@ -1,9 +1,9 @@
-"""The mechanism in all positions with trajectories; a position in detail with its loads."""
+"""A position in detail with its loads; what drawings of a mechanism share: symbols with names, thin lines, paths."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,25 +11,25 @@ from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
-from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.render import Rendered, arrows, render, slider
+from tmm_cli.draw.render import Rendered, render, slider
 from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.script import Words
-from tmm_cli.draw.sheet import COLOURS, DARK, GREY, LOAD, NAMES, REACTION, THIN, Sheet, scale_text
+from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_text
 from tmm_cli.draw.symbols import MEASURED, mass_centre
 from tmm_cli.draw.wheels import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import FRAME
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import PAD, balance_symbol
+from tmm_cli.plans.velocity import massive
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
+from tmm_cli.vectors import Vector, dot
 
+ONE_LINE = 0.1  # mm between lines that look like one
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
-SHOWN = 48  # positions drawn thin, at most
 
 
 @dataclass(frozen=True)
@@ -121,54 +121,41 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
             sheet.line(edge, colour, width, z=z, blocks=False)
 
 
+def paths(results: Results) -> list[Vector]:
+    """Paths of all moving points over the cycle, and of centres of mass that are none of them, m."""
+    linkage, whole = results.linkage, at_positions(results, results.closely(DENSE), 0)
+    found = [whole.spot(name) for name in linkage.moving_points]
+    for link in massive(linkage):
+        own = linkage.links[link]
+        if all(abs(complex(own.centre) - local) > 0 for local in own.points.values()):
+            found.append(whole.poses[link].at(complex(own.centre)))
+    return found
+
+
+def trace(sheet: Sheet, found: Iterable[Vector]) -> None:
+    """Paths (m) as dashed lines, once only where a point comes back on the way on which it went."""
+    for path in found:
+        sheet.line(once(sheet.origin + path / sheet.mu), THIN, 0.7, "--", 1.5, blocks=False)
+
+
+def once(path: Vector) -> list[complex]:
+    """A path (mm) that is interrupted where it leads back over itself."""
+    steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
+    off = middles[:, None] - path[None, :-1]
+    size = np.maximum(np.abs(steps), 1e-12)
+    share = np.clip(dot(steps[None, :], off) / size**2, 0, 1)
+    near = np.abs(off - share * steps[None, :]) < ONE_LINE
+    back = near & (dot(steps[:, None], steps[None, :]) < 0) & np.tri(len(steps), k=-1, dtype=bool)
+    return [path[0], *np.where(back.any(axis=1), np.nan, path[1:]).tolist()]
+
+
 def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
-    """A sheet with the paths of all moving points over the cycle."""
-    whole = at_positions(results, results.closely(DENSE), 0)
-    paths = [whole.spot(name) for name in results.linkage.moving_points]
-    used = [*fixed_pivots(results.linkage), *(p for path in paths for p in path)]
+    """A sheet with these paths."""
+    found = paths(results)
+    used = [*fixed_pivots(results.linkage), *(place for path in found for place in path)]
     sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
-    for path in paths:
-        sheet.line([sheet.on(complex(p)) for p in path], THIN, 0.7, "--", 1.5, blocks=False)
+    trace(sheet, found)
     return sheet
-
-
-def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers at the crank."""
-    motion, linkage = results.motion, results.linkage
-    assert motion is not None
-    chosen = detailed(results)
-    k = chosen[0].k if chosen else int(np.argmax(motion.placed))
-    scene = Scene(linkage, results.structure, motion.poses, k)
-    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
-    sheet = trajectories(results, scene, caption)
-    for other in range(0, len(results.numbers), max(1, len(results.numbers) // SHOWN)):
-        if other != k and motion.placed[other]:
-            skeleton(sheet, replace(scene, k=other))
-    if motion.placed[k]:
-        arrows(sheet, scene, measured(sheet, scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
-    _numbers(sheet, results)
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
-    sheet.note(_("in full: position {number}").format(number=results.numbers[k]))
-    yield "mechanism", sheet.finish()
-
-
-def _numbers(sheet: Sheet, results: Results) -> None:
-    """Numbers of positions at the crank's end, outside its circle."""
-    motion, linkage = results.motion, results.linkage
-    assert motion is not None
-    driver = linkage.driver
-    if driver.kind != "turn" or len(results.numbers) > SHOWN // 2:
-        return
-    pivot = sheet.on(linkage.local(FRAME, driver.joint))
-    ends = [p for p in linkage.links[driver.link].points if p != driver.joint]
-    if not ends:
-        return
-    places = [sheet.on(complex(x)) for x in motion.named(ends[0]).x]
-    # in a cycle of several turns the crank comes back to its places
-    for at, numbers in gathered(zip(places, map(str, results.numbers), strict=True)):
-        out = (at - pivot) / abs(at - pivot)
-        sheet.circle(at, 0.5, DARK, DARK, 0.3, 5)
-        sheet.label(", ".join(numbers), at + 1.5 * out, 8, "#404040")
 
 
 def detailed(results: Results) -> list[Position]:

@@ -64,7 +64,7 @@ def _render(
             _higher(sheet, scene, pair, look, hue)
     for link, form in forms.items():
         body(sheet, form, hue[link], look)
-        for pair in pairs:
+        for pair in scene.structure.pairs:  # also of those that are drawn from one side only
             if not pair.lower and link in (pair.i, pair.j):
                 rigid(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
     for pair in pairs:

@@ -49,12 +49,12 @@ class Room:
     origin: complex
 
 
-def room(figure: Figure, block: Block) -> Room:
-    """The largest round scale at which the figure fits and the block covers nothing of it."""
+def room(figure: Figure, block: Block, also: Sequence[float] = ()) -> Room:
+    """The largest round scale, or one of `also`, at which the figure fits and the block covers nothing of it."""
     places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
     sizes = [shape.size for shape in block.shapes()]
     alone: Room | None = None
-    for mu in scales(extent(places.tolist())[0]):
+    for mu in scales(extent(places.tolist())[0], also):
         at = places / mu + off
         low = complex((at.real - about).min(), (at.imag - about).min())
         size = complex((at.real + about).max(), (at.imag + about).max()) - low
@@ -75,8 +75,10 @@ def room(figure: Figure, block: Block) -> Room:
     raise AssertionError("some scale is large enough")
 
 
-def scales(size: float) -> Iterator[float]:
-    """Round scales (SI a millimetre) for a figure of this size (SI), from one at which it fits on no sheet."""
+def scales(size: float, also: Sequence[float]) -> Iterator[float]:
+    """Round scales (SI a millimetre) for a figure of this size (SI), from one at which it fits on no sheet on."""
     least = size / max(LANDSCAPE)
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
-    return (f * 10.0**n for n in count(power) for f in ROUND[:-1])
+    for n in count(power):
+        decade = 10.0**n
+        yield from sorted([f * decade for f in ROUND[:-1]] + [mu for mu in also if decade <= mu < 10 * decade])

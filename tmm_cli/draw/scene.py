@@ -128,6 +128,8 @@ def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: f
     parted = spread(sheet, scene, links)
     if parted is not scene:
         fit(sheet, parted.extent(links), pad, most)
+        parted = spread(sheet, scene, links)
+        centre(sheet, parted.extent(links))
     return parted
 
 
@@ -158,9 +160,13 @@ def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
 
 def fit(sheet: Sheet, places: Sequence[complex], pad: float, most: float) -> None:
     """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
-    low, high = sheet.ground.low, sheet.ground.high
-    sheet.mu = scale_to(places, high - low - 2 * pad * (1 + 1j), most)
-    sheet.origin = (low + high) / 2 - extent(places or [0j])[3] / sheet.mu
+    sheet.mu = scale_to(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    centre(sheet, places)
+
+
+def centre(sheet: Sheet, places: Sequence[complex]) -> None:
+    """Put places (m) into the middle of the ground of the sheet, at its scale."""
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
 
 
 def apart(places: Iterable[complex]) -> list[complex]:

@@ -54,6 +54,7 @@ class Sheet:
         self.marks: list[Mark] = []
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
+        self.faint = Ground(self.ground.low, self.ground.high)  # lines that labels may cover, and blocks may not
         self.block = Block()
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
@@ -107,8 +108,7 @@ class Sheet:
         """A polyline through places (mm), of this width (points); places that are not finite interrupt it."""
         for stretch in whole_stretches(places):
             self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
-            for start, end in pairwise(stretch) if blocks else ():
-                self.ground.line(start, end)
+            (self.ground if blocks else self.faint).curve(stretch)
 
     def area(
         self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
@@ -179,7 +179,8 @@ class Sheet:
         """Put notes and table where they cover the least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
-        shape, at = roomiest(self.block, self.ground.low, self.ground.high, self.ground.crowd)
+        crowd = np.concatenate([self.ground.crowd, self.faint.crowd])
+        shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
         for start, end in shape.lines:

@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
-from tmm_cli.draw.chart_axes import DARK, ORANGE, bare, page
+from tmm_cli.draw.axes import filling
+from tmm_cli.draw.chart import FINE, Panel
+from tmm_cli.draw.drawing import POINT, Drawing
+from tmm_cli.draw.fonts import width
+from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.errors import _
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
 from tmm_cli.grading.task import Task
+from tmm_cli.plans.record import LANDSCAPE
+from tmm_cli.vectors import Real
 
 MOST, FEWEST = 10, 6  # bars that a panel has room for
-BAD = "#c4574b"
 LONGEST = 32  # characters of a line beside a bar
+SMALL, LINE = 8.0, 3.3  # points, mm: texts beside bars
+NAMES = 58.0  # mm beside bars for them
+LEFT = 16.0  # mm for the numbers of students
+UPPER, LOWER, GAP = 55.0, 75.0, 12.0  # mm: heights of the panels, and between them
+BLUE, ORANGE, PALE, BAD = "#4a6fa5", "#c77700", "#f9ecd6", "#c4574b"
 STATES: dict[State, tuple[str, str]] = {
     "right": (_("right"), "#4c9a68"), "follows": (_("right given own"), "#a9d6b8"), "wrong": (_("wrong"), BAD),
     "missing": (_("missing"), "#d0d0d0"),
 }  # fmt: skip
 
 
-def chart(task: Task, marks: Sequence[StudentMarks]) -> Figure:
+def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     """A landscape sheet of A4."""
     own = percents(marks)
     told = _("{students} students, {there} handed in; median {median:.0f} %, mean {mean:.0f} % of the points")
@@ -33,73 +40,122 @@ def chart(task: Task, marks: Sequence[StudentMarks]) -> Figure:
         students=len(marks), there=len(handed_in(marks)),
         median=np.median(own) if own.size else 0, mean=own.mean() if own.size else 0,
     )  # fmt: skip
-    figure = page(task.problem.title[:90], caption)
-    grid = figure.add_gridspec(2, 2, height_ratios=(1, 1.25), left=0.13, right=0.97, top=0.86, bottom=0.07,
-                               hspace=0.36, wspace=0.55)  # fmt: skip
-    _spread(figure.add_subplot(grid[0, :]), marks, own)
+    sheet = Sheet(task.problem.title, caption, paper=LANDSCAPE)
     difficulties, mistakes = hardest(task, marks)[:MOST], commonest(marks)[:MOST]
     rows = max(len(difficulties), len(mistakes), FEWEST)
-    _difficulties(figure.add_subplot(grid[1, 0]), difficulties, rows)
-    _mistakes(figure.add_subplot(grid[1, 1]), mistakes, rows)
-    return figure
-
-
-def _spread(axes: Any, marks: Sequence[StudentMarks], own: Any) -> None:
-    _panel(axes, _("Points"), "y")
+    low, high = sheet.ground.low, sheet.ground.high
+    half = ((high - low).real - GAP) / 2
     counts = histogram(marks)
-    axes.bar(np.arange(STEP / 2, 100, STEP), counts, width=0.92 * STEP, color="#4a6fa5", zorder=2)
+    upper = filling(0, 1.12 * max(1, counts.max(initial=0)), high.imag - 8 - UPPER, UPPER)
+    _spread(Panel(sheet, filling(0, 100, low.real + LEFT, (high - low).real - LEFT - 2), upper), counts, own)
+    down = filling(rows, 0, low.imag + GAP, LOWER)
+    _difficulties(Panel(sheet, filling(0, 100, low.real + NAMES, half - NAMES), down), difficulties)
+    most = 1.12 * mistakes[0][1] if mistakes else 1.0
+    _mistakes(Panel(sheet, filling(0, most, low.real + half + GAP + NAMES, half - NAMES), down), mistakes)
+    return sheet.finish()
+
+
+def _spread(panel: Panel, counts: Real, own: Real) -> None:
+    _title(panel, _("Points"))
+    if len(own):
+        first, last = (float(panel.x.on(share)) for share in np.quantile(own, (0.25, 0.75)))
+        _area(panel, first, last, panel.y.start, panel.y.end, PALE, 0.2)
+        median = float(panel.x.on(np.median(own)))
+        panel.upright(median, ORANGE, 2, z=4)
+        at = panel.x.start + 1j * (panel.y.end + 3)
+        entries = [(_("median"), ORANGE), (_("middle half"), PALE)]
+        _legend(panel, entries, at + panel.x.length - _room(entries))
+    _counts(panel)
+    panel.text(complex(panel.x.start - 1.5, panel.y.end + 3), _("students"), "right")
     for k, count in enumerate(counts):
         if count:
-            axes.text(STEP * (k + 0.5), count, f"{count}", ha="center", va="bottom", fontsize=8, color=DARK)
-    if own.size:
-        axes.axvline(np.median(own), color=ORANGE, lw=2, label=_("median"), zorder=3)
-        axes.axvspan(*np.quantile(own, (0.25, 0.75)), color="#f9ecd6", lw=0, label=_("middle half"), zorder=0)
-        axes.legend(loc="upper left", fontsize=8, frameon=False)
-    axes.set_xlim(0, 100)
-    axes.set_ylim(0, 1.12 * max(1, counts.max(initial=0)))
-    axes.set_xticks(range(0, 101, STEP), [f"{p} %" for p in range(0, 101, STEP)])
-    axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
-    axes.set_ylabel(_("students"), fontsize=8)
+            first, last = (float(panel.x.on(STEP * (k + side))) for side in (0.04, 0.96))
+            top = float(panel.y.on(count))
+            _area(panel, first, last, panel.y.start, top, BLUE)
+            panel.text(complex((first + last) / 2, top + 2), f"{count}", "center")
+    panel.level(panel.y.start, DARK, 0.7, 3)
+    for share in range(0, 101, STEP):
+        panel.text(complex(float(panel.x.on(share)), panel.y.start - 3), f"{share} %", "center")
 
 
-def _difficulties(axes: Any, found: Sequence[Difficulty], rows: int) -> None:
-    _panel(axes, _("Hardest quantities"))
-    left = np.zeros(len(found))
-    for state, (label, colour) in STATES.items():
-        shares = np.array([100 * own.answers[state] / max(1, own.answers.total()) for own in found])
-        axes.barh(range(len(found)), shares, left=left, height=0.7, color=colour, label=label)
-        left += shares
-    _names(axes, [own.name for own in found], rows)
-    axes.set_xlim(0, 100)
-    axes.set_xticks(range(0, 101, 25), [f"{p} %" for p in range(0, 101, 25)])
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncol=4, fontsize=8, frameon=False, columnspacing=1.2)
+def _counts(panel: Panel) -> None:
+    """Lines at whole numbers of students."""
+    for value, text in panel.y.ticks(6):
+        if value == round(value):
+            height = float(panel.y.on(value))
+            panel.level(height, FINE, 0.5, 0.5)
+            panel.text(complex(panel.x.start - 1.5, height), text, "right")
 
 
-def _mistakes(axes: Any, found: Sequence[tuple[str, int, int]], rows: int) -> None:
-    _panel(axes, _("Commonest mistakes"))
+def _difficulties(panel: Panel, found: Sequence[Difficulty]) -> None:
+    _title(panel, _("Hardest quantities"))
+    _across(panel, [(float(share), f"{share} %") for share in range(0, 101, 25)])
+    for row, own in enumerate(found):
+        left = 0.0
+        for state, (__, colour) in STATES.items():
+            share = 100 * own.answers[state] / max(1, own.answers.total())
+            _bar(panel, row, left, left + share, colour)
+            left += share
+        _name(panel, row, own.name)
+    entries = list(STATES.values())
+    middle = complex((panel.sheet.ground.low.real + panel.x.end - _room(entries)) / 2, panel.y.start - 8)
+    _legend(panel, entries, middle)
+
+
+def _mistakes(panel: Panel, found: Sequence[tuple[str, int, int]]) -> None:
+    _title(panel, _("Commonest mistakes"))
     if not found:
-        axes.axis("off")
-        axes.text(0, 0.95, _("none was recognised"), fontsize=9, va="top", transform=axes.transAxes)
+        panel.text(complex(panel.x.start, panel.y.end - 4), _("none was recognised"))
         return
-    axes.barh(range(len(found)), [one[1] for one in found], height=0.7, color=BAD)
-    for k, one in enumerate(found):
-        axes.text(one[1], k, f" {one[1]}", va="center", fontsize=8, color=DARK)
-    _names(axes, [one[0] for one in found], rows)
-    axes.set_xlim(0, 1.12 * found[0][1])
-    axes.xaxis.set_major_locator(MaxNLocator(6, integer=True))
-    axes.set_xlabel(_("students"), fontsize=8)
+    _across(panel, [(value, text) for value, text in panel.x.ticks(8) if value == round(value)])
+    for row, (name, students, __) in enumerate(found):
+        _bar(panel, row, 0, students, BAD)
+        panel.text(complex(float(panel.x.on(students)) + 1, float(panel.y.on(row + 0.5))), f"{students}")
+        _name(panel, row, name)
+    panel.text(complex((panel.x.start + panel.x.end) / 2, panel.y.start - 8), _("students"), "center")
 
 
-def _panel(axes: Any, title: str, grid: str = "x") -> None:
-    """Bars on their one line, with a light grid across them."""
-    bare(axes, title)
-    axes.grid(False, axis="y" if grid == "x" else "x")
-    axes.spines[["top", "right", "left" if grid == "y" else "bottom"]].set_visible(False)
-    axes.tick_params(length=0)
+def _title(panel: Panel, text: str) -> None:
+    panel.text(complex(panel.x.start, panel.y.end + 3), text, size=10)
 
 
-def _names(axes: Any, names: Sequence[str], rows: int) -> None:
-    """Beside the bars, from the top; bars of both panels are as thick."""
-    texts = [textwrap.fill(name, LONGEST, max_lines=2, placeholder="…") for name in names]
-    axes.set_yticks(range(len(names)), texts, parse_math=False)
-    axes.set_ylim(rows - 0.5, -0.5)
+def _across(panel: Panel, ticks: Iterable[tuple[float, str]]) -> None:
+    """Lines at these values, which stand below the panel."""
+    for value, text in ticks:
+        place = float(panel.x.on(value))
+        panel.upright(place, FINE, 0.5, z=0.5)
+        panel.text(complex(place, panel.y.start - 3), text, "center")
+
+
+def _bar(panel: Panel, row: int, first: float, last: float, colour: str) -> None:
+    if last > first:
+        start, end = (float(panel.x.on(value)) for value in (first, last))
+        top, bottom = (float(panel.y.on(row + side)) for side in (0.15, 0.85))
+        _area(panel, start, end, bottom, top, colour)
+
+
+def _name(panel: Panel, row: int, name: str) -> None:
+    """Beside its bar, on two lines where it is long."""
+    lines = textwrap.wrap(name, LONGEST, max_lines=2, placeholder="…")
+    middle = complex(panel.x.start - 1.5, float(panel.y.on(row + 0.5)))
+    for k, line in enumerate(lines):
+        panel.text(middle - 1j * LINE * (k - (len(lines) - 1) / 2), line, "right")
+
+
+def _legend(panel: Panel, entries: Iterable[tuple[str, str]], at: complex) -> None:
+    """Small fields of these colours with their words."""
+    for text, colour in entries:
+        _area(panel, at.real, at.real + 5, at.imag - 1.2, at.imag + 1.2, colour)
+        panel.text(at + 6, text)
+        at += _room([(text, colour)])
+
+
+def _room(entries: Iterable[tuple[str, str]]) -> float:
+    """Width of a legend, mm."""
+    return sum(11 + width(text, SMALL * POINT) for text, __ in entries)
+
+
+def _area(panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0) -> None:
+    """A rectangle on the paper, mm."""
+    corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
+    panel.sheet.area(corners, colour, "none", z=z, blocks=False)

@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE
+from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE, RIGHT_ANGLE
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -147,7 +147,10 @@ def find_pressure(
                     continue
                 k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of those that are equal
                 place, value = float(q[k]), float(angles[k])
-                if value > 0:
+                right = [end for end, inward in _ends(driver_range) if _right(linkage, upto, lead, end, inward * ends)]
+                if right:
+                    place, value = right[0], np.pi / 2
+                elif value > 0:
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
                     back = partial(_negative, linkage, upto, lead)
                     place, value = least(back, low, high)
@@ -166,6 +169,20 @@ def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
                 with np.errstate(all="ignore"):
                     return angle(motion, kernel, at, lead)
     return np.full(np.shape(motion.q), np.nan)
+
+
+def _ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
+    """Ends of the range at which a group stops the driver, and where the range is from there."""
+    stops = {limit.place for limit in driver_range.limits}
+    return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
+
+
+def _right(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, end: float, inward: float) -> bool:
+    """Whether the angle of the last group is a right one at an end: as a polynomial of the root of what is left to it,
+    once, four and sixteen times a step inward, it tells where it goes.
+    """
+    near = -_negative(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
+    return bool(abs(np.array([8, -6, 1]) @ near / 3 - np.pi / 2) < RIGHT_ANGLE)
 
 
 def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:

@@ -97,8 +97,7 @@ class Loaded:
             if (reaction.on in links) != (reaction.by in links):
                 link = reaction.on if reaction.on in links else reaction.by
                 found += self._reaction(reaction, link, axes.get(reaction.pair.name))
-        largest = max((a.size if a.couple is False else a.size / self.size for a in found), default=0.0)
-        return tuple(a for a in found if a.size > NO_FORCE * largest * (self.size if a.couple else 1.0))
+        return there(found, self.size)
 
     def _loads(self, links: Collection[str]) -> Iterable[Acting]:
         for load in self.reactions.applied:
@@ -134,6 +133,8 @@ class Loaded:
         by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
         couple = 0.0
         if reaction.couple is not None:
+            if pair.slide is None:  # of a cam; a couple may stand anywhere on its link
+                at = self.place(link, 0j)
             back = -reaction.couple if reaction.back is None else reaction.back
             couple = float((reaction.couple if own else back)[k])
         if reaction.arm is not None and abs(reaction.arm[k]) < FAR * self.size:
@@ -148,6 +149,13 @@ class Loaded:
                 tangential = complex(reaction.tangential[k])
             yield Acting(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
             yield Acting(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
+
+
+def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
+    """Without what is zero but for rounding beside the largest; size: of the linkage, m."""
+    acting = tuple(acting)
+    largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
+    return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
 
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:

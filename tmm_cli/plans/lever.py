@@ -12,7 +12,7 @@ from tmm_cli.forces.lever import Lever
 from tmm_cli.forces.plan import Balance, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.bodies import DRIVE, Acting, load_symbols
+from tmm_cli.plans.bodies import DRIVE, Acting, load_symbols, there
 from tmm_cli.plans.moments import MomentEquation, Sought, numbered, terms
 from tmm_cli.plans.record import Kind, NamedVector, Symbol, balance_symbol
 from tmm_cli.plans.velocity import absolute, ends_of, massive, other_than, relative
@@ -76,9 +76,10 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     turns = first.kind == "moment"
     sought = None if several else Sought(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
     size = max((abs(end) for end in ends.values()), default=0.0)
-    found = tuple(a for a in acting if a.size > 0)
+    found = there(acting, size or 1.0)
+    told = {a.symbol for a in found}
     (equation,) = numbered([MomentEquation((), POLE, 0j, terms(found, 0j, size), sought)])
-    return LeverPlan(ends, bars, found, tuple(pairs), equation)
+    return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in told), equation)
 
 
 def _kind(load: Applied) -> Kind:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-Style = Literal["link", "link2", "thin", "dashed", "axis", "bold", "guide"]
+Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
 Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
 Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
 LETTERS: Final[Mapping[Chain, str]] = {  # of the joints along the chain from the driver's pivot, as constructions say

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.colors import to_rgb
-from matplotlib.font_manager import FontProperties
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from tmm_cli.draw.drawing import POINT, Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.fonts import FAMILY, HALF, drawable, start
+from tmm_cli.draw.fonts import HALF, start
 
-mpl.rcParams["text.hinting"] = "no_hinting"  # a text is as wide as its letters say, at every resolution
+Write = Callable[[RendererBase, GraphicsContextBase, Text, Affine2D], None]
 
 
-def draw(drawing: Drawing, renderer: RendererBase, dpi: float) -> None:
-    """All marks, those that cover others last."""
+def draw(drawing: Drawing, renderer: RendererBase, dpi: float, write: Write) -> None:
+    """All marks, those that cover others last; write: puts a text there, from millimetres to the renderer's points."""
     to_pixels = Affine2D().scale(dpi / 25.4)
     for mark in drawing.marks:
         context = renderer.new_gc()
@@ -42,7 +39,8 @@ def draw(drawing: Drawing, renderer: RendererBase, dpi: float) -> None:
                 shape = Path.circle((mark.centre.real, mark.centre.imag), mark.radius)
                 renderer.draw_path(context, shape, to_pixels, to_rgb(mark.face))
             case Text():
-                _text(renderer, context, mark, dpi / 25.4, drawing.paper[1])
+                context.set_foreground(mark.colour)
+                write(renderer, context, mark, to_pixels)
         context.restore()
 
 
@@ -51,23 +49,12 @@ def _pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
     context.set_linewidth(wide / POINT)
 
 
+def foot(mark: Text) -> tuple[complex, complex]:
+    """The left end of the base line of a text, mm, and the way along it."""
+    along = cmath.rect(1, math.radians(mark.turn))
+    return start(mark) - 1j * HALF * mark.size * along, along
+
+
 def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
     array = np.array([*places, places[0]] if closed else places)
     return Path(np.column_stack([array.real, array.imag]), closed=closed)
-
-
-def _text(renderer: RendererBase, context: GraphicsContextBase, mark: Text, scale: float, height: float) -> None:
-    """From the left end of its base line on."""
-    foot = start(mark) - 1j * HALF * mark.size * cmath.rect(1, math.radians(mark.turn))
-    up = height - foot.imag if renderer.flipy() else foot.imag
-    context.set_foreground(mark.colour)
-    renderer.draw_text(context, scale * foot.real, scale * up, drawable(mark.text), _font(mark), mark.turn)
-
-
-def _font(mark: Text) -> Any:
-    return FontProperties(
-        family=FAMILY,
-        size=mark.size / POINT,
-        weight="bold" if mark.bold else "normal",
-        style="italic" if mark.italic else "normal",
-    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from xml.sax.saxutils import escape
+from html import escape
 
 from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
 from tmm_cli.draw.fonts import FAMILY, HALF
@@ -44,9 +44,10 @@ def _element(mark: Mark, height: float) -> str:
             turn = f' transform="rotate({-mark.turn:.4g} {x} {y})"' if mark.turn else ""
             bold = ' font-weight="bold"' if mark.bold else ""
             italic = ' font-style="italic"' if mark.italic else ""
+            told = escape(mark.text.translate(NOT_XML), quote=False)
             return (
                 f'<text x="{x}" y="{y}" dy="{HALF:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
-                f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{escape(mark.text.translate(NOT_XML))}</text>'
+                f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{told}</text>'
             )
 
 

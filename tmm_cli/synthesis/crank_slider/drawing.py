@@ -27,7 +27,7 @@ def construction(found: Found) -> Construction:
     o, b1, b2 = 0j, complex(far, -e), complex(near, -e)
     pin1, pin2 = r * b1 / abs(b1), -r * b2 / abs(b2)
     segments = [
-        Segment(complex(near - 0.12 * height, -e), complex(far + 0.12 * height, -e), "guide"),
+        Segment(complex(near - 0.12 * height, -e), complex(far + 0.12 * height, -e), "axis"),
         Segment(o, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
         Segment(pin2, o, "link2", "r"), Segment(o, b2, "link2", "l − r"),
     ]  # fmt: skip

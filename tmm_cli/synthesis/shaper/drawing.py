@@ -29,7 +29,7 @@ def construction(f: Found) -> Construction:
     ends = sorted((e1.real, e2.real))
     segments += [
         Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed"),
-        Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "guide"),
+        Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "axis"),
     ]  # fmt: skip
     spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
     top = complex(0, float(f.lever) - float(f.frame))  # of D's arc

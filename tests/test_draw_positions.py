@@ -1,0 +1,157 @@
+"""What is on the sheet of all positions: numbers at the driver and the output, ends of its way, stroke, lengths."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_commands import ROOT
+
+from tmm_cli import load, solve
+from tmm_cli.draw.drawing import Area, Line, Text
+from tmm_cli.draw.positions import all_positions, ratio
+from tmm_cli.draw.ruler import TICK, spread
+from tmm_cli.draw.sheet import GREY
+from tmm_cli.draw.tracks import extreme_states, extremes, output_track
+from tmm_cli.plans.record import ground_of
+
+
+def sheet_of(name):
+    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "kinematics")
+    ((__, sheet),) = all_positions(results)
+    return results, sheet
+
+
+def numbers(sheet):
+    """Marks of positions on the sheet, those of one place taken apart."""
+    return [n for text in sheet.texts() if re.fullmatch(r"[\dk′, ]+", text) for n in text.split(", ")]
+
+
+def scale(sheet):
+    (found,) = [m[1] for m in (re.match(r"μ_l = (\S+) m/mm", text) for text in sheet.texts()) if m]
+    return float(found)
+
+
+@pytest.mark.parametrize("name", ["shaper", "course-2", "course-3", "six-bar", "crank-rocker", "press-class-iii"])
+def test_each_position_is_numbered_at_the_crank_and_at_the_output(name):
+    results, sheet = sheet_of(name)
+    found = numbers(sheet)
+    links = list(results.linkage.moving)  # their numbers are on the sheet too
+    for number in map(str, results.numbers):
+        assert found.count(number) - (number in links) >= 2
+    assert found.count("k") == 2
+
+
+@pytest.mark.parametrize("name", ["shaper", "course-1", "course-3", "six-bar", "crank-slider-offset", "two-strokes"])
+def test_the_dimension_of_the_stroke_measures_it(name):
+    results, sheet = sheet_of(name)
+    stroke = results.strokes.travel
+    assert f"H = {results.problem.units.from_si(stroke, dimension_of(results)):.4g} mm" in sheet.texts()
+    heads = [max(mark.corners, key=lambda z, m=mark: abs(z - sum(m.corners) / 3)) for mark in dimensions(sheet, Area)]
+    assert len(heads) == 2
+    assert abs(heads[1] - heads[0]) * scale(sheet) == pytest.approx(stroke, rel=1e-9)
+
+
+def dimension_of(results):
+    from tmm_cli.quantities import LENGTH
+
+    return LENGTH
+
+
+def dimensions(sheet, kind):
+    return [mark for mark in sheet.marks if isinstance(mark, kind) and mark.layer == "dimensions"]
+
+
+@pytest.mark.parametrize(("name", "swing"), [("crank-rocker", "ψ = 47.39 deg"), ("slotted-lever", "ψ = 38.94 deg")])
+def test_the_swing_of_a_rocker_is_marked(name, swing):
+    assert swing in sheet_of(name)[1].texts()
+
+
+@pytest.mark.parametrize("name", ["shaper", "course-3", "crank-rocker", "two-strokes"])
+def test_ends_of_the_way_are_extremes_of_the_output(name):
+    results, __ = sheet_of(name)
+    track, ends = output_track(results), extremes(results)
+    there, everywhere = track.places(extreme_states(results, ends)), track.places(results.motion)
+    size = max(abs(p - q) for p in there for q in there)
+    assert all(abs(p - q) < size * (1 + 1e-9) for p in everywhere for q in there)
+    assert ends[0].mark == "0" and all(e.mark == str(e.mark) for e in ends)
+    assert len({end.mark for end in ends}) == len(results.strokes.strokes)
+
+
+def test_ticks_of_a_slider_are_where_it_is():
+    results, sheet = sheet_of("shaper")
+    mu, motion = scale(sheet), results.motion
+    ticks = [m for m in sheet.marks if isinstance(m, Line) and abs(abs(m.places[-1] - m.places[0]) - TICK) < 1e-9]
+    at = sorted(m.places[0].real * mu for m in ticks)
+    places = motion.named("E").x.real.tolist()
+    places[7] = extreme_states(results, extremes(results)).spot("E")[1].real  # on paper 7 and k are one place
+    assert np.diff(at) == pytest.approx(np.diff(sorted(places)), abs=1e-9)
+
+
+def test_paths_of_centres_of_mass_are_dashed_too():
+    __, sheet = sheet_of("shaper")
+    dashed = [mark for mark in sheet.marks if isinstance(mark, Line) and mark.style == "--"]
+    mu = scale(sheet)
+    (pivot,) = [mark.centre for mark in sheet.marks if getattr(mark, "radius", 0) == 1.3 and near_o(sheet, mark)]
+    radius = 0.3 * 0.11  # of S1
+    circles = [m for m in dashed if all(abs(abs(z - pivot) * mu - radius) < 1e-9 for z in m.places)]
+    assert circles
+
+
+def near_o(sheet, mark):
+    """Whether a hinge is the middle of the crank's circle: the only one about which dots of positions stand."""
+    dots = [m.centre for m in sheet.marks if getattr(m, "radius", 0) == 0.5]
+    away = [abs(dot - mark.centre) for dot in dots]
+    return max(away) - min(away) < 1e-6
+
+
+def test_lengths_have_the_names_of_the_file_s_parameters():
+    texts = sheet_of("crank-slider-offset")[1].texts()
+    assert texts[texts.index("OA") : texts.index("OA") + 3] == ["OA", "r", "50"]
+    assert texts[texts.index("AB") : texts.index("AB") + 3] == ["AB", "l", "190"]
+    texts = sheet_of("shaper")[1].texts()  # parameters are called like lengths
+    assert texts[texts.index("CD") : texts.index("CD") + 2] == ["CD", "650"]
+    assert texts[texts.index("guide x from O") + 1] == "270"
+
+
+@pytest.mark.parametrize("name", ["shaper", "course-1", "course-2", "course-3", "course-4", "six-bar", "excavator"])
+def test_the_scale_is_one_of_the_standard_and_the_figure_uses_the_field(name):
+    __, sheet = sheet_of(name)
+    mu = scale(sheet)
+    assert 1000 * mu in (1, 2, 2.5, 4, 5, 10, 15, 20, 25, 40, 50, 75, 100)
+    assert any(text.endswith(f", {ratio(mu)}") for text in sheet.texts())
+    places = np.array([z for m in sheet.marks if isinstance(m, Line) and m.colour == GREY for z in m.places])
+    low, high = ground_of(sheet.paper)
+    assert max(np.ptp(places.real) / (high - low).real, np.ptp(places.imag) / (high - low).imag) > 0.55
+
+
+def test_scales_of_a_drawing():
+    assert [ratio(mu) for mu in (0.004, 0.015, 0.001, 0.0005)] == ["1:4", "1:15", "1:1", "2:1"]
+
+
+@given(st.lists(st.tuples(st.floats(0, 50), st.floats(0.1, 9)), min_size=1, max_size=12))
+def test_numbers_that_would_touch_stand_apart_and_others_stay(pairs):
+    pairs = sorted(pairs)
+    wanted, sizes = zip(*pairs, strict=True)
+    found = spread(wanted, sizes)
+    for k in range(1, len(found)):
+        assert found[k] - found[k - 1] >= (sizes[k] + sizes[k - 1]) / 2 - 1e-9
+    if all(wanted[k] - wanted[k - 1] > (sizes[k] + sizes[k - 1]) / 2 for k in range(1, len(found))):
+        assert found == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("name", ["shaper", "two-strokes", "press-class-iii", "course-3"])
+def test_numbers_beside_the_way_do_not_cover_one_another(name):
+    from tmm_cli.draw.fonts import corners
+
+    __, sheet = sheet_of(name)
+    texts = [m for m in sheet.marks if isinstance(m, Text) and re.fullmatch(r"[\dk′, ]+", m.text) and m.size < 3]
+    boxes = [(corners(m)[0], corners(m)[2]) for m in texts]
+    for n, (low, high) in enumerate(boxes):
+        for other_low, other_high in boxes[:n]:
+            across = min(high.real, other_high.real) - max(low.real, other_low.real)
+            up = min(high.imag, other_high.imag) - max(low.imag, other_low.imag)
+            assert min(across, up) < 0.3

@@ -1,0 +1,232 @@
+"""The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.annotations import angle_mark, dimension
+from tmm_cli.draw.blocks import Block
+from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.labels import gathered as in_place
+from tmm_cli.draw.lengths import lengths
+from tmm_cli.draw.mechanism import detailed, measured, paths, skeleton, trace
+from tmm_cli.draw.render import arrows
+from tmm_cli.draw.room import Figure, room
+from tmm_cli.draw.ruler import Number, Ruler, beside, crowded, draw_ruler, gathered, reach, ruler_of
+from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_text
+from tmm_cli.draw.symbols import MEASURED
+from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track
+from tmm_cli.errors import _
+from tmm_cli.groups.sequence import LinkStates
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.record import sheet_scale
+from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.vectors import Vector
+
+SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
+OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
+STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
+DIMENSION = 13.0  # mm beside a ruler for the stroke
+EXTREME = "#6a6a6a"
+BOLD = 4  # how much more a link in full is in the way than a thin one
+BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
+NEAR, FULL, PIVOT, GUIDE = 3.0, 8.0, 11.0, 13.0  # mm about thin lines, what is drawn in full, pivots, sliders
+
+
+@dataclass(frozen=True)
+class PositionMark:
+    """Where a position is on a track (m), and what it is called; end: of the output's way; working: its stroke."""
+
+    place: complex
+    text: str
+    end: bool
+    working: bool
+
+
+@dataclass(frozen=True)
+class View:
+    """What is on the sheet: the motion with one position in full, the ends of the output's way."""
+
+    results: Results
+    motion: Motion
+    scene: Scene
+    ends: list[Extreme]
+    states: LinkStates | None
+
+    def lines(self, k: int) -> Vector:
+        """Points (m) that stand for the links in a position."""
+        scene, found = replace(self.scene, k=k), []
+        for link in self.results.linkage.moving:
+            places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
+            found += [place + (places[n - 1] - place) * BETWEEN for n, place in enumerate(places)]
+        lines: Vector = np.concatenate(found)
+        return lines
+
+    @property
+    def shown(self) -> list[int]:
+        """Positions drawn thin."""
+        step = max(1, len(self.results.numbers) // SHOWN)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    @property
+    def numbered(self) -> list[int]:
+        """Positions with numbers."""
+        step = math.ceil(len(self.results.numbers) / NUMBERED)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    def marks(self, track: Track) -> list[PositionMark]:
+        """Numbers and letters of positions along a track, ends of the output's way among them."""
+        named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
+        working = np.ones(len(places), bool)
+        if strokes is not None and strokes.strokes:
+            working = strokes.share(self.motion.q, self.results.linkage.driver.sense)
+        found = [
+            PositionMark(complex(places[k]), text, text in named, bool(working[k]))
+            for k in self.numbered
+            for text in [str(self.results.numbers[k])]
+        ]
+        if self.states is not None:
+            there = [mark.text for mark in found]
+            ends = zip(track.places(self.states), named, strict=True)
+            found += [PositionMark(complex(place), mark, True, True) for place, mark in ends if mark not in there]
+        return found
+
+
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers, stroke, lengths."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    chosen = detailed(results)
+    k = chosen[0].k if chosen else int(np.argmax(motion.placed))
+    ends = extremes(results)
+    states = extreme_states(results, ends) if ends else None
+    view = View(results, motion, Scene(linkage, results.structure, motion.poses, k), ends, states)
+    whole, track = paths(results), output_track(results)
+    marks = view.marks(track) if track is not None else []
+    ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
+    notes, rows = list(_notes(view)), lengths(results)
+    figure = _figure(view, whole)
+    if track is not None and ruled:
+        _reserve(figure, view, track, marks, whole)
+    found = room(figure, Block([scale_text("l", 0.0125, "m/mm") + ", 1:12.5", *notes], rows), OF_LENGTHS)
+    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    sheet = Sheet(results.problem.title, caption, room=found)
+    trace(sheet, whole)
+    for other in view.shown:
+        if other != k:
+            skeleton(sheet, replace(view.scene, k=other))
+    if states is not None:
+        for other in range(len(ends)):
+            skeleton(sheet, replace(view.scene, poses=states.poses, k=other), EXTREME, 0.9, 1.1)
+    if motion.placed[k]:
+        arrows(sheet, view.scene, measured(sheet, view.scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
+    driver = driver_track(results)
+    if driver is not None:
+        _spots(sheet, view.marks(driver))
+    if track is not None and ruled:
+        _output(sheet, view, track, marks)
+    elif track is not None and track != driver:
+        _spots(sheet, marks)
+    sheet.note(f"{scale_text('l', sheet.mu, 'm/mm')}, {ratio(sheet.mu)}")
+    for note in notes:
+        sheet.note(note)
+    sheet.table(rows, 1)
+    yield "mechanism", sheet.finish()
+
+
+def ratio(mu: float) -> str:
+    """A scale factor (m/mm) as the scale of a drawing, 1:4."""
+    return f"1:{1000 * mu:.6g}" if mu >= 1e-3 else f"{1e-3 / mu:.6g}:1"
+
+
+def _figure(view: View, whole: list[Vector]) -> Figure:
+    """Everything but the numbers of the output, with the room that it needs."""
+    figure, pivots = Figure(), fixed_pivots(view.results.linkage)
+    used = [*pivots, *(place for path in whole for place in path.tolist())]
+    figure.spots(pivots, PIVOT)
+    figure.spots(to_scale(view.scene, used), NEAR)
+    for k in view.shown:
+        figure.spots(view.lines(k), FULL if k == view.scene.k else NEAR)
+    sliding = [pair for pair in view.scene.structure.pairs if pair.slide is not None]
+    figure.spots([view.scene.at(pair) for pair in sliding], GUIDE)
+    crank = driver_track(view.results)
+    if crank is not None:
+        figure.spots([mark.place for mark in view.marks(crank)], FULL)
+    return figure
+
+
+def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> None:
+    """Room for the scale of the output and for its stroke beyond it; neither hangs on the scale of the sheet."""
+    mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
+    ruler, numbers = _ruler(view, track, marks, lambda place: place / mu)
+    runs = [number.run for number in numbers]
+    for run in np.linspace(min(runs), max(runs), len(BETWEEN)).tolist():
+        way = ruler.way(run)
+        for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
+            figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
+
+
+def _ruler(view: View, track: Track, marks: list[PositionMark], on: Callable[[Any], Any]) -> tuple[Ruler, list[Number]]:
+    """The scale beside the way of the output, on the side on which there is less of the mechanism."""
+    pivot = on(track.pivot) if track.kind == "arc" else None
+    plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
+    numbers = gathered([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
+    bold = [view.lines(view.scene.k)] * BOLD
+    lines = on(np.concatenate([*(view.lines(k) for k in view.shown), *bold]))
+    sides = [beside(plain, numbers, side) for side in (-1.0, 1.0)]
+    return min(sides, key=lambda ruler: crowded(ruler, numbers, lines)), numbers
+
+
+def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark]) -> None:
+    """Numbers of positions along the way of the output, its stroke or swing."""
+    ruler, numbers = _ruler(view, track, marks, sheet.on)
+    draw_ruler(sheet, ruler, numbers)
+    if view.states is None:
+        return
+    first, last = _farthest(track.places(view.states))
+    units = view.results.problem.units
+    with sheet.on_layer("dimensions"):
+        if track.kind == "line":
+            ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
+            text = f"H = {units.from_si(abs(last - first), LENGTH):.4g} {units.symbol(LENGTH)}"
+            dimension(sheet, ends[0], ends[1], text)
+        else:
+            pivot = track.pivot
+            swing = abs(float(np.angle((last - pivot) / (first - pivot))))
+            text = f"ψ = {units.from_si(swing, ANGLE):.4g} {units.symbol(ANGLE)}"
+            angle_mark(sheet, sheet.on(pivot), sheet.on(first), sheet.on(last), text, right=False)
+
+
+def _farthest(places: Vector) -> tuple[complex, complex]:
+    """The two ends that are farthest from one another."""
+    found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
+    return max(found, key=lambda ends: abs(ends[0] - ends[1]))
+
+
+def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
+    """Numbers of positions beside the places of a point, outside its way."""
+    finite = [mark for mark in marks if np.isfinite(mark.place)]
+    if not finite:
+        return
+    middle = sheet.on(sum(mark.place for mark in finite) / len(finite))
+    # in a cycle of several turns the crank comes back to its places
+    for at, here in in_place((sheet.on(mark.place), mark) for mark in finite):
+        out = at - middle
+        end = any(mark.end for mark in here)
+        sheet.circle(at, 0.7 if end else 0.5, DARK, DARK, 0.3, 5)
+        text = ", ".join(mark.text for mark in here)
+        sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
+
+
+def _notes(view: View) -> Iterable[str]:
+    """Which position is in full, and which are the ends of the output's way."""
+    yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
+    if view.ends:
+        yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
