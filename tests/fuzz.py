@@ -31,7 +31,8 @@ from zlib import crc32
 import numpy as np
 from pydantic import BaseModel
 
-from tmm_cli import problem_of, solve
+from tmm_cli import solve
+from tmm_cli.library import problem_of
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.build_chain import build_chain
 from tmm_cli.problem.errors import ProblemError

@@ -21,7 +21,8 @@ import pytest
 from rich.console import Console
 
 from tmm_cli import load, solve
-from tmm_cli.cli.app import main
+from tmm_cli.cli.app import COMMANDS, main
+from tmm_cli.cli.bench import MEASUREMENTS
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.compare import Difference, difference_table
 from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
@@ -323,10 +324,14 @@ def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     assert "inertia couples of links 3" in told
 
 
-@pytest.mark.parametrize(
-    "command",
-    ["run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "variants", "bench"],
-)
+def test_no_line_of_help_is_cut():
+    for words, names in (((), COMMANDS), (("bench",), MEASUREMENTS)):
+        told = tmm(*words, "--help").stdout
+        assert re.findall(r"^  (\w+) {2,}\S", told.partition("Commands:")[2], re.M) == list(names)
+        assert "..." not in told.partition("Commands:")[2]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help_and_stands_in_the_readme(command):
     done = tmm(command, "--help")
     assert done.returncode == 0 and len(done.stdout) > 100

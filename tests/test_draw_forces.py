@@ -71,7 +71,7 @@ def test_equations_of_moments_stand_beneath_in_letters_then_with_numbers(loaded,
 
 def test_arms_are_listed_with_their_length_and_as_they_measure_on_paper(loaded):
     texts = plain(loaded["group-loads-03-links-4-5"])
-    (scale,) = [float(t.split()[2]) for t in texts if t.startswith("μ_l")]
+    (scale,) = [float(t.split()[1]) for t in texts if t.startswith(" = ") and t.endswith(" m/mm")]
     assert {"104.1", f"{0.1041 / scale:.1f} mm", "228.6", f"{0.2286 / scale:.1f} mm"} <= texts
     lengths = [
         abs(mark.places[0] - mark.places[-1])
@@ -89,9 +89,20 @@ def test_groups_of_every_class_are_drawn(name):
 
 def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
     table = Table(("name", "N"), [(f"R{n}", "100") for n in range(30)])
-    one, wide, narrow = (Beneath((), (table,)).height(width) for width in (20.0, 270.0, 60.0))
-    assert wide < narrow < one
-    assert Beneath(("x " * 200,)).height(100.0) > 4 * Beneath(("x ",)).height(100.0) / 2
+    one, wide, narrow = (left(Beneath((), (table,)), across) for across in (20.0, 270.0, 60.0))
+    assert one < narrow < wide
+    assert left(Beneath(("x " * 200,)), 100.0) < left(Beneath(("x ",)), 100.0) - 4
+
+
+def test_tables_aside_leave_all_of_the_height():
+    table = Table(("name", "N"), [(f"R{n}", "100") for n in range(10)])
+    below, aside = (Beneath((), (table,), aside=aside).left(0j, 100 + 100j) for aside in (False, True))
+    assert aside.imag > below.imag and aside.real < below.real == 100
+
+
+def left(written, across):
+    """The height that a text leaves of 500 mm, mm."""
+    return written.left(0j, complex(across, 500)).imag
 
 
 @pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])

@@ -93,3 +93,12 @@ def test_the_box_of_a_text_is_as_wide_as_its_letters_and_turns_with_it():
 
 def test_characters_that_the_font_lacks_are_told():
     assert lacking("A₃τ Я") == set() and lacking("A\U0001f980") == {"\U0001f980"}
+
+
+def test_thin_upright_letters_are_as_dark_wherever_they_fall_between_pixels():
+    def ink(at):
+        picture = Image.open(io.BytesIO(FORMATS["png"](Drawing.of((20.0, 20.0), [Text(at, "l", 2.0, "#000000")]))))
+        return sum(255 - value for value in picture.convert("L").tobytes())
+
+    found = [ink(10 + 10j + 0.03 * k) for k in range(8)]
+    assert min(found) > 0.9 * max(found) > 0

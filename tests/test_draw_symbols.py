@@ -15,7 +15,7 @@ from tmm_cli.draw.render import render
 from tmm_cli.draw.scene import fitted, to_scale
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 from tmm_cli.draw.structure import at_sketch
-from tmm_cli.draw.symbols import MEASURED, PLATE, STRUCTURAL, mass_centre, tint
+from tmm_cli.draw.symbols import MEASURED, PLATE, STRUCTURAL, WELD, mass_centre, tint
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import cross, dot
 
@@ -62,7 +62,10 @@ def meet(one, other):
 def test_no_rod_runs_through_hatching(path, look):
     sheet, found = drawn(path, look)
     strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
-    assert strokes or not any(FRAME in (p.i, p.j) for p in found.scene.structure.pairs if p.lower)
+    for pair in found.scene.structure.pairs:
+        if pair.lower and FRAME in (pair.i, pair.j):
+            at = sheet.on(found.scene.at(pair))
+            assert sum(abs((stroke[0] + stroke[-1]) / 2 - at) < 14 for stroke in strokes) > 3, pair.name
     for link, form in found.forms.items():
         for start, end in form.edges:
             assert not any(meet((start, end), (stroke[0], stroke[-1])) for stroke in strokes), link
@@ -160,3 +163,32 @@ def test_a_rail_is_open_where_rods_go_through_it():
 def test_a_support_is_where_no_rod_runs_through_it(ends, side):
     sheet = Sheet("", "")
     assert support_side(sheet, 100 + 100j, [(100 + 100j, 100 + 100j + end) for end in ends]) == pytest.approx(side)
+
+
+@every
+def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(path, look):
+    sheet, found = drawn(path, look)
+    lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
+    barrels = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 4 and m.z > 4.5]
+    driven = [d for d in found.scene.linkage.drivers if d.kind == "slide" and d.base != FRAME]
+    assert len(barrels) == len(driven)
+    for driver, corners in zip(driven, barrels, strict=True):
+        slide = found.scene.linkage.slide(driver.joint)
+        end, along = sheet.on(found.scene.place(slide.runner, slide.at)), found.scene.along(slide)
+        rods = [p for p in lines if distance(end, (p[0], p[-1])) < NEAR and abs(cross(along, p[0] - end)) < NEAR]
+        low, high = min(dot(along, c) for c in corners), max(dot(along, c) for c in corners)
+        inside = [min(dot(along, z) for z in rod) for rod in rods]
+        assert any(low < run < high for run in inside) and dot(along, end) > high  # the rod comes out of its barrel
+
+
+@every
+def test_a_wheel_is_welded_to_the_bar_of_its_link(path, look):
+    sheet, found = drawn(path, look)
+    marks = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 3 and m.face == DARK]
+    for pair in found.scene.structure.pairs:
+        for disc in getattr(found.scene.higher(pair), "discs", ()) if not pair.lower else ():
+            centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
+            if disc.link in found.forms and radius > 2 * WELD:
+                barred = any(distance(centre, line) < 0.1 for line in found.forms[disc.link].edges)
+                rims = [corners for corners in marks if abs(abs(corners[0] - centre) - radius) < 0.1]
+                assert not barred or rims, disc.link

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[1]
 TOP = {
     "__init__",
     "__main__",
+    "library",
     "linkage",
     "vectors",
     "roots",
@@ -56,8 +57,9 @@ def modules() -> dict[str, Path]:
 
 def folder(name: str) -> str:
     """The folder of a file, `top` for those beside the folders."""
-    if name == "__main__":
-        return "cli"
+    own = {"__main__": "cli", "library": "door"}
+    if name in own:
+        return own[name]
     return name.partition(".")[0] if name == "door" or MODULES[name].parent != ROOT / "tmm_cli" else "top"
 
 

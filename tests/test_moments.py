@@ -112,6 +112,29 @@ def test_the_rod_s_moments_give_the_tangential_reaction():
     assert [term.number for term in equation.terms] == [1, 2, 0, 3]
 
 
+@pytest.mark.parametrize("name", ["shaper", "course-3", "press-class-iii", "lifting-boom", "excavator", "cylinder"])
+def test_forces_along_a_guide_come_to_nothing_and_give_what_no_moments_give(name):
+    results, (k, *_) = detailed(name)
+    sums = [s for part in loaded_parts(results.motion, results.reactions, k) for s in part.sums]
+    assert sums
+    for one in sums:
+        size = sum(part.acting.size for part in one.parts)
+        assert abs(sum(part.along for part in one.parts)) < 1e-12 * size
+        assert one.found.cosine == pytest.approx(1.0, abs=1e-12)  # what is sought lies along the guide
+        assert abs(one.value - one.found.acting.size) < 1e-12 * size
+
+
+def test_the_stone_s_forces_along_the_slot_give_the_normal_reaction():
+    """Shaper, position 3: weight and inertia of stone 2 along CD; the link at the slot pushes across it."""
+    results, (k,) = detailed("shaper")
+    motion = results.motion
+    along = complex(motion.named("D").x[k] - motion.named("C").x[k]) / 0.65
+    by_hand = dot(along, 1.5 * (-9.81j - complex(motion.centre("2").a[k])))
+    group = next(part for part in loaded_parts(motion, results.reactions, k) if part.links == ("2", "3"))
+    stone = next(one for one in group.sums if one.link == "2")
+    assert stone.found.acting.name == "R₁₂ⁿ" and stone.value == pytest.approx(abs(by_hand), rel=1e-10)
+
+
 def test_moments_of_a_crank_about_its_pivot_balance_it():
     results, (k,) = detailed("shaper")
     equation = equations("shaper")["Mb"]

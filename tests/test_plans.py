@@ -144,3 +144,10 @@ def test_links_that_only_slide_turn_with_nothing_and_signs_are_senses():
     found = {t.symbol.below: t.value for t in turns(motion, 3, "omega")}
     assert set(found) == {"1", "2", "3", "4"}
     assert found["1"] == pytest.approx(82 * np.pi / 30) and found["2"] == found["3"] == motion.link("3").omega[3]
+
+
+def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points():
+    results = solve(load(str(SHAPER.parent / "course-2.yaml")))
+    found = [s for r in readings(acceleration_plan(results.motion, 2)) for s in r.symbols]
+    assert Symbol("a", "D5E", "n") not in found and Symbol("a", "DC", "n") in found
+    assert Symbol("a", "DD5", "k") in found  # zero, as the guide does not turn: worth a line

@@ -13,13 +13,14 @@ import pytest
 from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
-from tmm_cli import load, solve, structure_of
+from tmm_cli import load, solve
 from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
 from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
 from tmm_cli.kinematics.motion import move
+from tmm_cli.library import structure_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
@@ -64,7 +65,7 @@ def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
 
 
 def test_the_structure_of_a_chain_in_space_builds_no_arrays():
-    from tmm_cli import count
+    from tmm_cli.library import count
     from tmm_cli.problem.build_chain import build_chain
     from tmm_cli.problem.reader import read_file
 
@@ -208,7 +209,7 @@ def test_what_shows_tables_imports_no_drawing():
     commands = ("structure", "kinematics", "forces", "explain")
     code = (
         "import sys\nfrom tmm_cli.cli.app import application\nfor command in sys.argv[2:]:\n"
-        " try: application()([command, sys.argv[1]])\n except SystemExit as end: print(command, end.code, "
+        " try: application([command])([command, sys.argv[1]])\n except SystemExit as end: print(command, end.code, "
         "[m for m in sys.modules if m[:10] in ('matplotlib', 'tmm_cli.dr')], file=sys.stderr)"
     )
     call = [sys.executable, "-c", code, str(SHAPER), *commands]
@@ -232,7 +233,7 @@ def test_explain_says_of_every_stage_what_the_stage_does():
 
 def test_every_saving_is_one(tmp_path, monkeypatch):
     monkeypatch.setattr("tmm_cli.bench.savings.FEW", 1)
-    monkeypatch.setattr("tmm_cli.bench.figures.FIGURES", {"png": lambda figure: b"", "svg": lambda figure: b""})
+    monkeypatch.setattr("tmm_cli.cli.bench.finish.FIGURES", {"png": lambda figure: b"", "svg": lambda figure: b""})
     done = tmm("bench", "savings", "--reduced", "--json", "-o", tmp_path)
     assert done.returncode == 0
     found = json.loads(done.stdout)
@@ -310,7 +311,7 @@ def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):
     assert "count: 3000" in text
     (tmp_path / "long.yaml").write_text(text, encoding="utf-8")
     code = (
-        "import sys\nfrom tmm_cli.cli.app import application\ntry: application()(sys.argv[1:])\nexcept SystemExit:\n"
+        "import sys\nfrom tmm_cli.cli.app import main\ntry: main()\nexcept SystemExit:\n"
         "    with open('/proc/self/status') as status: lines = dict(line.split(':') for line in status)\n"
         "    print(int(lines['VmHWM'].split()[0]) / 1024, file=sys.stderr)"  # ru_maxrss: the parent too
     )

@@ -11,7 +11,8 @@ import pytest
 import random_linkages
 from test_commands import PROBLEMS, ROOT, moved, problem, tmm
 
-from tmm_cli import count, load
+from tmm_cli import load
+from tmm_cli.library import count
 from tmm_cli.linkage import FRAME
 from tmm_cli.problem.build import build
 from tmm_cli.problem.build_chain import build_chain

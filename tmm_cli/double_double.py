@@ -176,9 +176,13 @@ def array(values: Any) -> Any:
     """An array of numbers, of double-doubles where one of them is such."""
     if isinstance(values, DoubleDouble):
         return values
-    if isinstance(values, list | tuple) and any(isinstance(value, DoubleDouble | list | tuple) for value in values):
-        return np.stack([array(value) for value in values])
-    return np.asarray(values)
+    if not isinstance(values, list | tuple):
+        return np.asarray(values)
+    found = [array(value) if isinstance(value, list | tuple) else value for value in values]
+    if any(isinstance(value, DoubleDouble) for value in found):
+        higher, lower = zip(*map(_parts, found), strict=True)
+        return DoubleDouble(np.array(higher), np.array(lower))
+    return np.asarray(found)
 
 
 def rounded(values: Any) -> Any:

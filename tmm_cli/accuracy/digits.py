@@ -22,7 +22,7 @@ from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
 from tmm_cli.analysis.selection import values as leading_values
-from tmm_cli.double_double import exactly, rounded
+from tmm_cli.double_double import array, exactly, rounded
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.driver_range import DriverRange
@@ -73,6 +73,8 @@ def judged(
     motion = results.motion
     assert motion is not None
     values = of(results)
+    if not values:
+        return Digits(mu=mu)
     judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
     found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
     chunk = max(CHUNK // (1 + len(lengths(results.linkage))), 1)
@@ -174,7 +176,8 @@ class _Judge:
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
-        return np.stack([cells.get(key, nothing) for key in self.values])
+        found: Real = array([cells.get(key, nothing) for key in self.values])
+        return found
 
     def gap(self, one: Real, other: Real) -> Real:
         """How far values are from others; of angles the way round."""

@@ -28,10 +28,14 @@ SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first orde
 
 
 class Found(NamedTuple):
-    """A number of the mechanism that was searched for: its bound, and the results with it shifted by so much."""
+    """A number of the mechanism that was searched for: where it stands, its bound, the results with it shifted by so
+    much; sense: to which side they are.
+    """
 
+    path: str
     bound: float
     shifted: Callable[[float], Results]
+    sense: int = 1
 
 
 def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: float = float("nan")) -> Digits:
@@ -41,20 +45,19 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
     """
     values, data = of(results), lengths(results.linkage)
     here = _row(values, values)
-    bound, share, paper = 2 * ROUNDOFF * np.abs(here), np.zeros(here.shape), np.zeros(here.shape)
+    bound = 2 * ROUNDOFF * np.abs(here)
     with np.errstate(all="ignore"):
-        for found in found_in(results, wide):
-            by = min(SHIFT, LARGE * found.bound)
-            gap = _gap(_row(of(found.shifted(by)), values), here) if by else np.zeros(here.shape)
-            bound = bound + np.where(gap > 0, gap * (found.bound / by if by else 0.0), 0.0)
         rates = {} if np.isnan(mu) or results.driver_range is None else responses(results, data)
-        for k, length in enumerate(data if rates else ()):
-            goes = {path: rate[k] for path, rate in rates.items() if rate[k]}
-            if goes:
-                by = SHIFT / max(map(abs, goes.values()))
-                moved = of(_shifted(results, {path: rate * by for path, rate in goes.items()}))
-                rate = _gap(_row(moved, values), here) / by
-                share, paper = share + rate * SHARE * abs(length.value), paper + rate * PAPER * mu
+        goes = np.zeros((len(here), len(data)))  # how far each number goes a metre of each length
+        for found in found_in(results, wide):
+            rate = rates.get(found.path, 0.0)
+            by = found.sense * (min(SHIFT, LARGE * found.bound) or (SHIFT if np.any(rate) else 0.0))
+            if by:
+                slope = _gap(_row(of(found.shifted(by)), values), here) / by
+                bound = bound + np.where(slope != 0, np.abs(slope) * found.bound, 0.0)
+                goes = goes + np.where(rate, slope[:, None] * rate, 0.0)
+        sizes = np.array([abs(length.value) for length in data])
+        share, paper = SHARE * np.abs(goes) @ sizes, PAPER * mu * np.abs(goes).sum(axis=1)
     ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
     # of nothing an array is still one part
     told = [dict(zip(values, np.split(part, ends_of), strict=False)) for part in (bound, share, paper)]
@@ -71,9 +74,10 @@ def _row(moved: Cells, values: Cells) -> Real:
 
 
 def _gap(moved: Real, here: Real) -> Real:
-    """How far numbers have moved; a full turn is no way."""
-    residual: Real = np.abs(moved - here)
-    return np.where(np.abs(residual - 2 * np.pi) < 1e-3, np.abs(residual - 2 * np.pi), residual)
+    """How far numbers have moved, and to which side; a full turn is no way, nor is one from or to nowhere."""
+    way: Real = moved - here
+    turn = np.copysign(2 * np.pi, way)
+    return np.where(np.abs(way - turn) < 1e-3, way - turn, np.where(np.isnan(way), 0.0, way))
 
 
 def found_in(results: Results, wide: Wide) -> Iterator[Found]:
@@ -84,7 +88,7 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
     span = driver_range.end - driver_range.start
 
     def found(path: str, bound: float, sense: int = 1, also: Sequence[str] = ()) -> Found:
-        return Found(float(bound), lambda by: _shifted(results, dict.fromkeys((path, *also), sense * by)))
+        return Found(path, float(bound), lambda by: _shifted(results, dict.fromkeys((path, *also), by)), sense)
 
     for (end, *also), bound in zip(ends(driver_range), _ends(results, driver_range, wide), strict=True):
         yield found(end, bound, also=also)
@@ -112,7 +116,7 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
             losses = mapped(lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked",))
             return replace(results, losses=losses)
 
-        yield Found(1.0, towards)
+        yield Found("losses", 1.0, towards)
 
 
 def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[float]:

@@ -12,30 +12,32 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.double_double import exactly
 from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.energy import Energy, energy
+from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
+from tmm_cli.forces.lever import Lever, lever
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import Reactions, power, react
+from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion, towards
-from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
+from tmm_cli.kinematics.motion import Motion, move, spliced
+from tmm_cli.kinematics.pressure import Pressure, pressure_at
+from tmm_cli.kinematics.slots import Excess
+from tmm_cli.kinematics.strokes import Strokes, Travel
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
-if TYPE_CHECKING:  # what only motion or forces need is imported when they are asked for
+if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.assembly.enumerate import Assemblies
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.forces.energy import Energy
-    from tmm_cli.forces.friction import FrictionSolution, Losses
-    from tmm_cli.forces.lever import Lever
-    from tmm_cli.forces.plan import Reactions
-    from tmm_cli.groups.base import Kernel
-    from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
-    from tmm_cli.kinematics.pressure import Pressure
-    from tmm_cli.kinematics.slots import Excess
-    from tmm_cli.kinematics.strokes import Strokes, Travel
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -105,8 +107,6 @@ class Results:
     @cached_property
     def pressure(self) -> tuple[Pressure, ...]:
         """Pressure angles of the driven links: the largest, and those at the positions."""
-        from tmm_cli.kinematics.pressure import pressure_at
-
         if self.of or self.motion is None:
             return ()
         return tuple(
@@ -177,8 +177,6 @@ def solve(
 
 def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
     """The motion, its positions near dead ones in extended precision where the machine has it."""
-    from tmm_cli.analysis.extended import near_dead, refined
-
     law = driver_motion(results.linkage, results.start)
     motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
     where = near_dead(motion)
@@ -192,27 +190,18 @@ def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ..
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
     """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
-    from tmm_cli.forces.energy import energy
-    from tmm_cli.forces.lever import lever
-    from tmm_cli.forces.loads import applied
-    from tmm_cli.forces.plan import power, react
-
     motion = results.motion
     assert motion is not None
     strokes = results.strokes if any(x.working_stroke_only or x.table for x in results.linkage.loads) else None
     loads = applied(motion, strokes)
     reactions = react(motion, results.structure, loads)
     if motion.finer is not None and motion.where is not None:
-        from tmm_cli.kinematics.motion import spliced
-
         exact = applied(motion.finer, strokes)
         structure = results.structure.rebind(motion.finer.linkage)
         loads = spliced(loads, exact, motion.where)
         reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
-        from tmm_cli.forces.friction import solve_friction
-
         rubbed = solve_friction(motion, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
@@ -226,10 +215,6 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
 
 def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
     """What friction takes over the cycle, summed up over so many places."""
-    from tmm_cli.forces.friction import losses, solve_friction
-    from tmm_cli.forces.loads import applied
-    from tmm_cli.forces.plan import react
-
     whole = at_positions(results, results.closely(places + 1))
     acting = applied(whole, results.strokes)
     return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tmm_cli.assembly.rank import by_rank
 from tmm_cli.errors import MobilityError
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure, analyse
@@ -12,8 +13,6 @@ def mobile(linkage: Linkage) -> Structure:
     structure = analyse(linkage)
     if structure.sound:
         return structure
-    from tmm_cli.assembly.rank import by_rank  # few linkages need it
-
     moving = by_rank(linkage, structure)
     if moving is None:
         raise MobilityError(structure)

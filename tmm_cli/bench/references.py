@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.bench.methods.case import Answers, Case
+from tmm_cli.library import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.vectors import Real

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
-from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results, at_positions, with_forces
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
@@ -18,6 +17,7 @@ from tmm_cli.errors import _
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.motion import move
+from tmm_cli.library import solve
 from tmm_cli.linkage import Linkage
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

@@ -1,4 +1,4 @@
-"""The command `tmm`. A new command is a file beside this one, with a function of the same name, and a word here."""
+"""The command `tmm`. A new command is a file beside this one, with a function of the same name, and a line here."""
 
 from __future__ import annotations
 
@@ -6,25 +6,35 @@ import gc
 import os
 import sys
 import warnings
-from collections.abc import Iterable
-from importlib import import_module
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli.common import BAD_INPUT, OK, say
+from tmm_cli.cli.commands import add_commands
+from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.errors import _
 
-COMMANDS = (
-    "run", "structure", "kinematics", "forces", "check", "explain", "new", "schema", "schemes", "synthesis", "variants",
-    "grade",
-)  # fmt: skip
-GROUPS = ("bench",)  # commands that have commands of their own, in `app`
+COMMANDS = {
+    "run": "Compute a problem whole; write tables, drawings, result.json.",
+    "structure": "Mobility, pairs, Assur groups, names of links, contours.",
+    "kinematics": "Positions, velocities, accelerations, transfer functions.",
+    "forces": "Loads, reactions, what balances the driver, Zhukovsky lever.",
+    "check": "Compute problems again, compare them with what is expected.",
+    "explain": "Say what a file was understood to mean, what is computed.",
+    "new": "Start a problem file from a commented template.",
+    "schema": "Print the JSON Schema of problem files, for editors.",
+    "schemes": "Structural synthesis: all schemes built of Assur groups.",
+    "synthesis": "Find lengths from what a mechanism must do.",
+    "variants": "Draw variants of a task for a group of students.",
+    "grade": "Mark what the students of a group handed in.",
+    "bench": "Measure speed, accuracy, stability, savings, synthesis.",
+}
 
 
-def application(names: Iterable[str] = (*COMMANDS, *GROUPS)) -> typer.Typer:
-    """The application with these commands: one that is asked for by its name needs no others made for it."""
+def application(words: Sequence[str]) -> typer.Typer:
+    """The application with the command that the words of a command line ask for, or with the names of all."""
     app = typer.Typer(
         name="tmm",
         help="Course-project calculator for the theory of mechanisms and machines: planar lever mechanisms.",
@@ -35,12 +45,7 @@ def application(names: Iterable[str] = (*COMMANDS, *GROUPS)) -> typer.Typer:
         rich_markup_mode=None,
     )
     app.callback()(_options)
-    for name in names:
-        module = import_module(f"tmm_cli.cli.{name}")
-        if name in GROUPS:
-            app.add_typer(module.app)
-        else:
-            app.command(name)(getattr(module, name))
+    add_commands(app, "tmm_cli.cli", COMMANDS, words)
     return app
 
 
@@ -63,9 +68,8 @@ def main() -> None:
     # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     _open_streams()
-    asked = [name for name in sys.argv[1:2] if name in (*COMMANDS, *GROUPS)]
     try:
-        application(asked or (*COMMANDS, *GROUPS))()
+        application(sys.argv[1:])()
     except SystemExit as ended:
         left = isinstance(ended.__context__, BrokenPipeError)  # `tmm ... | head` is not an error
         sys.exit(_flushed(OK if left else ended.code))

@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import BAD_INPUT, progress, refusing, say
+from tmm_cli.cli.common import progress, refusing
+from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
+from tmm_cli.cli.talk import BAD_INPUT, say
 from tmm_cli.errors import _
 
 
@@ -29,8 +31,6 @@ def check(
         folders = ", ".join(map(str, paths))
         say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
         raise typer.Exit(BAD_INPUT)
-    from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
-
     tasks = [task for path in paths if path.is_dir() for task in sorted(path.glob("grading/*/task.yaml"))]
     outcomes = [
         compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)

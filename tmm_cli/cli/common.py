@@ -7,16 +7,16 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from rich.console import Console
+from rich.progress import track
 
+from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.errors import _
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.results.files import folder_name
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
@@ -49,14 +49,7 @@ Out = Annotated[
 
 def console() -> Console:
     """For results: standard output, as wide as the tables need when it is not a terminal."""
-    from rich.console import Console
-
     return Console(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
-
-
-def say(text: str) -> None:
-    """Talk goes to standard error."""
-    typer.echo(text, err=True)
 
 
 def each(
@@ -89,8 +82,6 @@ def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
 
     name: of what is read or written, where the system does not say it.
     """
-    from tmm_cli.problem.errors import ProblemError
-
     try:
         yield
     except ProblemError as error:
@@ -107,8 +98,6 @@ def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
 
 def _refuse_one_name(files: Sequence[str]) -> None:
     """Files whose results would take the place of one another's end the command before its work."""
-    from tmm_cli.results.files import folder_name
-
     first: dict[str, str] = {}
     for file in files:
         other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
@@ -121,9 +110,6 @@ def progress(files: Sequence[Any]) -> Iterable[Any]:
     """The same, counted by a bar when there are several."""
     if len(files) < 2:
         return files
-    from rich.console import Console
-    from rich.progress import track
-
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 

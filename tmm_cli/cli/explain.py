@@ -6,8 +6,13 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli import solve
-from tmm_cli.cli.common import OK, Files, Settings, console, each
+from tmm_cli.cli.common import Files, Settings, console, each
+from tmm_cli.cli.opening import opened
+from tmm_cli.cli.talk import OK
+from tmm_cli.library import solve
+from tmm_cli.results.explain import explain as tables
+from tmm_cli.results.in_words import in_words
+from tmm_cli.results.terminal import show
 
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
 
@@ -19,11 +24,6 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
     """
 
     def work(file: str) -> int:
-        from tmm_cli.cli.opening import opened
-        from tmm_cli.results.explain import explain as tables
-        from tmm_cli.results.in_words import in_words
-        from tmm_cli.results.terminal import show
-
         results = solve(opened(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from tmm_cli import solve
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.reporting import report
+from tmm_cli.library import solve
 
 
 def forces(
@@ -20,9 +22,6 @@ def forces(
     names = ("cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
 
     def work(file: str) -> int:
-        from tmm_cli.cli.opening import opened, variant_settings
-        from tmm_cli.cli.reporting import report
-
         own = variant_settings(file, variants, variant, settings)
 
         return report(solve(opened(file, own, position, digits), "forces", position), names, as_json, out, digits)

@@ -9,9 +9,11 @@ from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 from tmm_cli import __version__
-from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, console, say
+from tmm_cli.cli.common import console
 from tmm_cli.cli.reporting import computed
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
 from tmm_cli.errors import _
+from tmm_cli.grading.examples import grades
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.as_json import to_json
@@ -40,8 +42,6 @@ def compared(file: Path, update: bool) -> Outcome:
 
 def compared_grades(task: Path, update: bool) -> Outcome:
     """A graded example likewise, with expected.json beside its task."""
-    from tmm_cli.grading.examples import grades  # a bank may have none
-
     return _compared(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
 
 

@@ -9,18 +9,29 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from rich.console import Console
+from rich.progress import Progress
 
-from tmm_cli.cli.common import BAD_INPUT, CHECK_FAILED, OK, console, refusing, say
+from tmm_cli.cli.common import console, refusing
+from tmm_cli.cli.opening import introduce
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
 from tmm_cli.errors import _
-
-if TYPE_CHECKING:
-    from rich.progress import Progress
-
-    from tmm_cli.grading.record import StudentMarks, Submission
-    from tmm_cli.grading.task import Task
+from tmm_cli.grading.exports import EXPORTS
+from tmm_cli.grading.exports.book import Gradebook
+from tmm_cli.grading.record import StudentMarks, Submission
+from tmm_cli.grading.run import graded, written
+from tmm_cli.grading.statistics import tables
+from tmm_cli.grading.submissions.read import read_submissions
+from tmm_cli.grading.submissions.template import write_template
+from tmm_cli.grading.tables import read_table
+from tmm_cli.grading.task import Task, read_task
+from tmm_cli.grading.workers import cluster, processes
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.reader import read_file
+from tmm_cli.results.terminal import show
 
 KEPT = ".graded"  # in the output folder: marks of earlier runs
 
@@ -56,13 +67,8 @@ def grade(
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
     """
     with refusing():
-        from tmm_cli.grading.task import read_task
-        from tmm_cli.problem.reader import read_file
-
         task = read_task(read_file(file))
         if template is not None:
-            from tmm_cli.grading.submissions.template import write_template
-
             write_template(task, template)
             say(_("written: {files}").format(files=template))
             raise typer.Exit(OK)
@@ -77,16 +83,6 @@ def _graded(
     scheduler: str | None,
 ) -> int:  # fmt: skip
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
-    from tmm_cli.cli.opening import introduce
-    from tmm_cli.grading.exports import EXPORTS
-    from tmm_cli.grading.exports.book import Gradebook
-    from tmm_cli.grading.run import graded, written
-    from tmm_cli.grading.statistics import tables
-    from tmm_cli.grading.submissions.read import read_submissions
-    from tmm_cli.grading.tables import read_table
-    from tmm_cli.grading.workers import cluster, processes
-    from tmm_cli.results.terminal import show
-
     names = _chosen(formats, list(EXPORTS))
     introduce(task.problem)
     table = read_table(variants, task)
@@ -114,8 +110,6 @@ def _graded(
 
 def _chosen(formats: str | None, known: list[str]) -> list[str]:
     """Names of formats. Raises ProblemError."""
-    from tmm_cli.problem.errors import ProblemError, nearest, quote
-
     found = known if formats is None else [name.strip() for name in formats.split(",")]
     for name in found:
         if name not in known:
@@ -128,9 +122,6 @@ def _chosen(formats: str | None, known: list[str]) -> list[str]:
 
 def _bars() -> Progress:
     """Progress on a terminal; elsewhere nothing."""
-    from rich.console import Console
-    from rich.progress import Progress
-
     return Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty())
 
 

@@ -8,9 +8,13 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli import solve
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each, say
+from tmm_cli.assembly.enumerate import listed
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.reporting import report, write_pictures
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.library import assemblies, solve
 
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
@@ -38,9 +42,6 @@ def kinematics(
     names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
 
     def work(file: str) -> int:
-        from tmm_cli.cli.opening import opened, variant_settings
-        from tmm_cli.cli.reporting import report
-
         own = variant_settings(file, variants, variant, settings)
 
         if assemblies:
@@ -56,10 +57,6 @@ def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
-    from tmm_cli import assemblies
-    from tmm_cli.assembly.enumerate import listed
-    from tmm_cli.cli.opening import opened
-    from tmm_cli.cli.reporting import report, write_pictures
     from tmm_cli.draw.assemblies import sheets
     from tmm_cli.draw.formats import files
 

@@ -7,8 +7,11 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import refusing, say
+from tmm_cli.cli.common import refusing
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, nearest
+from tmm_cli.problem.templates import template_text, templates
 
 
 def new(
@@ -18,9 +21,6 @@ def new(
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
-    from tmm_cli.problem.errors import ProblemError, nearest
-    from tmm_cli.problem.templates import template_text, templates
-
     known = templates()
     if template is None:
         for name, title in known.items():

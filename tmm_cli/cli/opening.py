@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tmm_cli import problem_of
-from tmm_cli.cli.common import say
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file

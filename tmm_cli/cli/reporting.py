@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from tmm_cli import count, problem_of, redrive, solve, structure_of
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.cli.common import CHECK_FAILED, OK, console, say
+from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, introduce
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say
 from tmm_cli.errors import _
+from tmm_cli.library import count, problem_of, redrive, solve, structure_of
 from tmm_cli.problem.build import is_chain
+from tmm_cli.problem.build_chain import build_chain
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.as_json import sections
+from tmm_cli.results.digits import AccuracyReport, accuracy, beside
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.output import Written, write_results
 from tmm_cli.results.reports import walk
@@ -25,9 +27,6 @@ from tmm_cli.results.terminal import show as print_table
 from tmm_cli.results.text import json_text
 from tmm_cli.results.warnings import warnings
 from tmm_cli.synthesis.check import measured_on
-
-if TYPE_CHECKING:
-    from tmm_cli.results.digits import AccuracyReport
 
 
 def computed(
@@ -49,8 +48,6 @@ def computed(
     """
     tree = with_settings(read_file(file), settings or ())
     if is_chain(tree):
-        from tmm_cli.problem.build_chain import build_chain  # few files give a chain
-
         return count(build_chain(tree))
     problem = problem_of(tree)
     if driver is not None:
@@ -65,23 +62,24 @@ def computed(
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
-def bounds_of(results: Results | ChainResults, digits: bool) -> AccuracyReport | None:
-    """How far each number is to be trusted, with `digits` in full; None where nothing moves."""
+def bounds_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
+    """How far each number is to be trusted, with `digits` in full; None where nothing moves.
+
+    shown: tables that alone are shown.
+    """
     if isinstance(results, ChainResults) or results.motion is None:
         return None
-    from tmm_cli.results.digits import accuracy  # the structure does not need it
-
-    return accuracy(results, digits)
+    return accuracy(results, digits, shown)
 
 
 def report(
-    results: Results | ChainResults, names: Iterable[str], as_json: bool, out: Path | None, digits: bool = False
+    results: Results | ChainResults, names: Collection[str], as_json: bool, out: Path | None, digits: bool = False
 ) -> int:
     """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
 
     digits: show bounds and sensitivities beside the values.
     """
-    found = bounds_of(results, digits)
+    found = bounds_of(results, digits, () if as_json or out is not None else names)
     if as_json:
         emit_results(results, found)
     else:
@@ -135,8 +133,6 @@ def show(results: Results | ChainResults, names: Iterable[str], found: AccuracyR
     screen = console()
     shown = walk(results, () if isinstance(results, ChainResults) else set(names))
     if found is not None:
-        from tmm_cli.results.digits import beside
-
         shown = found.with_bounds(shown)
         shown = map(beside, shown) if found.full else shown
     for table in shown:

@@ -8,8 +8,14 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Position, Settings, Variant, Variants, WithDigits, each, say
+from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.cli.common import Files, Json, Position, Settings, Variant, Variants, WithDigits, each
+from tmm_cli.cli.opening import variant_settings
+from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.results.output import write_results
+from tmm_cli.results.warnings import warnings
 
 SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
 
@@ -28,12 +34,6 @@ def run(
     """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
 
     def work(file: str) -> int:
-        from tmm_cli.analysis.spatial_chain import ChainResults
-        from tmm_cli.cli.opening import variant_settings
-        from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
-        from tmm_cli.results.output import write_results
-        from tmm_cli.results.warnings import warnings
-
         own = variant_settings(file, variants, variant, settings)
         results = computed(file, "forces", position, settings=own, digits=digits, drawings=drawings)
         pictures: Iterable[tuple[str, bytes]] | None = None

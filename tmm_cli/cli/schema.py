@@ -7,6 +7,10 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import emit_json
+from tmm_cli.grading.block import Blocks
+from tmm_cli.problem.json_schema import file_schema
+from tmm_cli.results.as_json import schema as result_schema
+from tmm_cli.synthesis import TASKS, block
 
 
 def schema(
@@ -14,12 +18,6 @@ def schema(
 ) -> None:
     """Print the JSON Schema of problem files, for editors."""
     if result:
-        from tmm_cli.results.as_json import schema as result_schema
-
         emit_json(result_schema())
     else:
-        from tmm_cli.grading.block import Blocks
-        from tmm_cli.problem.json_schema import file_schema
-        from tmm_cli.synthesis import TASKS, block
-
         emit_json(file_schema((block(task).Shape for task in TASKS), Blocks))

@@ -7,8 +7,14 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Json, console, emit_json, progress, refusing, say
+from tmm_cli.cli.common import Json, console, emit_json, progress, refusing
+from tmm_cli.cli.scheme_files import named_types, wanted_chains, wanted_schemes, write_skeletons
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.schemes import chains_json, chains_table, schemes_json, schemes_table
+from tmm_cli.results.terminal import MORE_ROWS_AS_JSON, show
 
 DEFAULT_GROUPS = "II"
 
@@ -31,12 +37,6 @@ def schemes(
     as_json: Json = False,
 ) -> None:
     """Structural synthesis: all schemes built of Assur groups, or the number of kinematic chains."""
-    from tmm_cli.cli.scheme_files import named_types, wanted_chains, wanted_schemes, write_skeletons
-    from tmm_cli.problem.errors import ProblemError
-    from tmm_cli.problem.units import UnitSystem
-    from tmm_cli.results.schemes import chains_json, chains_table, schemes_json, schemes_table
-    from tmm_cli.results.terminal import MORE_ROWS_AS_JSON, show
-
     written = None
     with refusing(as_json, str(out or "")):
         if links is not None and chains is None:

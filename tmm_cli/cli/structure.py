@@ -6,7 +6,11 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, Settings, Variant, Variants, each, say
+from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.cli.common import Files, Json, Out, Settings, Variant, Variants, each
+from tmm_cli.cli.opening import variant_settings
+from tmm_cli.cli.reporting import computed, report, write_pictures
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
 
 Drawings = Annotated[
@@ -32,10 +36,6 @@ def structure(
     names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
-        from tmm_cli.analysis.spatial_chain import ChainResults
-        from tmm_cli.cli.opening import variant_settings
-        from tmm_cli.cli.reporting import computed, report, write_pictures
-
         own = variant_settings(file, variants, variant, settings)
         results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:

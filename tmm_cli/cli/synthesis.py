@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tmm_cli.cli.common import Files, Json, Out, Settings, each
+from tmm_cli.cli.synthesis_report import report_synthesis
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
@@ -13,8 +14,6 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
     """
 
     def work(file: str) -> int:
-        from tmm_cli.cli.synthesis_report import report_synthesis
-
         return report_synthesis(file, as_json, out, settings)
 
     each(files, work, as_json=as_json, out=out)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tmm_cli import solve
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.cli.common import CHECK_FAILED, OK, console, emit_json, say
+from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.opening import introduce
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say
 from tmm_cli.errors import _
+from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import console, progress, refusing, say
+from tmm_cli.cli.common import console, progress, refusing
+from tmm_cli.cli.talk import say
 from tmm_cli.errors import _
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.draw_variants import Variety
-    from tmm_cli.grading.record import VariantTable
-    from tmm_cli.grading.task import Task
+from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
+from tmm_cli.grading.choices import with_vary
+from tmm_cli.grading.draw_variants import Variety, draw, draw_for
+from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.tables import csv_of, read_students, rows_of_table, xlsx_of
+from tmm_cli.grading.task import Task, read_task
+from tmm_cli.grading.task_sheets import TaskSheets
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_file
+from tmm_cli.results.files import Staged
+from tmm_cli.results.table import table_of_words
+from tmm_cli.results.terminal import show
 
 TABLE = "variants.csv"
 
@@ -37,13 +45,6 @@ def variants(
 ) -> None:  # fmt: skip
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
-        from tmm_cli.grading.choices import with_vary
-        from tmm_cli.grading.draw_variants import Variety, draw, draw_for
-        from tmm_cli.grading.tables import read_students
-        from tmm_cli.grading.task import read_task
-        from tmm_cli.problem.errors import ProblemError
-        from tmm_cli.problem.reader import read_file
-
         task = read_task(with_vary(read_file(file), vary or ()))
         variety = Variety(task)
         if students is None:
@@ -67,9 +68,6 @@ def variants(
 
 def _tell(variety: Variety, table: VariantTable) -> None:
     """What was drawn and thrown away."""
-    from tmm_cli.results.table import table_of_words
-    from tmm_cli.results.terminal import show
-
     rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
     told = _("{count} variants of {free}, drawn from {tried} candidates")
     say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
@@ -80,11 +78,6 @@ def _tell(variety: Variety, table: VariantTable) -> None:
 
 def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
     """All files at once, or none. Raises ProblemError, OSError."""
-    from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
-    from tmm_cli.grading.tables import csv_of, rows_of_table, xlsx_of
-    from tmm_cli.grading.task_sheets import TaskSheets
-    from tmm_cli.results.files import Staged
-
     with Staged(out) as folder:
         rows = rows_of_table(table)
         folder.write(TABLE, [csv_of(rows)])

@@ -14,7 +14,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.labels import Ground
 from tmm_cli.draw.render import names, render, spot
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, scale_text
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, scale_words
 from tmm_cli.draw.structure import colours
 from tmm_cli.draw.symbols import STRUCTURAL, Look, numbers, symbol_size
 from tmm_cli.errors import _
@@ -65,7 +65,7 @@ def sheet_of(
         _drawn(sheet, scenes[n], group, look)
         _framed(sheet, low, high, n, assembly)
     sheet.text(
-        complex(sheet.paper[0] - MARGIN, sheet.paper[1] - MARGIN - 2), scale_text("l", sheet.mu, "m/mm"), 9, ha="right"
+        complex(sheet.paper[0] - MARGIN, sheet.paper[1] - MARGIN - 2), scale_words("l", sheet.mu, "m/mm"), 9, ha="right"
     )
     return sheet
 

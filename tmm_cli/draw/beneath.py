@@ -1,10 +1,10 @@
-"""What is written beneath a drawing: equations in lines, and small tables that flow side by side in columns."""
+"""What is written by a drawing: equations in lines beneath it, and small tables, below them or on its right."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.labels import Ground
@@ -29,6 +29,11 @@ class Table:
     rows: Sequence[tuple[Words, ...]]
 
     @property
+    def size(self) -> complex:
+        """In one column, mm."""
+        return complex(sum(self.widths), ROW * (len(self.rows) + 1.5))
+
+    @property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
@@ -37,29 +42,40 @@ class Table:
 
 @dataclass(frozen=True)
 class Beneath:
-    """Lines (wrapped as needed), and tables below them."""
+    """Lines (wrapped as needed), and tables: side by side below them, or aside of the drawing one below the other."""
 
     lines: Sequence[Words] = ()
     tables: Sequence[Table] = ()
+    aside: bool = False
 
-    def height(self, across: float) -> float:
-        """What it takes of a sheet whose field is so wide, mm."""
-        rows = self._rows(across)
-        return ABOVE + LINE * len(self._wrapped(across)) + (ROW * (rows + 1.5) if rows else 0.0)
+    def left(self, low: complex, high: complex) -> complex:
+        """What it leaves of a field to the drawing, mm: a negative height where it has no room itself."""
+        lines = ABOVE + LINE * len(self._wrapped((high - low).real))
+        if not self.aside:
+            rows = self._rows((high - low).real)
+            return high - low - 1j * (lines + (ROW * (rows + 1.5) if rows else 0.0))
+        sizes = [table.size for table in self.tables if table.rows]
+        room = high - low - 1j * lines - (max((size.real for size in sizes), default=0.0) + GAP)
+        return room if sum(size.imag for size in sizes) <= room.imag else complex(room.real, -1.0)
 
-    def put(self, sheet: Sheet, low: complex, across: float) -> None:
-        """Write it; low: the lower left corner of the field."""
-        top = low + 1j * (self.height(across) - ABOVE)
+    def put(self, sheet: Sheet, low: complex, high: complex) -> None:
+        """Write it into a field."""
+        room, across = self.left(low, high), (high - low).real
+        top = low + 1j * (LINE * len(self._wrapped(across)))
+        if not self.aside:
+            top = complex(low.real, high.imag - room.imag - ABOVE)
         for words in self._wrapped(across):
             sheet.text(top - 1j * LINE / 2, words, TEXT)
             top -= 1j * LINE
         rows = self._rows(across)
-        top -= 0.5j * ROW
+        top = complex(low.real + room.real + GAP, high.imag) if self.aside else top - 0.5j * ROW
         for table in (t for t in self.tables if t.rows):
-            own = math.ceil(len(table.rows) / math.ceil(len(table.rows) / rows))
+            own = len(table.rows)
+            if not self.aside:
+                own = math.ceil(own / math.ceil(own / rows))
             for first in range(0, len(table.rows), own):
                 _column(sheet, top, table, table.rows[first : first + own])
-                top += sum(table.widths) + GAP
+                top += -1j * table.size.imag if self.aside else table.size.real + GAP
 
     def _wrapped(self, across: float) -> list[Words]:
         return [line for words in self.lines for line in wrapped(words, TEXT * POINT, across, HANGING)]
@@ -69,7 +85,7 @@ class Beneath:
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
-            wide = sum(math.ceil(len(t.rows) / rows) * (sum(t.widths) + GAP) for t in tables) - GAP
+            wide = sum(math.ceil(len(t.rows) / rows) * (t.size.real + GAP) for t in tables) - GAP
             if wide <= across:
                 return rows
         return most
@@ -89,45 +105,60 @@ def above(
     here: Position, title: str, places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath],
     **words: str,
 ) -> tuple[Sheet, Sheet | None]:  # fmt: skip
-    """A sheet for a drawing with what is written beneath it; on a sheet of its own where that is much.
+    """A sheet for a drawing with what is written by it; on a sheet of its own where that is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
-    millimetre. The paper is upright or not as the drawing is larger then.
+    millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
     """
-    upright = _field(PORTRAIT)
-    apart = beneath(1.0).height(upright.real) > MOST * upright.imag
-    kept = (lambda mu: Beneath()) if apart else beneath
-    found = [(_scale(paper, places, kept), paper) for paper in PAPERS]
-    (mu, middle), paper = min(found, key=lambda one: (one[0][0], one[1][1]))
-    (low, high), across = ground_of(paper), _field(paper).real
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
-    sheet, written = Sheet(name, subject, paper=paper), kept(mu)
-    written.put(sheet, low, across)
-    sheet.ground = Ground(low + 1j * written.height(across), high)
-    sheet.mu = mu
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - middle
-    if not apart:
+    low, high = ground_of(PORTRAIT)
+    if beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
+
+        def with_tables_aside(mu: float) -> Beneath:
+            return replace(beneath(mu), aside=True)
+
+        ways = (beneath, with_tables_aside)
+        sheet, mu = _sheet(name, subject, [_placed(paper, places, way) for way in ways for paper in PAPERS])
         return sheet, None
-    further, written = Sheet(name, subject, paper=PORTRAIT), beneath(mu)
-    written.put(further, ground_of(PORTRAIT)[1] - upright.real - 1j * written.height(upright.real), upright.real)
+    sheet, mu = _sheet(name, subject, [_placed(paper, places, lambda mu: Beneath()) for paper in PAPERS])
+    further = Sheet(name, subject, paper=PORTRAIT)
+    written = beneath(mu)
+    written.put(further, low + 1j * written.left(low, high).imag, high)
     return sheet, further
 
 
-def _field(paper: tuple[float, float]) -> complex:
+@dataclass(frozen=True)
+class _Placed:
+    """A drawing on a paper, at a scale (SI a millimetre), about a middle (mm of the drawing), with what is written."""
+
+    paper: tuple[float, float]
+    mu: float
+    middle: complex
+    written: Beneath
+
+
+def _sheet(name: str, subject: str, found: Sequence[_Placed]) -> tuple[Sheet, float]:
+    """A sheet of the placing at which the drawing is largest."""
+    best = min(found, key=lambda one: one.mu)
+    low, high = ground_of(best.paper)
+    sheet, room = Sheet(name, subject, paper=best.paper), best.written.left(low, high)
+    best.written.put(sheet, low, high)
+    sheet.ground = Ground(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
+    sheet.mu = best.mu
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - best.middle
+    return sheet, best.mu
+
+
+def _placed(
+    paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], Beneath]
+) -> _Placed:
+    """At the least round scale at which all fits."""
     low, high = ground_of(paper)
-    return high - low
-
-
-def _scale(
-    paper: tuple[float, float], places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath]
-) -> tuple[float, complex]:
-    """The least round scale (SI a millimetre) at which all fits on paper, and the middle of the drawing there, mm."""
-    field = _field(paper)
     size, across, up, __ = extent([place for place, __ in places])
-    mu = round_scale(across, up, field.real, field.imag)
+    mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:
-        room = field - 2 * PAD * (1 + 1j) - 1j * beneath(mu).height(field.real)
+        room = written(mu).left(low, high) - 2 * PAD * (1 + 1j)
         _, across, up, middle = extent([place / mu + away for place, away in places])
         if (across <= room.real and up <= room.imag) or size / mu < LEAST:
-            return mu, middle
+            return _Placed(paper, mu, middle, written(mu))
         mu = round_scale(1.01 * mu, 0.0, 1.0, 1.0)

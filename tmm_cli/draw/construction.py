@@ -12,7 +12,7 @@ from tmm_cli.draw.fixed import guide, support, support_side
 from tmm_cli.draw.forms import Line
 from tmm_cli.draw.labels import Label
 from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_text
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_words
 from tmm_cli.draw.symbols import MEASURED, box
 from tmm_cli.errors import _
 from tmm_cli.linkage import Linkage
@@ -205,7 +205,7 @@ def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: boo
 
 
 def _notes(sheet: Sheet, drawn: Construction, letters: Mapping[str, str], units: UnitSystem) -> None:
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
     values = [_value(*row, units) for row in drawn.values]
     for k in range(0, len(values), 3):
         sheet.note(", ".join(values[k : k + 3]))

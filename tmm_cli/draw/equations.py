@@ -11,6 +11,7 @@ from tmm_cli.draw.script import Words, filled
 from tmm_cli.errors import _
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
+from tmm_cli.plans.projections import ForceSum, Part
 from tmm_cli.plans.record import Symbol
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH
@@ -58,6 +59,21 @@ def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
         name, over, by, of = found.letter, found.acting.symbol, found.acting.size, "m"
     divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {figure(by)}")
     yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {of}")
+
+
+def along_guide(forces: ForceSum) -> Iterable[Words]:
+    """The sum along a guide in letters, then with numbers."""
+    title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
+    others = [part for part in forces.parts if part is not forces.found]
+    sense = -float(np.sign(forces.found.along))
+    yield (title, *_sum((_cosine(p), p.along) for p in (forces.found, *others)), " = 0")
+    numbers = _sum(((f"{figure(p.acting.size)}·{figure(p.cosine)}",), sense * p.along) for p in others)
+    yield (INDENT, forces.found.acting.symbol, " = ", *numbers, f" = {figure(forces.value)} N")
+
+
+def _cosine(part: Part) -> tuple[Word, ...]:
+    angle = float(np.degrees(np.arccos(part.cosine)))
+    return (part.acting.symbol, f"·cos {angle:.1f}°") if angle >= 0.05 else (part.acting.symbol,)
 
 
 def _letters(term: Term) -> tuple[Word, ...]:

@@ -21,16 +21,23 @@ def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = M
     """The side of a fixed hinge where its support is: below, else above, else where no rod runs through it."""
     height, half = look.support
 
+    def lost(out: complex) -> float:
+        """Of its ground, mm, and more for a rod through its triangle."""
+        ground = free_runs(-GROUND * half, GROUND * half, _all_covered(rods, at + height * out, 1j * out, out))
+        free = sum(high - low for low, high in ground)
+        return 2 * half * (GROUND + sum(through(rod, out) for rod in rods)) - free
+
     def through(rod: Line, out: complex) -> bool:
         places = _places(rod) - at
         run, off = dot(out, places), np.abs(cross(out, places))
-        wide = np.where(run < height - WALL, half * run / height, GROUND * half) + WALL
-        return bool(np.any((run > look.hinge + WALL) & (run < height + HATCHED + WALL) & (off < wide)))
+        return bool(np.any((run > look.hinge + WALL) & (run < height) & (off < half * run / height + WALL)))
 
-    ways = [complex(unit(np.pi / 4 * n)) for n in (-2, 2, 0, 4, -1, -3, 1, 3)]
-    crossed = [sum(through(rod, way) for rod in rods) for way in ways]
-    among = next((part for part in (slice(2), slice(2, 4)) if 0 in crossed[part]), slice(None))
-    least = [way for way, count in zip(ways[among], crossed[among], strict=True) if count == min(crossed[among])]
+    ways = [complex(unit(np.pi / 8 * n)) for n in (-4, 4, 0, 8, -2, -6, 2, 6, -3, -5, -1, -7, 3, 5, 1, 7)]
+    for among in (ways[:2], ways[2:4], ways):
+        losses = [lost(way) for way in among]
+        if min(losses) < FINE:
+            break
+    least = [way for way, loss in zip(among, losses, strict=True) if loss < min(losses) + FINE]
     return quiet(sheet, at, -1j, 9.0, least, from_=2.2)
 
 
@@ -54,19 +61,22 @@ def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[
 
 def _wall(sheet: Sheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Line]) -> None:
     """A line with hatching on its outer side, open where rods go through."""
-    covered = [run for rod in rods if (run := _covered(rod, middle, along, out)) is not None]
-    for low, high in free_runs(-reach, reach, covered):
+    for low, high in free_runs(-reach, reach, _all_covered(rods, middle, along, out)):
         start, end = middle + low * along, middle + high * along
         with sheet.on_layer("supports"):
             sheet.line([start, end], DARK, 1.2, z=2.7)
         hatch(sheet, start, end, out)
 
 
-def _covered(rod: Line, rail: complex, along: complex, out: complex) -> tuple[float, float] | None:
-    """The run (mm) along a rail in whose hatching a rod is."""
-    places = _places(rod) - rail
-    inside = dot(along, places)[(dot(out, places) > -WALL) & (dot(out, places) < HATCHED + WALL)]
-    return (float(np.min(inside)) - WALL, float(np.max(inside)) + WALL) if len(inside) else None
+def _all_covered(rods: Sequence[Line], rail: complex, along: complex, out: complex) -> list[tuple[float, float]]:
+    """The runs (mm) along a rail in whose hatching rods are."""
+    found = []
+    for rod in rods:
+        places = _places(rod) - rail
+        inside = dot(along, places)[(dot(out, places) > -WALL) & (dot(out, places) < HATCHED + WALL)]
+        if len(inside):
+            found.append((float(np.min(inside)) - WALL, float(np.max(inside)) + WALL))
+    return found
 
 
 def _places(rod: Line) -> Vector:

@@ -13,7 +13,7 @@ from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Figure, room
 from tmm_cli.draw.script import Words, wrapped
-from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.record import NamedVector, extent
@@ -58,7 +58,7 @@ def _sheet(here: Position, plan: ForcePlan, title: str) -> Sheet:
         _force(sheet, vector, off, full=vector in plan.full)
     for line in equation:
         sheet.note(line)
-    sheet.note(scale_text("F", sheet.mu, "N/mm"))
+    sheet.note(scale_words("F", sheet.mu, "N/mm"))
     sheet.table(table(plan, sheet.mu), 3)
     return sheet
 

@@ -107,16 +107,19 @@ class Form:
         return None
 
 
-def by_points(sheet: Sheet, scene: Scene, link: str) -> Form:
-    """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them."""
+def by_points(sheet: Sheet, scene: Scene, link: str, *, whole: bool = True) -> Form:
+    """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them.
+
+    Not whole: its guides end at their stones, as thin lines of many positions do.
+    """
     joints = apart(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
     bars: list[Bar] = []
     for slide in _guides(scene, link):
         stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
         (low, high), here = scene.way(slide), scene.run(slide)
         bar = _bar(bars, stone, along)
-        for end, side in (((low - here) / sheet.mu, -along), ((high - here) / sheet.mu, along)):
-            tip = stone + end * along
+        for end, side in ((low - here, -along), (high - here, along)) if whole else ():
+            tip = stone + end / sheet.mu * along
             if not any(bar.meets(j) and dot(side, j - tip) > STONE for j in joints):
                 bar.take(border(stone, tip + OVER * side, *sheet.field))
     return _joined(sheet, scene, link, joints, bars)

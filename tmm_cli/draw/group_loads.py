@@ -8,12 +8,13 @@ from dataclasses import replace
 from tmm_cli.draw.acting import Forces, arms, extent
 from tmm_cli.draw.beneath import Beneath, above
 from tmm_cli.draw.drawing import Drawing
-from tmm_cli.draw.equations import table_of_arms, table_of_forces, written
+from tmm_cli.draw.equations import along_guide, table_of_arms, table_of_forces, written
 from tmm_cli.draw.mechanism import Position, measured
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_text
+from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.moments import SPECIAL, LoadedPart, MomentEquation, loaded_parts
+from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import extent as extent_of
 
 MOST = 12  # arms on one sheet
@@ -26,7 +27,8 @@ def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     for part in loaded_parts(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
         stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
-        sheets = [sheet for few in _sheetfuls(part.equations) for sheet in _sheets(here, part, few)]
+        few, *others = _sheetfuls(part.equations)
+        sheets = [*_sheets(here, part, few, part.sums), *(s for more in others for s in _sheets(here, part, more, ()))]
         for number, sheet in enumerate(sheets if part.acting else ()):
             yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
@@ -47,12 +49,15 @@ def _letters(equation: MomentEquation) -> set[int]:
     return {t.number for t in equation.terms if t.number}
 
 
-def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation]) -> Iterable[Sheet]:
+def _sheets(
+    here: Position, part: LoadedPart, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
+) -> Iterable[Sheet]:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
     scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)
     terms = [t for e in equations for t in e.terms]
-    further = [t.acting for t in terms if t.acting.kind == "reaction" and t.acting not in part.acting]
+    shown = [*(t.acting for t in terms), *(s.found.acting for s in sums)]
+    further = [a for a in dict.fromkeys(shown) if a.kind == "reaction" and a not in part.acting]
     places = [*scene.extent(part.links), *(scene.point(p) for n in part.links for p in linkage.links[n].points)]
     places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
     title = _("Links {links} under their loads. {caption}")
@@ -61,6 +66,7 @@ def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
     lines = [line for e in equations for line in written(e)]
+    lines += [line for one in sums for line in along_guide(one)]
     units, shown = here.results.problem.units, [*part.acting, *further]
 
     def beneath(mu: float) -> Beneath:
@@ -72,12 +78,12 @@ def _sheets(here: Position, part: LoadedPart, equations: Sequence[MomentEquation
     bars = sheet.ground.crowd
     forces = Forces(sheet)
     forces.draw(part.acting)
-    forces.draw(replace(a, kind="inner") for a in dict.fromkeys(further))
+    forces.draw(replace(a, kind="inner") for a in further)
     for equation in (e for e in equations if e.about == SPECIAL):
         _special(sheet, part, equation)
     arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
-        sheet.note(scale_text("l", sheet.mu, "m/mm"))
+        sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     return (sheet,) if text is None else (sheet, text)

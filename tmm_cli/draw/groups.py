@@ -16,7 +16,7 @@ from tmm_cli.draw.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells
 from tmm_cli.draw.structure import Part, parts
 from tmm_cli.draw.symbols import FREE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
-from tmm_cli.draw.wheels import draw
+from tmm_cli.draw.wheel_symbols import draw
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE

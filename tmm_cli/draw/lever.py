@@ -13,7 +13,7 @@ from tmm_cli.draw.equations import figure, table_of_arms, table_of_forces, writt
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.script import Words, filled
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, scale_words
 from tmm_cli.errors import _
 from tmm_cli.plans.lever import POLE, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
@@ -55,7 +55,7 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     Forces(sheet).draw(plan.acting)
     arms(sheet, [plan.equation], bars)
     letter_points(sheet, plan.ends, POLE)
-    sheet.note(scale_text("l", sheet.mu, "m/mm") if crank else scale_text("i", sheet.mu, "1/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):

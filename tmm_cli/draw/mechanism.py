@@ -15,9 +15,9 @@ from tmm_cli.draw.render import Rendered, render, slider
 from tmm_cli.draw.room import Room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.script import Words
-from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_text
+from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED, mass_centre
-from tmm_cli.draw.wheels import draw as draw_wheels
+from tmm_cli.draw.wheel_symbols import draw as draw_wheels
 from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
@@ -117,7 +117,7 @@ def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
 def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
     """One position as thin lines."""
     for link in scene.linkage.moving:
-        for edge in by_points(sheet, scene, link).edges:
+        for edge in by_points(sheet, scene, link, whole=False).edges:
             sheet.line(edge, colour, width, z=z, blocks=False)
 
 
@@ -193,7 +193,7 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     if reactions is not None:
         _balance(sheet, reactions, k)
         sheet.note(_("loads without scale"))
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
     yield here.stem("position"), sheet.finish()
 
 

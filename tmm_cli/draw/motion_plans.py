@@ -12,7 +12,7 @@ from tmm_cli.draw.labels import aside
 from tmm_cli.draw.lever import letter_points
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Figure, room
-from tmm_cli.draw.sheet import COLOURS, THIN, scale_text
+from tmm_cli.draw.sheet import COLOURS, THIN, scale_words
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
@@ -73,7 +73,7 @@ def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
         letter_points(sheet, {**plan.ends, **seen(plan, sheet.mu)}, sort.pole)
         if plan.size == 0:
             sheet.note(_("everything is at rest"))
-        sheet.note(scale_text(sort.letter, sheet.mu, f"({sort.unit})/mm"))
+        sheet.note(scale_words(sort.letter, sheet.mu, f"({sort.unit})/mm"))
         sheet.table(table(here, sort, plan, sheet.mu), 2)
         yield here.stem(sort.stem), sheet.finish()
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,11 +17,11 @@ from tmm_cli.draw.lengths import lengths
 from tmm_cli.draw.mechanism import detailed, measured, paths, skeleton, trace
 from tmm_cli.draw.render import arrows
 from tmm_cli.draw.room import Figure, room
-from tmm_cli.draw.ruler import Number, Ruler, beside, crowded, draw_ruler, gathered, reach, ruler_of
+from tmm_cli.draw.ruler import Number, Ruler, draw_ruler, gathered, reach, roomiest, ruler_of
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
-from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
 from tmm_cli.draw.symbols import MEASURED
-from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track
+from tmm_cli.draw.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track, travel
 from tmm_cli.errors import _
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.kinematics.motion import Motion
@@ -34,6 +33,7 @@ SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
 OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
 STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
 DIMENSION = 13.0  # mm beside a ruler for the stroke
+BEYOND, SHORT = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
 EXTREME = "#6a6a6a"
 BOLD = 4  # how much more a link in full is in the way than a thin one
 BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
@@ -111,11 +111,10 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     whole, track = paths(results), output_track(results)
     marks = view.marks(track) if track is not None else []
     ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
-    notes, rows = list(_notes(view)), lengths(results)
+    notes, rows = list(_notes(view, track)), lengths(results)
     figure = _figure(view, whole)
-    if track is not None and ruled:
-        _reserve(figure, view, track, marks, whole)
-    found = room(figure, Block([scale_text("l", 0.0125, "m/mm") + ", 1:12.5", *notes], rows), OF_LENGTHS)
+    off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
+    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
     sheet = Sheet(results.problem.title, caption, room=found)
     trace(sheet, whole)
@@ -131,10 +130,10 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     if driver is not None:
         _spots(sheet, view.marks(driver))
     if track is not None and ruled:
-        _output(sheet, view, track, marks)
+        _output(sheet, view, track, marks, off)
     elif track is not None and track != driver:
         _spots(sheet, marks)
-    sheet.note(f"{scale_text('l', sheet.mu, 'm/mm')}, {ratio(sheet.mu)}")
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
     for note in notes:
         sheet.note(note)
     sheet.table(rows, 1)
@@ -162,46 +161,52 @@ def _figure(view: View, whole: list[Vector]) -> Figure:
     return figure
 
 
-def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> None:
-    """Room for the scale of the output and for its stroke beyond it; neither hangs on the scale of the sheet."""
+def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> float:
+    """Room for the scale of the output and for its stroke beyond it; how far off the way it is, whatever the scale."""
     mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
-    ruler, numbers = _ruler(view, track, marks, lambda place: place / mu)
-    runs = [number.run for number in numbers]
-    for run in np.linspace(min(runs), max(runs), len(BETWEEN)).tolist():
-        way = ruler.way(run)
+    plain, numbers = _numbers(track, marks, lambda place: place / mu)
+    bold = [view.lines(view.scene.k)] * BOLD
+    lines = np.concatenate([*(view.lines(k) for k in view.shown), *bold]) / mu
+    ruler = roomiest(plain, numbers, lines)
+    low, high = min(number.run for number in numbers), max(number.run for number in numbers)
+    more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
+    for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
+        way = ruler.way(min(max(run, low), high))
         for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
             figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
+    return ruler.off
 
 
-def _ruler(view: View, track: Track, marks: list[PositionMark], on: Callable[[Any], Any]) -> tuple[Ruler, list[Number]]:
-    """The scale beside the way of the output, on the side on which there is less of the mechanism."""
+def _numbers(track: Track, marks: list[PositionMark], on: Callable[[complex], complex]) -> tuple[Ruler, list[Number]]:
+    """A scale along the way of the output, and its numbers."""
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
     numbers = gathered([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
-    bold = [view.lines(view.scene.k)] * BOLD
-    lines = on(np.concatenate([*(view.lines(k) for k in view.shown), *bold]))
-    sides = [beside(plain, numbers, side) for side in (-1.0, 1.0)]
-    return min(sides, key=lambda ruler: crowded(ruler, numbers, lines)), numbers
+    return plain, numbers
 
 
-def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark]) -> None:
-    """Numbers of positions along the way of the output, its stroke or swing."""
-    ruler, numbers = _ruler(view, track, marks, sheet.on)
+def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], off: float) -> None:
+    """Numbers of positions along the way of the output, so far off it, and its stroke or swing."""
+    plain, numbers = _numbers(track, marks, sheet.on)
+    ruler = replace(plain, off=off)
     draw_ruler(sheet, ruler, numbers)
     if view.states is None:
         return
     first, last = _farthest(track.places(view.states))
-    units = view.results.problem.units
     with sheet.on_layer("dimensions"):
         if track.kind == "line":
             ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
-            text = f"H = {units.from_si(abs(last - first), LENGTH):.4g} {units.symbol(LENGTH)}"
-            dimension(sheet, ends[0], ends[1], text)
-        else:
-            pivot = track.pivot
-            swing = abs(float(np.angle((last - pivot) / (first - pivot))))
-            text = f"ψ = {units.from_si(swing, ANGLE):.4g} {units.symbol(ANGLE)}"
-            angle_mark(sheet, sheet.on(pivot), sheet.on(first), sheet.on(last), text, right=False)
+            dimension(sheet, ends[0], ends[1], _size(view))
+        elif travel(view.results) < STRAIGHT:
+            angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)
+
+
+def _size(view: View) -> str:
+    """The stroke H, or the swing ψ."""
+    results, units = view.results, view.results.problem.units
+    turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
+    measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
+    return f"{letter} = {units.from_si(travel(results), measure):.4g} {units.symbol(measure)}"
 
 
 def _farthest(places: Vector) -> tuple[complex, complex]:
@@ -225,8 +230,10 @@ def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
         sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
 
 
-def _notes(view: View) -> Iterable[str]:
-    """Which position is in full, and which are the ends of the output's way."""
+def _notes(view: View, track: Track | None) -> Iterable[str]:
+    """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
     yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
+        if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
+            yield _size(view)

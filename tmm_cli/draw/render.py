@@ -18,8 +18,9 @@ from tmm_cli.draw.rigid import rigid
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, spread
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
 from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, sliding_arrow, turning_arrow
-from tmm_cli.draw.wheels import CHAIN, CamShape, contact
-from tmm_cli.draw.wheels import draw as draw_wheels
+from tmm_cli.draw.wheel_symbols import CHAIN
+from tmm_cli.draw.wheel_symbols import draw as draw_wheels
+from tmm_cli.draw.wheels import CamShape, contact
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair

@@ -17,6 +17,7 @@ SIZE = 8.0  # points
 TICK = 1.6  # mm
 GAP = 0.7  # mm between a tick and its number, and between numbers
 CLEAR = 5.6  # mm on both sides of the way, for boxes and rails
+FARTHER = (0.0, 5.0, 10.0, 15.0)  # mm
 ARC = 1.0  # mm between points of a drawn arc
 
 
@@ -103,10 +104,12 @@ def along(ruler: Ruler, number: Number) -> float:
     return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + GAP
 
 
-def beside(ruler: Ruler, numbers: Sequence[Number], side: float) -> Ruler:
-    """The ruler on one side of the way, as far off as its inner numbers need."""
+def roomiest(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> Ruler:
+    """The ruler on either side of the way, at least as far off as its inner numbers need, where least is drawn (mm)."""
     inner = height(ruler, [number for number in numbers if not number.outer])
-    return replace(ruler, off=side * (CLEAR + (inner + TICK + 2 * GAP if inner else 0.0)))
+    least = CLEAR + (inner + TICK + 2 * GAP if inner else 0.0)
+    choices = [replace(ruler, off=side * (least + more)) for more in FARTHER for side in (-1.0, 1.0)]
+    return min(choices, key=lambda one: crowded(one, numbers, lines) + abs(one.off) / 3)
 
 
 def reach(ruler: Ruler, numbers: Sequence[Number]) -> float:
@@ -120,7 +123,8 @@ def crowded(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> float:
         return math.inf
     runs, own, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
     inside = (own > min(runs) - CLEAR) & (own < max(runs) + CLEAR)
-    inside &= (far > CLEAR / 2) & (far < abs(ruler.off) + reach(ruler, numbers))
+    inner = height(ruler, [number for number in numbers if not number.outer])
+    inside &= (far > abs(ruler.off) - inner - TICK - GAP) & (far < abs(ruler.off) + reach(ruler, numbers))
     return float(np.count_nonzero(inside))
 
 

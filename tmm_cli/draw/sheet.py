@@ -17,7 +17,7 @@ from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
 from tmm_cli.draw.room import Room
 from tmm_cli.errors import _
-from tmm_cli.plans.record import MARGIN, PAD, STRIP, extent, ground_of, sheet_scale
+from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of, sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
 from tmm_cli.vectors import unit
@@ -242,6 +242,11 @@ def border(inner: complex, outer: complex, low: complex, high: complex) -> compl
 def scale_text(symbol: str, mu: float, unit: str) -> str:
     """μ_l = 0.005 m/mm."""
     return _("μ_{symbol} = {mu} {unit}").format(symbol=symbol, mu=f"{mu:.10g}", unit=unit)
+
+
+def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
+    """The same with its index."""
+    return Symbol("μ", symbol), f" = {mu:.10g} {unit}"
 
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:

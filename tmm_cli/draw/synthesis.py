@@ -18,7 +18,7 @@ from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.mechanism import measured, skeleton, trajectories
 from tmm_cli.draw.render import slider
 from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_text, with_unit
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
 from tmm_cli.draw.symbols import MEASURED
 from tmm_cli.errors import _
 from tmm_cli.plans.record import LANDSCAPE
@@ -99,7 +99,7 @@ def extremes(results: Results) -> Sheet:
     for other in others:
         skeleton(sheet, other, INERTIA, 1.6, 2.9)
         for link in linkage.moving:
-            for start, end in by_points(sheet, other, link).edges:
+            for start, end in by_points(sheet, other, link, whole=False).edges:
                 sheet.ground.line(start, end)
         for pair in results.structure.pairs:
             if pair.slide is not None and pair.name not in cylinders(linkage):
@@ -115,6 +115,6 @@ def extremes(results: Results) -> Sheet:
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
             sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA, far=True)
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("I: start of the working stroke, II: its end"))
     return sheet

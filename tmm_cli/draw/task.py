@@ -7,7 +7,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.mechanism import measured
 from tmm_cli.draw.render import arrows
 from tmm_cli.draw.scene import fixed_pivots, to_scale
-from tmm_cli.draw.sheet import DARK, Sheet, scale_text
+from tmm_cli.draw.sheet import DARK, Sheet, scale_words
 from tmm_cli.draw.structure import at_sketch
 from tmm_cli.draw.symbols import MEASURED
 
@@ -23,5 +23,5 @@ def task_picture(results: Results) -> Drawing | None:
     places += [scene.place(name, complex(linkage.links[name].centre)) for name in linkage.moving]
     sheet = Sheet(results.problem.title, place, to_scale(scene, places), pad=30)
     arrows(sheet, scene, measured(sheet, scene), MEASURED, dict.fromkeys(linkage.links, DARK))
-    sheet.note(scale_text("l", sheet.mu, "m/mm"))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
     return sheet.finish()

@@ -10,6 +10,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.plans.record import subscript
 from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Vector, unit
 
@@ -57,9 +58,20 @@ def extremes(results: Results) -> list[Extreme]:
     for q in ends:
         off = np.abs(asked - q) if np.isinf(cycle) else np.abs((asked - q + cycle / 2) % cycle - cycle / 2)
         here = int(np.argmin(off))
-        primes = "′" * sum(not extreme.mark.isdecimal() for extreme in found)
-        found.append(Extreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else "k" + primes))
+        found.append(Extreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else ""))
+    between = [extreme for extreme in found if not extreme.mark]
+    for number, extreme in enumerate(between, 1):
+        mark = "k" + ("" if len(between) == 1 else "′" * (number - 1) if len(between) == 2 else subscript(str(number)))
+        found[found.index(extreme)] = Extreme(extreme.q, mark)
     return found
+
+
+def travel(results: Results) -> float:
+    """The stroke (m) or the swing (rad) of the main output between its ends."""
+    strokes, travels = results.strokes, results.travels
+    if strokes is not None and strokes.strokes:
+        return strokes.travel
+    return abs(travels[0].high - travels[0].low) if travels else 0.0
 
 
 def output_track(results: Results) -> Track | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_cli.forces.friction import solve_friction
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.sequence import DriverMotion
@@ -46,7 +47,5 @@ def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
             loads = mistake.loads(loads, motion, family)
         reactions = react(motion, family.structure, loads)
         if family.linkage.friction:
-            from tmm_cli.forces.friction import solve_friction  # few tasks have any
-
             reactions = solve_friction(motion, family.structure, loads, reactions).reactions
     return Solution(family, motion, reactions)

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from tmm_cli import problem_of
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.errors import _
 from tmm_cli.grading.block import AnswerRule, Blocks, Grading
 from tmm_cli.grading.quantities import quantities
 from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.library import problem_of
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote
 from tmm_cli.problem.expressions import evaluate_quantity

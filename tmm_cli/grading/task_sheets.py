@@ -11,13 +11,13 @@ from itertools import groupby
 
 import yaml
 
-from tmm_cli import structure_of
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.task import task_picture
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.task import Asked, Task
+from tmm_cli.library import structure_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import KINDS, LENGTH, NUMBER, Dimension

@@ -14,6 +14,7 @@ from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.leads import Lead, assur_point, hinges_of, leads_of
+from tmm_cli.plans.projections import ForceSum, along_guides, of_driver
 from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
@@ -86,11 +87,13 @@ class MomentEquation:
 
 @dataclass(frozen=True)
 class LoadedPart:
-    """A group, or a driving link, apart: all that acts on it from without, and its equations of moments."""
+    """A group, or a driving link, apart: all that acts on it from without, its equations of moments, and sums along
+    its guides."""
 
     links: tuple[str, ...]
     acting: tuple[Acting, ...]
     equations: tuple[MomentEquation, ...]
+    sums: tuple[ForceSum, ...] = ()
     driving: bool = False
 
 
@@ -110,7 +113,8 @@ def _group(here: Loaded, forces: GroupForces) -> LoadedPart:
         equations = [_equation(here, axes, (link,), *_hinge(here, group, link)) for link in group.links]
     else:
         equations += _of_guides(here, group, axes)
-    return LoadedPart(group.links, here.acting(group.links, axes), numbered(equations))
+    sums = along_guides(here, group, leads, axes)
+    return LoadedPart(group.links, here.acting(group.links, axes), numbered(equations), sums)
 
 
 def _of_leads(
@@ -165,7 +169,8 @@ def _driving(here: Loaded, frame: Reaction) -> LoadedPart:
         turns = balance.kind == "moment"
         sought = Sought(balance_symbol(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
     equation = _equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
-    return LoadedPart((link,), here.acting((link,), {}), numbered([equation]), driving=True)
+    sums = of_driver(here, pair) if pair.slide is not None else ()
+    return LoadedPart((link,), here.acting((link,), {}), numbered([equation]), sums, driving=True)
 
 
 def _part(group: Group, pair: Pair, kind: Kind) -> Sought:

@@ -12,6 +12,8 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.record import Plan, Symbol
 from tmm_cli.tolerances import NO_VECTOR
 
+PARTS = ("normal", "tangential")
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -31,11 +33,17 @@ class Turn:
 
 
 def readings(plan: Plan) -> list[Reading]:
-    """Vectors in the order of the plan; absolute ones that are the same vector stand together."""
+    """Vectors in the order of the plan; absolute ones that are the same vector stand together.
+
+    Of a link that does not turn there are no parts.
+    """
     least = NO_VECTOR * plan.size
+    turning = {v.symbol.below for v in plan.vectors if v.kind in PARTS and abs(v.value) > least}
     found: dict[complex | int, Reading] = {}
     for number, vector in enumerate(plan.vectors):
         size = abs(vector.value)
+        if vector.kind in PARTS and vector.symbol.below not in turning:
+            continue
         key: complex | int = number
         if vector.kind == "absolute":
             key = next(

@@ -16,8 +16,11 @@ from tmm_cli.problem.budget import refuse_work
 from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
+from tmm_cli.problem.build_meshes import build_meshes
+from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
+from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
@@ -71,8 +74,6 @@ def unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSyst
     with under("units"):
         if not extended:
             return UnitSystem(names)
-        from tmm_cli.problem.extended import ExtendedUnits  # only near dead positions
-
         return ExtendedUnits(names)
 
 
@@ -92,8 +93,6 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     first, *others = build_drivers(shape, members, values)
     meshes: tuple[Mesh, ...] = ()
     if shape.gears or shape.racks or shape.cams:  # few files have any, and only those import what reads them
-        from tmm_cli.problem.build_meshes import build_meshes
-
         meshes = build_meshes(shape, members, values)
     outputs = _outputs(shape, links, values)
     linkage = Linkage(
@@ -104,8 +103,6 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
     if shape.springs or shape.friction is not None:
-        from tmm_cli.problem.build_springs import build_friction, build_springs
-
         linkage = replace(linkage, springs=build_springs(linkage, shape, values))
         linkage = replace(linkage, friction=build_friction(linkage, shape, values))
     checks = Part(shape.checks, ("checks",), values)

@@ -48,9 +48,10 @@ def all_numbers(
     return at_positions, searched
 
 
-def cells(results: Results) -> Cells:
-    """The numbers at positions."""
-    return all_numbers(results, set(COMPUTED) - SEARCHED)[0]
+def cells(results: Results, shown: Collection[str] = ()) -> Cells:
+    """The numbers at positions; shown: in reports with these tables alone."""
+    reports = {name for name, __, given in REPORTS if not shown or set(given) & set(shown)}
+    return all_numbers(results, reports & set(COMPUTED) - SEARCHED, None if shown else LARGE)[0]
 
 
 def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:

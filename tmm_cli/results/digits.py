@@ -8,9 +8,9 @@ quantity can be forgotten, and none needs a formula of its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -86,9 +86,10 @@ class AccuracyReport:
             return {part: getattr(self.found(), part)[single] for part in wanted}
         near = np.searchsorted(self.chosen, np.arange(len(self.relative))).clip(max=len(self.chosen) - 1)
         found = {part: self._judged(part, keys)[near] for part in wanted if self.chosen.size}
-        found["bound"] = by_margins(self.results, self.relative, self.sizes, table, column).reshape(len(near), -1)
-        if self.chosen.size:
-            found["bound"][self.chosen] = self._judged("bound", keys)
+        if self.chosen.size < len(near):
+            rough = by_margins(self.results, self.relative, self.sizes, table, column).reshape(len(near), -1)
+            rough[self.chosen] = found["bound"][self.chosen] if self.chosen.size else rough[self.chosen]
+            found["bound"] = rough
         return {part: values.ravel() for part, values in found.items()}
 
     def _judged(self, part: str, keys: list[Hashable]) -> Real:
@@ -128,14 +129,17 @@ def taken(record: Record, chosen: Real, count: int) -> Record:
     return mapped(of_chosen, record, skip=WHOLE)
 
 
-def accuracy(results: Results, full: bool = False) -> AccuracyReport:
-    """How far all numbers of results that have a motion are to be trusted; full: each of them judged."""
+def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:
+    """How far all numbers of results that have a motion are to be trusted; full: each of them judged.
+
+    shown: tables that alone are shown; nothing is judged then that is in result.json only.
+    """
     motion, count = results.motion, len(results.numbers)
     assert motion is not None
     with np.errstate(all="ignore"):
         mu = _mu(results) if full else float("nan")
         wide = Wide(results) if full else coarsely(results)
-        found = cache(lambda: searched(results, reader(results, full), wide, mu))
+        found = cache(lambda: searched(results, reader(results, full and not shown), wide, mu))
         start = blur(results, wide)
         share = relative(results, start)
         asked = share > FEWEST
@@ -149,7 +153,7 @@ def accuracy(results: Results, full: bool = False) -> AccuracyReport:
             there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
         if len(chosen):
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
-            digits = judged(there, cells, mu=mu, blur=away)
+            digits = judged(there, partial(cells, shown=shown), mu=mu, blur=away)
     for key, bound in digits.bound.items():
         if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
             digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)

@@ -40,6 +40,7 @@ def _write(renderer: RendererBase, context: GraphicsContextBase, mark: Text, to_
     places, codes = outline(mark.text, bold=mark.bold, italic=mark.italic)
     places = start + mark.size * along * places
     context.set_linewidth(0.0)
+    context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
     path = Path(np.column_stack([places.real, places.imag]), codes)
     renderer.draw_path(context, path, to_pixels, to_rgb(mark.colour))
 

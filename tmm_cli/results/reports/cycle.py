@@ -8,6 +8,7 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import _
+from tmm_cli.forces.plan import power
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_run
 from tmm_cli.linkage import Driver, Linkage
@@ -88,8 +89,6 @@ def _balance(results: Results) -> Iterable[Column]:
     reactions, lever, motion = results.reactions, results.lever, results.motion
     if reactions is None or lever is None or motion is None:
         return
-    from tmm_cli.forces.plan import power  # kinematics alone does not need it
-
     difference = Column(_("difference, %"), lever.difference * 100, NUMBER, digits=2)
     if len(reactions.balances) == 1:
         balance = reactions.balance

@@ -1,0 +1,14 @@
+"""`tmm bench savings`."""
+
+from __future__ import annotations
+
+from tmm_cli.bench.chart_savings import charts
+from tmm_cli.bench.savings import measure
+from tmm_cli.cli.bench.finish import Out, Reduced, finish
+from tmm_cli.cli.common import Json
+from tmm_cli.cli.talk import say
+
+
+def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
+    """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
+    finish("savings", measure(reduced=reduced, progress=say), charts, out, as_json)

@@ -1,0 +1,113 @@
+"""What the package offers: problems read, computed, driven by another link, prepared for many at once.
+
+Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.ProblemError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from typing import Literal
+
+from tmm_cli.analysis import pipeline
+from tmm_cli.analysis.mechanism import Inputs
+from tmm_cli.analysis.other_driver import redriven
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.errors import LinkageError
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.record import ChainProblem, Problem, TaskProblem
+from tmm_cli.problem.refusals import in_words_of
+from tmm_cli.problem.tree import Tree
+from tmm_cli.structure.spatial import examine
+from tmm_cli.variants.batch import Batch
+from tmm_cli.variants.batch import prepare as every_variant
+
+
+def load(path: str) -> Problem | TaskProblem:
+    """Read and check a problem file. Raises ProblemError.
+
+    A task of synthesis is solved when something needs the lengths that it finds: `solve`, `prepare`, `linkage`.
+    """
+    return problem_of(read_file(path))
+
+
+def problem_of(tree: Tree) -> Problem | TaskProblem:
+    """The problem of a file that has been read. Raises ProblemError."""
+    if "synthesis" in tree.data:
+        from tmm_cli.synthesis.reading import read  # few files have a task
+
+        return read(tree)
+    return build(tree)
+
+
+def solve(
+    problem: Problem | TaskProblem,
+    stage: Literal["structure", "kinematics", "forces"] = "forces",
+    positions: Sequence[int] | None = None,
+    of: Sequence[str] = (),
+) -> Results:
+    """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError.
+
+    of: points, links, centres of mass (E, 5, S3) that alone are asked for; only groups on the way to them are solved.
+    """
+    whole = problem.whole
+    with in_words_of(whole):
+        return pipeline.solve(inputs_of(whole), stage, positions, of, whole)
+
+
+def structure_of(problem: Problem | TaskProblem) -> Results:
+    """The structure alone: no task of synthesis is solved for it, unless it hangs on lengths. Raises ProblemError."""
+    draft = problem.draft() if isinstance(problem, TaskProblem) else None
+    if draft is not None:
+        try:
+            return pipeline.solve(replace(inputs_of(draft), sized=False), "structure", problem=draft)
+        except LinkageError:
+            pass  # perhaps for the numbers of the draft: with lengths it may move
+    return solve(problem, "structure")
+
+
+def inputs_of(problem: Problem) -> Inputs:
+    """What the stages need of a problem."""
+    again = problem.extended
+    extended = None if again is None else cache(lambda: inputs_of(again()))
+    return Inputs(problem.linkage, problem.request, problem.pressure_limits, problem.lever_limit, extended)
+
+
+def count(problem: ChainProblem) -> ChainResults:
+    """Count the chain of a problem that gives it by pairs alone."""
+    return ChainResults(problem, examine(problem.chain, problem.output, problem.local, problem.wanted))
+
+
+def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
+    """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError."""
+    whole = problem.whole
+    with in_words_of(whole):
+        linkage = redriven(whole.linkage, link)
+    request = replace(whole.request, places=(), start=0.0)
+    return replace(whole, linkage=linkage, request=request, extended=None)
+
+
+def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None = None) -> Results:
+    """Kinematics with every real assembly of the groups at these positions, or the first in detail.
+
+    Where the sketch does not decide among them: the structure with the assemblies at the sketch. Raises ProblemError.
+    """
+    from tmm_cli.analysis.all_assemblies import with_assemblies
+
+    whole = problem.whole
+    with in_words_of(whole):
+        return with_assemblies(inputs_of(whole), positions, whole)
+
+
+def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -> Batch:
+    """Problems that differ in their numbers only, to be solved at any places of the driver (variants.batch.everything).
+
+    Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
+    """
+    several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
+    with in_words_of(several[0]):
+        strokes = pipeline.solve(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
+        return every_variant([problem.linkage for problem in several], strokes=strokes)
