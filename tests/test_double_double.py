@@ -55,6 +55,7 @@ def test_roots_sizes_and_powers():
     assert off(np.sqrt(abs(X)), [mp.sqrt(abs(x)) for x in true(X)]) < EPS
     assert off(abs(Z), [abs(z) for z in true(Z)]) < 2 * EPS
     assert off(X**3, [x**3 for x in true(X)]) < 4 * EPS
+    assert rounded(2.0 ** exactly(3.0)) == 8 and rounded(4.0 ** exactly(0.5)) == 2, "of plain numbers too"
     assert off(abs(X) ** -0.5 * abs(X) ** 0.5, [mp.mpf(1)] * len(X)) < 1e-15, "powers that are no whole number round"
 
 

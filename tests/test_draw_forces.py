@@ -108,7 +108,7 @@ def left(written, across):
 @pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])
 def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
     here = detailed(solve(load(PROBLEMS / f"{name}.yaml"), "forces"))[0]
-    for plan in force_plans(here.results.reactions, here.k):
+    for plan in force_plans(here.results.reactions, here.k, here.motion):
         rows = [row.cells for row in table(plan, 7.5) if not row.head]
         vectors = [*plan.plan.vectors, *plan.full]
         assert [line(cells[0]) for cells in rows] == [line(vector.symbol) for vector in vectors]
@@ -129,6 +129,20 @@ def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
     assert set(found) == {"R₃₄", "R₁₂", "R₀₃"} and len(wanted) == 3
     for pair, value in {"34": found["R₃₄"], "12": found["R₁₂"], "03": found["R₀₃"]}.items():
         assert value == pytest.approx(wanted[f"R{pair}"], rel=1e-12)
+
+
+def test_leads_of_a_group_of_class_iii_are_parted_as_those_of_dyads_are():
+    here = detailed(solve(load(PROBLEMS / "press-class-iii.yaml"), "forces"))[0]
+    reactions = here.results.reactions
+    plan = next(p for p in force_plans(reactions, here.k, here.motion) if len(p.links) == 4)
+    assert {"R₁₂ⁿ", "R₁₂ᵗ", "R₀₆ⁿ", "R₀₆ᵗ", "R₀₇ⁿ", "R₀₇ᵗ"} <= {v.name for v in plan.plan.vectors}
+    assert abs(sum(v.value for v in plan.plan.vectors)) < 1e-9 * plan.plan.size
+    parts = {v.name: v.value for v in plan.plan.vectors}
+    arm = complex(here.motion.named("C").x[here.k] - here.motion.named("A").x[here.k])
+    assert abs((parts["R₁₂ᵗ"] * arm.conjugate()).real) < 1e-9 * abs(parts["R₁₂ᵗ"] * arm)  # across AC
+    for full in plan.full:
+        (one,) = [r for r in reactions.all if f"R{r.by}{r.on}" == full.symbol.letter + full.symbol.below]
+        assert full.value == pytest.approx(complex(one.force[here.k]), rel=1e-9)
 
 
 def test_vectors_of_a_polygon_that_is_a_line_are_drawn_side_by_side():

@@ -113,6 +113,9 @@ def test_lengths_have_the_names_of_the_file_s_parameters():
     texts = sheet_of("crank-slider-offset")[1].texts()
     assert texts[texts.index("OA") : texts.index("OA") + 3] == ["OA", "r", "50"]
     assert texts[texts.index("AB") : texts.index("AB") + 3] == ["AB", "l", "190"]
+    assert texts[texts.index("guide x from O") :][1:3] == ["e", "40"]
+    texts = sheet_of("crank-rocker")[1].texts()
+    assert texts[texts.index("OD") : texts.index("OD") + 3] == ["OD", "l4", "400"]
     texts = sheet_of("shaper")[1].texts()  # parameters are called like lengths
     assert texts[texts.index("CD") : texts.index("CD") + 2] == ["CD", "650"]
     assert texts[texts.index("guide x from O") + 1] == "270"
@@ -167,3 +170,15 @@ def test_the_way_of_a_point_or_of_a_coupler_is_told_in_words():
     ((__, sheet),) = all_positions(results)
     assert f"H = {1000 * results.strokes.travel:.4g} mm" in sheet.texts()
     assert not dimensions(sheet, Area)
+
+
+def test_numbers_of_the_working_stroke_stand_outside_and_the_sheet_says_so():
+    __, sheet = sheet_of("shaper")
+    assert "outer numbers: working stroke" in sheet.texts()
+    (stroke,) = [mark for mark in sheet.marks if isinstance(mark, Text) and mark.text.startswith("H = ")]
+    # H is dimensioned beyond the outer numbers; 3 is in the working stroke, 9 in the idle one
+    outer, inner = (
+        min(abs(mark.at.imag - stroke.at.imag) for mark in sheet.marks if isinstance(mark, Text) and mark.text == text)
+        for text in "39"
+    )
+    assert outer < inner - 4

@@ -130,6 +130,21 @@ def test_a_law_whose_first_angle_is_free_gives_back_the_linkage_that_it_was_read
     assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
+def test_a_law_may_leave_open_where_the_run_is_counted_from():
+    q = np.radians([20, 60, 100, 140, 200, 290])
+    runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
+    text = SLIDER.replace("e: [1, 80]}", "s0: [50, 300]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
+    values = ", ".join(f"s0 + {run!r}" for run in (runs - runs[0]).tolist())
+    problem = build(read_text(text.replace("OPTIONS", f"""
+  objective: {{of: law, link: 3, at: [20, 60, 100, 140, 200, 290], values: [{values}]}}
+  generations: 20
+"""), "x.yaml"))  # fmt: skip
+    assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, runs[0] / 1000], rel=1e-8)
+    law = problem.synthesis.outcome.listings[1]
+    assert [row[1] for row in law.rows] == pytest.approx(runs / 1000, rel=1e-8)
+    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+
+
 def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_another_seed():
     text = (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
     found = build(read_text(text.replace("objective:", "seed: 3\n  objective:"), "x.yaml")).synthesis.outcome

@@ -309,7 +309,7 @@ def _absolute(x: DoubleDouble) -> DoubleDouble:
 
 def _power(x: Any, n: Any) -> DoubleDouble:
     """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
-    number = float(n)
+    x, number = exactly(x), float(n)
     if number == 0.5:
         return _sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:

@@ -17,6 +17,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.selection import mass_centres
 from tmm_cli.double_double import EPS
 from tmm_cli.groups.base import spread
 from tmm_cli.quantities import (
@@ -97,10 +98,13 @@ def sizes(results: Results) -> Mapping[Dimension, float]:
 
 
 def _longest(results: Results) -> float:
-    """How far points of the links are from one another and from the origin, m."""
+    """How far points of the links, and what acts on them, are from one another and from the origin, m."""
     assert results.motion is not None
-    spreads = (spread(results.linkage, link) for link in results.linkage.links)
-    return max(spreads, default=1.0) + _most(pose.x for pose in results.motion.poses.values())
+    linkage = results.linkage
+    spreads = (spread(linkage, link) for link in linkage.links)
+    acted_on = _most([*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)])
+    longest: float = max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
+    return longest
 
 
 def _most(values: object) -> float:

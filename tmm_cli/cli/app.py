@@ -29,6 +29,7 @@ COMMANDS = {
     "synthesis": "Find lengths from what a mechanism must do.",
     "variants": "Draw variants of a task for a group of students.",
     "grade": "Mark what the students of a group handed in.",
+    "sheets": "Draw sheets to hand in, framed and to scale, as PDF or DXF.",
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 

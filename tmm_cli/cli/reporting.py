@@ -116,6 +116,18 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
         say_written(Written(own if taken else usual, staged.removed, usual if taken else None))
 
 
+def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
+    """Beside the results of the problem, in place of sheets of the same formats that an earlier run drew."""
+    with Staged(out / folder_name(results.problem.name)) as staged:
+        for name, content in pictures:
+            staged.write(name, (content,))
+    formats = {Path(name).suffix for name in staged.names}
+    old = [path.name for path in staged.folder.glob("sheet-*") if path.suffix in formats]
+    for name in set(old) - staged.names:
+        (staged.folder / name).unlink()
+    say_written(Written(staged.folder, sorted(set(old) - staged.names), None))
+
+
 def say_written(written: Written) -> None:
     """Where the results are, what went of earlier ones, and what stays."""
     folder, removed, kept = written

@@ -5,10 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
 
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
 from tmm_cli.draw.mechanism import Position
+from tmm_cli.draw.room import Room
 from tmm_cli.draw.script import Words, width, wrapped
 from tmm_cli.draw.sheet import DARK, GREY_TEXT, THIN, Sheet
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
@@ -17,6 +22,8 @@ TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 MOST = 0.5  # of a sheet: more than this is written on another one
+WIDTHS = (110.0, 150.0, 200.0, 260.0)  # mm: what is beneath a drawing on a large sheet is not folded into less
+LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
 HANGING = " " * 8
 PAPERS = (LANDSCAPE, PORTRAIT)
 
@@ -33,7 +40,7 @@ class Table:
         """In one column, mm."""
         return complex(sum(self.widths), ROW * (len(self.rows) + 1.5))
 
-    @property
+    @cached_property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
@@ -105,26 +112,28 @@ def above(
     here: Position, title: str, places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath],
     **words: str,
 ) -> tuple[Sheet, Sheet | None]:  # fmt: skip
-    """A sheet for a drawing with what is written by it; on a sheet of its own where that is much.
+    """A sheet for a drawing with what is written by it; this is on a sheet of its own where it is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
     millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
+
+    if on_large_sheet():
+        return _sheet(name, subject, places, _beside_others(places, beneath)), None
+
+    def with_tables_aside(mu: float) -> Beneath:
+        return replace(beneath(mu), aside=True)
+
     low, high = ground_of(PORTRAIT)
-    if beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
-
-        def with_tables_aside(mu: float) -> Beneath:
-            return replace(beneath(mu), aside=True)
-
-        ways = (beneath, with_tables_aside)
-        sheet, mu = _sheet(name, subject, [_placed(paper, places, way) for way in ways for paper in PAPERS])
-        return sheet, None
-    sheet, mu = _sheet(name, subject, [_placed(paper, places, lambda mu: Beneath()) for paper in PAPERS])
-    further = Sheet(name, subject, paper=PORTRAIT)
-    written = beneath(mu)
+    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
+    alone = _best(places, lambda mu: Beneath())
+    best = _best(places, beneath, with_tables_aside)
+    if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
+        return _sheet(name, subject, places, best), None
+    written, further = beneath(alone.mu), Sheet(name, subject, paper=PORTRAIT)
     written.put(further, low + 1j * written.left(low, high).imag, high)
-    return sheet, further
+    return _sheet(name, subject, places, alone), further
 
 
 @dataclass(frozen=True)
@@ -137,16 +146,39 @@ class _Placed:
     written: Beneath
 
 
-def _sheet(name: str, subject: str, found: Sequence[_Placed]) -> tuple[Sheet, float]:
-    """A sheet of the placing at which the drawing is largest."""
-    best = min(found, key=lambda one: one.mu)
-    low, high = ground_of(best.paper)
-    sheet, room = Sheet(name, subject, paper=best.paper), best.written.left(low, high)
-    best.written.put(sheet, low, high)
+def _best(places: Sequence[tuple[complex, complex]], *ways: Callable[[float], Beneath]) -> _Placed:
+    """The placing at which the drawing is largest, the first of those that are alike."""
+    return min((_placed(paper, places, way) for way in ways for paper in PAPERS), key=lambda placed: placed.mu)
+
+
+def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath]) -> _Placed:
+    """As large as a large sheet lets it be, on a paper no larger than it needs with all that is written beneath it."""
+    longest = longest_for(max(LANDSCAPE))
+    _, across, up, __ = extent([place for place, __ in places])
+    mu = round_scale(across, up, longest, longest)
+    written = beneath(mu)
+    _, across, up, middle = extent([place / mu + away for place, away in places])
+    most = 10 * longest
+    low, edge = ground_of((0.0, 0.0))
+
+    def height(wide: float) -> float:
+        return most - written.left(low, low + complex(wide, most)).imag
+
+    wide = next((wide for wide in WIDTHS if height(wide) < max(wide, up)), WIDTHS[-1])
+    wide = max(wide, across + 2 * PAD)
+    paper = complex(wide, up + 2 * PAD + height(wide)) + low - edge
+    return _Placed((paper.real, paper.imag), mu, middle, written)
+
+
+def _sheet(name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _Placed) -> Sheet:
+    low, high = ground_of(placed.paper)
+    _, across, up, __ = extent([place for place, __ in places])
+    on = Room(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
+    sheet, room = Sheet(name, subject, room=on), placed.written.left(low, high)
+    placed.written.put(sheet, low, high)
     sheet.ground = Ground(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
-    sheet.mu = best.mu
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - best.middle
-    return sheet, best.mu
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - placed.middle
+    return sheet
 
 
 def _placed(

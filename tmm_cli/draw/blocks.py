@@ -133,3 +133,20 @@ def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[
     if best is None:  # larger than the field in each of its shapes
         return next(block.shapes()), low
     return best[1:]
+
+
+def nearest_free(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[Shape, complex]:
+    """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it."""
+    found: list[tuple[float, Shape, complex]] = []
+    for shape in block.shapes():
+        places = corners(low, high, shape.size)
+        free = places[covered(crowd, places, shape.size) == 0] if len(places) else places
+        size = high - low
+        if len(free):
+            return shape, complex(free[0])
+        below = complex(max(size.real, shape.size.real), size.imag + CLEAR + shape.size.imag)
+        found.append((below.real * below.imag, shape, low - 1j * (CLEAR + shape.size.imag)))
+        beside = complex(size.real + CLEAR + shape.size.real, max(size.imag, shape.size.imag))
+        found.append((beside.real * beside.imag, shape, complex(high.real + CLEAR, high.imag - shape.size.imag)))
+    __, shape, at = min(found, key=lambda one: one[0])
+    return shape, at

@@ -12,7 +12,8 @@ from tmm_cli.draw.sheet import DARK, Sheet, hatch
 from tmm_cli.draw.symbols import GAP, MEASURED, Look, quiet
 from tmm_cli.vectors import Vector, cross, dot, unit
 
-HATCHED, WALL = 1.7, 0.6  # mm: depth of hatching, how far rods keep off it
+HATCHED, WALL, OPEN = 1.7, 0.6, 1.1  # mm: depth of hatching, how far rods keep off it, room beside them in an opening
+BARE = 0.2  # mm: how far rods keep off a support's triangle
 GROUND = 2.2  # half widths of a support's triangle: its hatched ground
 PIECE, FINE = 2.0, 0.4  # mm: the shortest piece of a rail, between places along a rod
 
@@ -25,12 +26,12 @@ def support_side(sheet: Sheet, at: complex, rods: Sequence[Line], look: Look = M
         """Of its ground, mm, and more for a rod through its triangle."""
         ground = free_runs(-GROUND * half, GROUND * half, _all_covered(rods, at + height * out, 1j * out, out))
         free = sum(high - low for low, high in ground)
-        return 2 * half * (GROUND + sum(through(rod, out) for rod in rods)) - free
+        return 2 * GROUND * half - free + 3 * half * sum(through(rod, out) for rod in rods)
 
     def through(rod: Line, out: complex) -> bool:
         places = _places(rod) - at
         run, off = dot(out, places), np.abs(cross(out, places))
-        return bool(np.any((run > look.hinge + WALL) & (run < height) & (off < half * run / height + WALL)))
+        return bool(np.any((run > look.hinge + WALL) & (run < height) & (off < half * run / height + BARE)))
 
     ways = [complex(unit(np.pi / 8 * n)) for n in (-4, 4, 0, 8, -2, -6, 2, 6, -3, -5, -1, -7, 3, 5, 1, 7)]
     for among in (ways[:2], ways[2:4], ways):
@@ -75,7 +76,7 @@ def _all_covered(rods: Sequence[Line], rail: complex, along: complex, out: compl
         places = _places(rod) - rail
         inside = dot(along, places)[(dot(out, places) > -WALL) & (dot(out, places) < HATCHED + WALL)]
         if len(inside):
-            found.append((float(np.min(inside)) - WALL, float(np.max(inside)) + WALL))
+            found.append((float(np.min(inside)) - OPEN, float(np.max(inside)) + OPEN))
     return found
 
 

@@ -31,7 +31,7 @@ def forces(here: Position) -> Iterable[tuple[str, Drawing]]:
     """A sheet for the polygon of each group and of the driving link."""
     if here.results.reactions is None:
         return
-    for plan in force_plans(here.results.reactions, here.k):
+    for plan in force_plans(here.results.reactions, here.k, here.motion):
         title = _("Force plan of link {links}. {caption}")
         if plan.driving:
             title = _("Force plan of the driving link {links}. {caption}")

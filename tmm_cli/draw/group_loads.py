@@ -13,7 +13,7 @@ from tmm_cli.draw.mechanism import Position, measured
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.errors import _
-from tmm_cli.plans.moments import SPECIAL, LoadedPart, MomentEquation, loaded_parts
+from tmm_cli.plans.moments import LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import extent as extent_of
 
@@ -39,7 +39,7 @@ def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]
     for equation in equations:
         number = sum(len(_letters(e)) for e in found[-1])
         crowded = number + len(_letters(equation)) > MOST
-        if found[-1] and (crowded or SPECIAL in (equation.about, found[-1][-1].about)):
+        if found[-1] and (crowded or equation.special or found[-1][-1].special):
             found.append([])
         found[-1].append(equation)
     return found
@@ -79,13 +79,15 @@ def _sheets(
     forces = Forces(sheet)
     forces.draw(part.acting)
     forces.draw(replace(a, kind="inner") for a in further)
-    for equation in (e for e in equations if e.about == SPECIAL):
+    for equation in (e for e in equations if e.special):
         _special(sheet, part, equation)
     arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
         sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
+    if any(e.sought is None for e in equations):
+        sheet.note(_("all reactions of the group are found at once"))
     return (sheet,) if text is None else (sheet, text)
 
 

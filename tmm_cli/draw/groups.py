@@ -11,9 +11,11 @@ import numpy as np
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.layout.picture import on_large_sheet
 from tmm_cli.draw.render import arrows, names, render, spot
+from tmm_cli.draw.room import snug
 from tmm_cli.draw.scene import BEYOND, Scene, fitted
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, safe
 from tmm_cli.draw.structure import Part, parts
 from tmm_cli.draw.symbols import FREE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
 from tmm_cli.draw.wheel_symbols import draw
@@ -26,17 +28,31 @@ from tmm_cli.structure.assur import ROMAN, Pair
 LEAST, A_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
 A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
 LINE, PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
+WORDS = 110.0  # mm: width of a caption on a large sheet
 STUB = 8.0  # mm of what a lead would be joined to
 
 
 def groups(
     title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
-    """All groups side by side, on more than one sheet when there are many."""
+    """All groups side by side, on more than one sheet when there are many; on large sheets each alone."""
     every = parts(scene.structure)
+    if on_large_sheet():
+        for part in every:
+            yield safe(f"groups-{part.title}"), _alone(title, scene, part, roles or {}).finish()
+        return
     for first in range(0, len(every), A_SHEET):
         stem = "groups" if first == 0 else f"groups-sheet-{first // A_SHEET + 1}"
         yield stem, side_by_side(title, place, scene, every[first : first + A_SHEET], roles or {}).finish()
+
+
+def _alone(title: str, scene: Scene, part: Part, roles: Mapping[str, str]) -> Sheet:
+    """One part on a large sheet, below its caption."""
+    words = caption(part, scene.structure.pairs, roles, WORDS)
+    sheet = Sheet(title, words[0], room=snug(scene.extent(part.links), PAD[0], 0.0))
+    sheet.remarks = words[1:]
+    _part(sheet, scene, part, PAD[0])
+    return sheet
 
 
 def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], roles: Mapping[str, str]) -> Sheet:
@@ -97,7 +113,8 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     pairs, links = scene.structure.pairs, part.links
     outer = part.group.outer if part.group else ()
     inner = part.group.inner if part.group else tuple(p for p in pairs if {p.i, p.j} <= {*links, FRAME})
-    scene = fitted(sheet, scene, links, pad, LEAST + A_LINK * len(links))
+    most = math.inf if on_large_sheet() else LEAST + A_LINK * len(links)
+    scene = fitted(sheet, scene, links, pad, most)
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
     own = dict.fromkeys(links, part.colour)
     for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side

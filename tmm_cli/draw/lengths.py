@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -46,36 +47,59 @@ def _links(results: Results) -> Iterator[Size]:
 
 
 def _parameter(results: Results, link: str, name: str) -> str:
-    """The parameter of the file that is the length of a link of two points, where it is called otherwise."""
-    source = results.problem.source
-    links = source.data.get("links") if source is not None else None
-    own = next((own for key, own in links.items() if str(key) == link), None) if isinstance(links, dict) else None
-    if not isinstance(own, dict) or source is None:
+    """The parameter of the file that is the length of a link between these points, where it is called otherwise."""
+    own = _written(results, "links", link)
+    ends = own.get("points") if isinstance(own, dict) else None
+    if not isinstance(ends, list) or "".join(map(str, ends)) != name:
         return ""
-    length, ends = own.get("length"), own.get("points")
-    known = source.data.get("parameters")
-    of_these = isinstance(ends, list) and "".join(map(str, ends)) == name
-    told = isinstance(known, dict) and isinstance(length, str) and length in known and sorted(length) != sorted(name)
-    return str(length) if of_these and told else ""
+    return _named(results, own.get("length"), name)
+
+
+def _coordinate(results: Results, written: Any, place: complex, size: float, name: str) -> str:
+    """The parameter that is one of the coordinates of a place, the one of this size."""
+    if not isinstance(written, list):
+        return ""
+    both = zip(written, (place.real, place.imag), strict=False)
+    found = [_named(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_PLACES * size]
+    return next((parameter for parameter in found if parameter), "")
+
+
+def _named(results: Results, text: Any, name: str) -> str:
+    """The parameter that a text of the file consists of, where its letters are others than those of a name."""
+    known, word = _written(results, "parameters"), str(text).lstrip("-")
+    return word if isinstance(known, dict) and word in known and sorted(word) != sorted(name) else ""
+
+
+def _written(results: Results, *path: str) -> Any:
+    """What the file has there; None where it has nothing."""
+    source = results.problem.source
+    found: Any = None if source is None else source.data
+    for key in path:
+        found = {str(k): value for k, value in found.items()}.get(key) if isinstance(found, dict) else None
+    return found
 
 
 def _frame(results: Results) -> Iterator[Size]:
     """Pivots on the frame from the first of them, and guides on the frame by their distance from it and their slope."""
     linkage = results.linkage
-    pivots = {h.point: linkage.local(FRAME, h.point) for h in linkage.hinges if FRAME in h.links}
+    pivots = {h.point: complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links}
     start, origin = next(iter(pivots.items()), ("", 0j))
     for name, place in list(pivots.items())[1:]:
-        across, up = (float(part) for part in ((place - origin).real, (place - origin).imag))
-        if min(abs(across), abs(up)) < SAME_PLACES * abs(place - origin):
-            yield start + name, "", float(abs(place - origin)), LENGTH
+        off, both = place - origin, start + name
+        if min(abs(off.real), abs(off.imag)) < SAME_PLACES * abs(off):
+            parameter = _coordinate(results, _written(results, "points", name), place, abs(off), both)
+            yield both, parameter, abs(off), LENGTH
         else:
-            yield from (((Symbol("x", name),), "", across, LENGTH), ((Symbol("y", name),), "", up, LENGTH))
+            yield from (((Symbol("x", name),), "", off.real, LENGTH), ((Symbol("y", name),), "", off.imag, LENGTH))
     for slide in linkage.slides:
         if slide.carrier == FRAME:
-            along = complex(unit(slide.direction))
-            off = abs(float(cross(along, origin - slide.through)))
-            off = off if off > SAME_PLACES * abs(slide.through) else 0.0
-            yield _("guide {name} from {point}").format(name=slide.name, point=start or "0"), "", off, LENGTH
+            along, through = complex(unit(slide.direction)), complex(slide.through)
+            far = abs(float(cross(along, origin - through)))
+            far = far if far > SAME_PLACES * abs(through) else 0.0
+            written = _written(results, "guides", slide.name, "through")
+            parameter = _coordinate(results, written, through, far, "") if far else ""
+            title = _("guide {name} from {point}").format(name=slide.name, point=start or "0")
+            yield title, parameter, far, LENGTH
             turn = math.degrees(np.angle(along)) % 180
             if abs(turn - 90 * round(turn / 90)) > 1e-9:
                 yield _("slope of {name}").format(name=slide.name), "", math.radians(turn), ANGLE

@@ -111,7 +111,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     whole, track = paths(results), output_track(results)
     marks = view.marks(track) if track is not None else []
     ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
-    notes, rows = list(_notes(view, track)), lengths(results)
+    notes, rows = list(_notes(view, track, marks)), lengths(results)
     figure = _figure(view, whole)
     off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
     found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
@@ -230,10 +230,12 @@ def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
         sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
 
 
-def _notes(view: View, track: Track | None) -> Iterable[str]:
+def _notes(view: View, track: Track | None, marks: list[PositionMark]) -> Iterable[str]:
     """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
     yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
         if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
             yield _size(view)
+        if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
+            yield _("outer numbers: working stroke")

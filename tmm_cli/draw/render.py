@@ -62,7 +62,7 @@ def _render(
             _guide(sheet, scene, pair, look, rods)
     for pair in pairs:
         if not pair.lower:
-            _higher(sheet, scene, pair, look, hue)
+            _higher(sheet, scene, pair, look, hue, rods)
     for link, form in forms.items():
         body(sheet, form, hue[link], look)
         for pair in scene.structure.pairs:  # also of those that are drawn from one side only
@@ -112,14 +112,14 @@ def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Li
     sheet.label(FRAME, at + low_side * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
 
 
-def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str, str]) -> None:
+def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str, str], rods: Sequence[Line]) -> None:
     """Toothed wheels, or a cam with its follower; of a measured rack all that ever comes into mesh."""
     found, span = scene.higher(pair), None
     if look.measured and found.mesh.slide:
         slide = scene.linkage.slide(found.mesh.slide)
         (low, high), here = scene.way(slide), scene.run(slide)
         span = here - high, here - low
-    draw_wheels(sheet, found, hue, span)
+    draw_wheels(sheet, found, hue, span, rods)
     if look.measured:
         sheet.label(found.mesh.name, sheet.on(contact(found)), 9, GREY)
         if isinstance(found, CamShape) and not found.true:

@@ -65,11 +65,14 @@ def filled(sentence: str, **words: Words) -> Words:
 def wrapped(words: Words, size: float, most: float, hanging: str = "") -> Iterator[Words]:
     """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`."""
     line: list[str | Symbol] = []
+    wide = 0.0
     for token in _tokens(words):
-        if line and width((*line, *token), size) > most:
+        own = width(token, size)
+        if line and wide + own > most:
             yield _joined(line)
-            line = [hanging]
+            line, wide = [hanging], width(hanging, size)
         line += token
+        wide += own
     yield _joined(line)
 
 

@@ -10,14 +10,15 @@ from itertools import pairwise
 import numpy as np
 
 from tmm_cli.draw import script
-from tmm_cli.draw.blocks import Block, Row, roomiest
+from tmm_cli.draw.blocks import Block, Row, nearest_free, roomiest
 from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
 from tmm_cli.draw.fonts import SHARE
 from tmm_cli.draw.labels import Ground, Label, about, nearest, row
 from tmm_cli.draw.labels import extent as label_extent
+from tmm_cli.draw.layout.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.room import Room
 from tmm_cli.errors import _
-from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of, sheet_scale
+from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
 from tmm_cli.vectors import unit
@@ -44,24 +45,31 @@ class Sheet:
     ) -> None:  # fmt: skip
         """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
         found = [p for p in points if np.isfinite(p)] or [0j]
-        middle = extent(found)[3]
-        best, self.mu = sheet_scale(found, pad)
-        self.paper = room.paper if room else paper or best
+        __, across, up, middle = extent(found)
+        self.caption, self.remarks = caption, list[str]()
+        self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
+        self.free = room.free if room else paper is not None
+        self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
         self.ground = Ground(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         if room is not None:
-            self.mu, self.origin = room.mu, room.origin
+            self.origin = room.origin
         self.marks: list[Mark] = []
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
         self.faint = Ground(self.ground.low, self.ground.high)  # lines that labels may cover, and blocks may not
         self.block = Block()
+        if not on_large_sheet():
+            self._strip(title)
+        self.layer = "construction"
+
+    def _strip(self, title: str) -> None:
+        """The title above the drawing."""
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
         self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
-        self.text(complex(MARGIN, height - MARGIN - 8), caption[:120], 9, colour="#404040")
-        self.layer = "construction"
+        self.text(complex(MARGIN, height - MARGIN - 8), self.caption[:120], 9, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
@@ -152,9 +160,15 @@ class Sheet:
         self.block.rows, self.block.numbers = list(rows), numbers
 
     def finish(self) -> Drawing:
-        """Put the notes into the emptiest corner, place the labels."""
+        """Put the notes into the emptiest corner, place the labels; on a large sheet, cut it out below its caption."""
         self.corner()
         self.settle()
+        if on_large_sheet():
+            longest = max(self.figure or self.paper)
+            if self.free and self.figure:
+                longest = longest_for(longest)
+            mu = None if self.free else self.mu
+            return picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
         return Drawing.of(self.paper, self.marks)
 
     def settle(self) -> None:
@@ -179,8 +193,11 @@ class Sheet:
         """Put notes and table where they cover the least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
-        crowd = np.concatenate([self.ground.crowd, self.faint.crowd])
-        shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
+        if on_large_sheet():
+            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
+        else:
+            crowd = np.concatenate([self.ground.crowd, self.faint.crowd])
+            shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
         for start, end in shape.lines:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,8 +12,10 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.labels import extent
+from tmm_cli.draw.layout.picture import on_large_sheet
 from tmm_cli.draw.mechanism import place_of_driver
 from tmm_cli.draw.render import arrows, names, render, spot
+from tmm_cli.draw.room import snug
 from tmm_cli.draw.scene import Scene, fitted, scale_to
 from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.draw.symbols import PALETTE, STRUCTURAL, numbers, symbol_size
@@ -24,6 +27,7 @@ from tmm_cli.vectors import Real, dot
 
 PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
 LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link
+WIDEST = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
 ROW = 5.4  # mm of a line of the legend
 PLACES, MANY = 47, 40  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
 HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
@@ -104,10 +108,15 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
         low, high = ground_of(paper)
         return scale_to(places, high - low - 2 * PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
-    # upright only where the mechanism becomes much larger
-    paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
-    sheet = Sheet(title, _("Structural scheme, {place} (not to scale)").format(place=place), paper=paper)
-    sheet.ground.low += 1j * legend.height(paper[0])
+    subject = _("Structural scheme, {place} (not to scale)").format(place=place)
+    if on_large_sheet():
+        most = math.inf
+        sheet = Sheet(title, subject, room=snug(places, PAD, WIDEST, legend.height))
+    else:
+        # upright only where the mechanism becomes much larger
+        paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
+        sheet = Sheet(title, subject, paper=paper)
+    sheet.ground.low += 1j * legend.height(sheet.paper[0])
     scene = fitted(sheet, scene, links, PAD, most)
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
     drawn = render(sheet, scene, links, pairs, look, hue)

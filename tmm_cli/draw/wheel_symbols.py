@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from tmm_cli.draw.drawing import Style
+from tmm_cli.draw.forms import Line
+from tmm_cli.draw.labels import aside
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
 from tmm_cli.draw.wheels import CamShape, Disc, Outline, Teeth
 from tmm_cli.linkage import FRAME
@@ -19,12 +21,16 @@ TOOTH, HEIGHT, TEETH = 3.6, 1.1, 5  # mm: pitch, half the height of a tooth; how
 RIM = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
 AXLE = 0.9  # mm: the circle in the middle of a roller
 ABOVE = 2.3  # plates do not hide wheels
+OPEN = 1.1  # mm from a rod in which nothing is hatched
 
 
-def draw(sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float, float] | None = None) -> None:
+def draw(
+    sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float, float] | None = None,
+    rods: Sequence[Line] = (),
+) -> None:  # fmt: skip
     """What belongs to links that have a colour (hue), and a cam of any.
 
-    span: how far the rack goes on both sides of the pitch point (m).
+    span: how far the rack goes on both sides of the pitch point (m); rods (mm) keep hatching away.
     """
     if isinstance(found, CamShape):
         _draw_cam(sheet, found, hue)
@@ -33,6 +39,8 @@ def draw(sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float
     for disc in found.discs:
         if disc.link in hue:
             _wheel(sheet, disc, hue[disc.link], pitch, found.along)
+            if disc.link == FRAME:
+                _hatched(sheet, disc, rods)
     if found.side != 0 and found.mesh.j in hue:
         _rack_bar(sheet, found, hue[found.mesh.j], span)
     sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
@@ -47,7 +55,7 @@ def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Style
 
 
 def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex) -> None:
-    """A pitch circle, teeth where it meshes; the rim of inner teeth; hatched where the wheel is the frame."""
+    """A pitch circle, teeth where it meshes; the rim of inner teeth."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
     ways = unit(np.linspace(0, 2 * np.pi, number + 1))
@@ -55,13 +63,19 @@ def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex
     outside = radius + RIM if disc.ring else radius
     if disc.ring:
         _curve(sheet, centre + outside * ways, colour, 1.2, "-", ABOVE)
-    if disc.link == FRAME:
-        out = 1.0 if disc.ring else -1.0
-        number = int(np.clip(2 * np.pi * outside / 3.2, 12, 900))
-        for way in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
-            stroke = centre + way * np.array([outside, outside + 1.7 * out + 1.2j])
-            _curve(sheet, stroke, THIN, 0.6, "-", ABOVE)
     _tooth_hint(sheet, centre, radius, pitch, along, colour)
+
+
+def _hatched(sheet: Sheet, disc: Disc, rods: Sequence[Line]) -> None:
+    """Strokes about a wheel that is the frame, but for those under rods."""
+    centre, out = sheet.on(disc.centre), 1.0 if disc.ring else -1.0
+    rim = disc.radius / sheet.mu + (RIM if disc.ring else 0.0)
+    number = int(np.clip(2 * np.pi * rim / 3.2, 12, 900))
+    with sheet.on_layer("supports"):
+        for way in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
+            stroke = centre + way * np.array([rim, rim + 0.85 * out + 0.6j, rim + 1.7 * out + 1.2j])
+            if all(aside(complex(place), *rod) > OPEN for place in stroke for rod in rods):
+                _curve(sheet, stroke, THIN, 0.6, "-", ABOVE)
 
 
 def _wave(run: Any) -> Any:

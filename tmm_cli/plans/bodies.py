@@ -143,12 +143,17 @@ class Loaded:
             yield Acting(reaction_symbol(by, link), "reaction", link, at, force, pair=pair.name)
             yield Acting(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
         else:
-            across = axis * 1j / abs(axis)
-            tangential = across * float(dot(across, force))
+            tangential = part_across(force, axis)
             if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
                 tangential = complex(reaction.tangential[k])
             yield Acting(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
             yield Acting(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
+
+
+def part_across(force: complex, axis: complex) -> complex:
+    """The part of a force that is across an axis."""
+    across = axis * 1j / abs(axis)
+    return across * float(dot(across, force))
 
 
 def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
-from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.bodies import Loaded, load_symbols, part_across
+from tmm_cli.plans.leads import leads_of
 from tmm_cli.plans.record import Kind, NamedVector, Plan, Symbol, balance_symbol, reaction_symbol
 
 Part = tuple[Symbol, complex, Kind]
@@ -30,21 +32,37 @@ class ForcePlan:
         return " + ".join(v.name for v in self.plan.vectors if v.kind != "inner") + " = 0"
 
 
-def force_plans(reactions: Reactions, k: int) -> tuple[ForcePlan, ...]:
-    """Last group first, as they are drawn, and the driving links at the end."""
-    groups = [_group(group, reactions, k) for group in reversed(reactions.groups)]
+def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> tuple[ForcePlan, ...]:
+    """Last group first, as they are drawn, and the driving links at the end.
+
+    motion: where leads of groups of any class stand, so that their reactions are parted as those of dyads are.
+    """
+    here = None if motion is None else Loaded.at(motion, reactions, k)
+    groups = [_group(group, reactions, k, here) for group in reversed(reactions.groups)]
     return (*groups, *(_driver(frame, reactions, k) for frame in reactions.frames))
 
 
-def _group(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
+def _group(group: GroupForces, reactions: Reactions, k: int, here: Loaded | None) -> ForcePlan:
     """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
         return _dyad(group, reactions, k)
+    axes = {} if here is None else {lead.pair.name: lead.axis for lead in leads_of(here, group.group)}
     parts: list[Part] = []
+    parted: list[tuple[Reaction, int]] = []
     for link in group.group.links:
         parts += _borne(group.borne, reactions, group.group.links, link, k)
-        parts += [(reaction_symbol(r.by, r.on), complex(r.force[k]), "reaction") for r in group.outer if r.on == link]
-    return ForcePlan(group.group.links, _polygon(parts))
+        for r in (r for r in group.outer if r.on == link):
+            force, axis = complex(r.force[k]), axes.get(r.pair.name)
+            if axis is None:
+                parts.append((reaction_symbol(r.by, r.on), force, "reaction"))
+                continue
+            across = part_across(force, axis)
+            parted.append((r, len(parts)))
+            parts.append((reaction_symbol(r.by, r.on, "τ"), across, "tangential"))
+            parts.append((reaction_symbol(r.by, r.on, "n"), force - across, "normal"))
+    plan = _polygon(parts)
+    full = tuple(_full(r, plan.vectors[at : at + 2]) for r, at in parted)
+    return ForcePlan(group.group.links, plan, full=full)
 
 
 def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
@@ -64,15 +82,15 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
     symbol = reaction_symbol(inner.pair.other(b), b)
     joined = NamedVector(symbol.name, corner - force, corner, "inner", symbol)
-    full = [*_full(first, plan.vectors[:2]), *_full(last, plan.vectors[-2:])]
-    return ForcePlan((a, b), Plan((*plan.vectors, joined)), full=tuple(full))
+    ends = ((first, plan.vectors[:2]), (last, plan.vectors[-2:]))
+    full = tuple(_full(reaction, parts) for reaction, parts in ends if reaction.tangential is not None)
+    return ForcePlan((a, b), Plan((*plan.vectors, joined)), full=full)
 
 
-def _full(reaction: Reaction, parts: Sequence[NamedVector]) -> Iterable[NamedVector]:
+def _full(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
     """A reaction of which these are the parts."""
-    if reaction.tangential is not None:
-        symbol = reaction_symbol(reaction.by, reaction.on)
-        yield NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
+    symbol = reaction_symbol(reaction.by, reaction.on)
+    return NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
 
 def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:

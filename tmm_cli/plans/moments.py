@@ -16,6 +16,7 @@ from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.leads import Lead, assur_point, hinges_of, leads_of
 from tmm_cli.plans.projections import ForceSum, along_guides, of_driver
 from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.velocity import other_than
 from tmm_cli.structure.assur import Group, Pair
 from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
 from tmm_cli.vectors import dot
@@ -57,8 +58,8 @@ class Sought:
 class MomentEquation:
     """The moments about a point of all that acts on some links come to nothing; forces through it are left out.
 
-    sought: None where all reactions of the group are found at once. Its term is missing where it has no moment: a part
-    of a reaction is nothing then, and a guide's reaction goes through the point.
+    special: the point is one of Assur. sought: None where all reactions of the group are found at once. Its term is
+    missing where it has no moment: a part of a reaction is nothing then, and a guide's reaction goes through the point.
     """
 
     links: tuple[str, ...]
@@ -66,6 +67,7 @@ class MomentEquation:
     centre: complex
     terms: tuple[Term, ...]
     sought: Sought | None = None
+    special: bool = False
 
     @property
     def found(self) -> Term | None:
@@ -135,7 +137,8 @@ def _of_leads(
         # of a guide's reaction the moment about its link's hinge is known by now, but not where it acts
         carried = {other.pair.name: other.rest[0] for other in leads if other.pair.slide is not None and other.rest}
         sought = _part(group, lead.pair, lead.open_part)
-        yield _equation(here, axes, group.links, SPECIAL, centre, sought, carried)
+        name = other_than({point for link in here.motion.linkage.links.values() for point in link.points}, SPECIAL)
+        yield replace(_equation(here, axes, group.links, name, centre, sought, carried), special=True)
 
 
 def _of_teeth(here: Loaded, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:

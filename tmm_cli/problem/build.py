@@ -21,7 +21,7 @@ from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.extended import ExtendedUnits
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem.record import Problem, TitleTexts
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
@@ -117,7 +117,8 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed), tree,
+        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed),
+        TitleTexts(**shape.sheet.model_dump()), tree,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.problem.tree import Tree
@@ -24,6 +24,18 @@ class Synthesised:
     task: str
     outcome: Outcome
     names: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class TitleTexts:
+    """What the title block of a drawn sheet says, and which of the two it is."""
+
+    student: str = ""
+    group: str = ""
+    teacher: str = ""
+    department: str = ""
+    code: str = ""
+    block: Literal["gost", "plain"] = "gost"
 
 
 @dataclass(frozen=True)
@@ -47,6 +59,7 @@ class Problem:
     pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
     limits_set: tuple[bool, bool] = (False, False)
     bare_speed: bool = False
+    title_texts: TitleTexts = TitleTexts()
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

@@ -23,6 +23,7 @@ from tmm_cli.problem.schema_parts import (
     checked_value,
     checked_vector,
 )  # fmt: skip
+from tmm_cli.problem.schema_sheet import SheetTexts
 
 
 class Guide(Strict):
@@ -297,3 +298,4 @@ class File(Strict):
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
+    sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")

@@ -21,7 +21,7 @@ from tmm_cli.linkage import Sketch
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.batch import Wanted, solved
 from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.variant import DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
+from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
 from tmm_cli.vectors import Real
 
 KEPT = 30  # variants
@@ -96,12 +96,15 @@ class OneByOne:
         if variant.accelerated:
             begins = mechanism.strokes if isinstance(variant.request.start, str) else None
             start = float(places_of(variant.request, mechanism.driver_range, begins, linkage.driver.sense)[0])
-        q = DriverRanges.of(variant, 1, self.turns, start).at(places)[0]
+        ranges = DriverRanges.of(variant, 1, self.turns, start)
+        q = ranges.at(places)[0]
         with np.errstate(all="ignore"):
             found = solved(
                 linkage, mechanism.structure, mechanism.kernels, q, self.wanted, self.forces, strokes, blank=True,
                 start=start,
             )  # fmt: skip
+        if variant.wanted:
+            found = {**found, WANTED: ranges.wanted_at(places)[0]}
         return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}
 
 

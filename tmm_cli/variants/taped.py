@@ -19,7 +19,7 @@ from tmm_cli.tape import Program, TracedArray, record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.batch import CHECKS, Wanted, solved
 from tmm_cli.variants.stack import changed, numbers
-from tmm_cli.variants.variant import DriverRanges, Make, NoTapeError, Places, sketch_of
+from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
 from tmm_cli.vectors import Real
 
 
@@ -44,7 +44,7 @@ class Taped:
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
         if isinstance(self.start, TracedNumber):
             raise NoTapeError
-        own = any(isinstance(place, TracedNumber) for place in (*(varied.ends or ()), *varied.asked))
+        own = any(isinstance(number, TracedNumber) for number in _ends(varied))
         self.ends = record(self._ends, *[1] * len(first)) if own else None
         self.program = self._program(wanted, forces, own)
 
@@ -63,11 +63,10 @@ class Taped:
         return whole.only(*(name for name in whole.outputs if name not in CHECKS))
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Where the driver's range begins and ends in each variant, and the places asked about, as its numbers say."""
+        """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
-            str(k): place.stand if isinstance(place, TracedNumber) else place
-            for k, place in enumerate((*(varied.ends or ()), *varied.asked))
+            str(k): place.stand if isinstance(place, TracedNumber) else place for k, place in enumerate(_ends(varied))
         }
 
     def driver_range(self, columns: Real) -> DriverRanges:
@@ -75,10 +74,11 @@ class Taped:
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), 1, self.start)
         found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
-        ranged = 0 if self.variant.ends is None else 2
-        places = [found[str(k)] for k in range(ranged + len(self.variant.asked))]
-        variant = replace(self.variant, asked=tuple(places[ranged:]))
-        variant = replace(variant, ends=(places[0], places[1])) if ranged else variant
+        first = 0 if self.variant.ends is None else 2
+        last = first + len(self.variant.asked)
+        numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
+        variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
+        variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
         return DriverRanges.of(variant, len(columns), 1, self.start)
 
     def without(self, part: str) -> Taped:
@@ -93,6 +93,12 @@ class Taped:
         return sketch_of(linkage, [kernel.rebind(linkage) for kernel in self.kernels])
 
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
-        same = self.ends is None
-        q = self.driver_range(columns[:1]).at(places)[0] if same else self.driver_range(columns).at(places)
-        return self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+        ranges = self.driver_range(columns[:1] if self.ends is None else columns)
+        q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
+        found = self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+        return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
+
+
+def _ends(variant: Variant) -> tuple[Any, ...]:
+    """Numbers of a variant beside its linkage."""
+    return (*(variant.ends or ()), *variant.asked, *variant.wanted)

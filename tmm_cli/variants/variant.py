@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,8 @@ from tmm_cli.linkage import Linkage, Request, Sketch
 from tmm_cli.tolerances import SAME_SKETCH
 from tmm_cli.vectors import Real
 
+WANTED = "wanted"  # name of what is wanted at places asked about, among the outputs of variants
+
 
 class NoTapeError(ValueError):
     """The stages cannot be written on a tape: iterated groups, friction, several drivers, loads by strokes."""
@@ -25,13 +27,14 @@ class Variant:
     """A linkage, the positions that its file asks for, and where its driver goes.
 
     ends: from and to (rad or m); None: it turns on and on, and all comes round again. asked: places of its driver that
-    a task asks about.
+    a task asks about; wanted: a number for each of them that goes with the variant, as what is wanted there.
     """
 
     linkage: Linkage
     request: Request = field(default_factory=Request)
     ends: tuple[Any, Any] | None = None
     asked: tuple[Any, ...] = ()
+    wanted: tuple[Any, ...] = ()
 
     @property
     def accelerated(self) -> bool:
@@ -73,31 +76,40 @@ class Places:
 @dataclass(frozen=True)
 class DriverRanges:
     """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again; asked:
-    places (variants, n).
+    places, and wanted: a number for each, both (variants, n).
     """
 
     low: Real
     span: Real
     closed: bool
     asked: Real
+    wanted: Real
 
     @classmethod
     def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
         """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
         ones = np.ones((variants, 1))
-        asked = np.hstack([np.zeros((variants, 0)), *(np.reshape(place, (-1, 1)) * ones for place in variant.asked)])
+        none = np.zeros((variants, 0))
+        asked, wanted = (
+            np.hstack([none, *(np.reshape(number, (-1, 1)) * ones for number in own)])
+            for own in (variant.asked, variant.wanted)
+        )
         if variant.ends is None:
             sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
             low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
-            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, asked)
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, asked, wanted)
         low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
-        return cls(low, high - low, False, asked)
+        return cls(low, high - low, False, asked, wanted)
 
     def at(self, places: Places) -> Real:
         """Places of the driver, (variants, places)."""
         fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
         asked = self.asked if places.asked else self.asked[:, :0]
         return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
+
+    def wanted_at(self, places: Places) -> Real:
+        """What is wanted at the places asked about, in their columns of `at`; other columns tell nothing."""
+        return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
 
 
 def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:

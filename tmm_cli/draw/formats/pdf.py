@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -36,11 +37,14 @@ def pdf(*drawings: Drawing) -> bytes:
     return stream.getvalue()
 
 
-def _write(renderer: RendererBase, context: GraphicsContextBase, mark: Text, to_points: Affine2D) -> None:
-    """A text stays text."""
-    start, __ = foot(mark)
-    x, y = to_points.transform((start.real, start.imag))
-    renderer.draw_text(context, x, y, drawable(mark.text), _font(mark), mark.turn)
+def _write(
+    renderer: RendererBase, context: GraphicsContextBase, marks: Sequence[Text], to_points: Affine2D
+) -> None:  # fmt: skip
+    """Texts stay texts."""
+    for mark in marks:
+        start, __ = foot(mark)
+        x, y = to_points.transform((start.real, start.imag))
+        renderer.draw_text(context, x, y, drawable(mark.text), _font(mark), mark.turn)
 
 
 def _font(mark: Text) -> Any:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,36 +29,48 @@ AGG: Any = backend_agg  # matplotlib does not say its types
 def png(drawing: Drawing) -> bytes:
     """On white paper."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
-    renderer = AGG.RendererAgg(width, height, DPI)
+    renderer, told = _paper(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
     pixels[:] = 255
     draw(drawing, renderer, DPI, _write)
-    return _packed(pixels[:, :, :3])
+    return _packed(pixels, told)
 
 
-def _write(renderer: RendererBase, context: GraphicsContextBase, mark: Text, to_pixels: Affine2D) -> None:
-    """A text is filled outlines: its letters stand where their widths say, whatever the pixels are."""
-    start, along = foot(mark)
-    places, codes = outline(mark.text, bold=mark.bold, italic=mark.italic)
-    places = start + mark.size * along * places
+@lru_cache(2)
+def _paper(width: int, height: int) -> tuple[Any, NDArray[Any]]:
+    """A renderer, and room for its picture as it is told in a file: clearing them is quicker than asking for memory."""
+    return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP, np.uint8)
+
+
+def _write(
+    renderer: RendererBase, context: GraphicsContextBase, marks: Sequence[Text], to_pixels: Affine2D
+) -> None:  # fmt: skip
+    """Texts are filled outlines: letters stand where their widths say, whatever the pixels are."""
+    placed, codes = [], []
+    for mark in marks:
+        start, along = foot(mark)
+        places, own = outline(mark.text, bold=mark.bold, italic=mark.italic)
+        placed.append(start + mark.size * along * places)
+        codes.append(own)
+    every = np.concatenate(placed)
     context.set_linewidth(0.0)
     context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
-    path = Path(np.column_stack([places.real, places.imag]), codes)
-    renderer.draw_path(context, path, to_pixels, to_rgb(mark.colour))
+    path = Path(np.column_stack([every.real, every.imag]), np.concatenate(codes))
+    renderer.draw_path(context, path, to_pixels, to_rgb(marks[0].colour))
 
 
-def _packed(pixels: NDArray[Any]) -> bytes:
-    """The file of a picture; with the packing of drawings in mind a third of the time that libraries take."""
+def _packed(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
+    """The file of a picture without its transparency, packed in half the time that libraries take."""
     height, width, __ = pixels.shape
-    lines = pixels.reshape(height, -1)
-    told = np.empty((height, 1 + 3 * width), np.uint8)
-    told[:, 0], told[0, 1:], told[1:, 1:] = UP, lines[0], lines[1:] - lines[:-1]
+    for k in range(3):
+        told[0, 1 + k :: 3] = pixels[0, :, k]
+        np.subtract(pixels[1:, :, k], pixels[:-1, :, k], out=told[1:, 1 + k :: 3])
     per_metre = round(DPI / 0.0254)
     return b"".join((
         b"\x89PNG\r\n\x1a\n",
         _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
         _chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-        _chunk(b"IDAT", zlib.compress(told.tobytes(), PACKED)),
+        _chunk(b"IDAT", zlib.compress(told.data, PACKED)),
         _chunk(b"IEND", b""),
     ))  # fmt: skip
 

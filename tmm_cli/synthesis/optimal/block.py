@@ -34,6 +34,7 @@ from tmm_cli.variants.variant import Variant
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters
+Asked = tuple[tuple[Any, ...], tuple[Any, ...]]  # places of the driver, and what is wanted of a link there
 if TYPE_CHECKING:
     Of = str
 else:
@@ -49,7 +50,9 @@ class Quality(Strict):
     link: Name | None = Field(default=None, description="whose law of motion")
     links: list[Name] = Field(default_factory=list, max_length=100, description="of length: of these alone")
     through: list[Vector] = Field(default_factory=list, max_length=200, description="wanted points of the path")
-    values: list[Value] = Field(default_factory=list, max_length=200, description="wanted angles or runs of the link")
+    values: list[Value] = Field(
+        default_factory=list, max_length=200, description="wanted angles or runs of the link, varied ones too"
+    )
     at: list[Value] = Field(
         default_factory=list, max_length=200, description="angles of the crank for them, varied ones too"
     )
@@ -115,11 +118,11 @@ def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
         for end in (parameter.low, parameter.high):
             files.variant([*middles[:k], end, *middles[k + 1 :]])
     constraints = tuple(
-        _constraint(given, middle, sense, n, files.places(given, ("constraints", n), middles, middle))
+        _constraint(given, middle, sense, n, files.asked(given, ("constraints", n), middles, middle))
         for n, given in enumerate(shape.constraints)
     )
-    places = files.places(shape.objective, ("objective",), middles, middle)
-    objective, target = _quantity(shape.objective, middle, sense, ("objective",), places), shape.objective.target
+    asked = files.asked(shape.objective, ("objective",), middles, middle)
+    objective, target = _quantity(shape.objective, middle, sense, ("objective",), asked), shape.objective.target
     if target is not None:
         target = sense.number(target, KINDS[_kind(objective, middle)].dimension, ("objective", "target"))
     return Task(
@@ -152,18 +155,25 @@ class _Files:
         }
         return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
-    def places(self, given: Quality, path: Path, numbers: Sequence[Any], variant: Variant) -> tuple[Any, ...]:
-        """Those of the driver that a quantity is asked at; they may rest on what varies. Raises ProblemError."""
+    def asked(self, given: Quality, path: Path, numbers: Sequence[Any], variant: Variant) -> Asked:
+        """Places of the driver that a quantity is asked at, and what is wanted of a link there; both may rest on what
+        varies. Raises ProblemError.
+        """
         found, units = self._given(numbers)
-        sense = ValueReader({**self.own, **found}, units)
-        return tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
+        sense, linkage = ValueReader({**self.own, **found}, units), variant.linkage
+        places = tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
+        if not given.values or given.link not in linkage.moving:
+            return places, (0.0,) * len(places)
+        dimension = ANGLE if linkage.output_swings(given.link) else LENGTH
+        return places, tuple(sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values))
 
     def variant(self, numbers: Sequence[Any]) -> Variant:
         """Raises OfTheFile, which tells the numbers that the file is refused with, and ProblemError."""
         try:
             variant = driven(self.plain(numbers), self.over)
-            asked = (self.places(given, path, numbers, variant) for path, given in self.goals)
-            return replace(variant, asked=tuple(chain.from_iterable(asked)))
+            asked = [self.asked(given, path, numbers, variant) for path, given in self.goals]
+            places, wanted = (tuple(chain.from_iterable(part)) for part in zip(*asked, strict=True))
+            return replace(variant, asked=places, wanted=wanted)
         except OfTheFile as error:
             refused, told = copy(error.error), []
             for p, number in zip(self.parameters, numbers, strict=True):
@@ -196,11 +206,9 @@ def _check_mobility(variant: Variant) -> None:
         ) from None  # fmt: skip
 
 
-def _constraint(
-    given: Constraint, variant: Variant, sense: ValueReader, n: int, places: tuple[Any, ...]
-) -> task.Constraint:
+def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int, asked: Asked) -> task.Constraint:
     path: Path = ("constraints", n)
-    quantity = _quantity(given, variant, sense, path, places)
+    quantity = _quantity(given, variant, sense, path, asked)
     dimension = KINDS[_kind(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
@@ -220,8 +228,9 @@ def _kind(quantity: Goal, variant: Variant) -> str:
     return quantity.kind(variant.linkage, mobile(variant.linkage).solved)
 
 
-def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, places: tuple[Any, ...]) -> Goal:
+def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, asked: Asked) -> Goal:
     linkage, kind, name = variant.linkage, QUANTITIES[given.of], ""
+    places, values = asked
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
     for key in given.model_fields_set & others:
         raise ProblemError(
@@ -241,9 +250,7 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, 
     for n, link in enumerate(given.links):
         sense.known(link, linkage.links, (*path, "links", n), "link")
     wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
-    if given.values:
-        dimension = ANGLE if linkage.output_swings(name) else LENGTH
-        wanted = [sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values)]
+    wanted = list(values) if given.values else wanted
     if len(places) != len(wanted) and (places or given.values):
         raise ProblemError(
             _("as many angles as {key} are wanted").format(key=kind.given), path=(*path, "at"),

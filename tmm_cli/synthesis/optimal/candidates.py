@@ -21,7 +21,7 @@ from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
 from tmm_cli.synthesis.optimal.task import Constraint, Task, near
 from tmm_cli.variants.one_by_one import OneByOne, variants_of
 from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.variant import Places, alike, sketch_of
+from tmm_cli.variants.variant import WANTED, Places, alike, sketch_of
 from tmm_cli.vectors import Real
 
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
@@ -127,10 +127,11 @@ class Candidates:
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
 
     def quantity(self, n: int, numbers: Real) -> Goal:
-        """A quantity with its places in the candidate of these numbers (SI), on which they may rest."""
+        """A quantity with its places in the candidate of these numbers (SI), and what it wants of the link there."""
         first, own = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
-        asked = self.task.make(numbers.tolist()).asked[first : first + len(own.places)]
-        return replace(own, places=tuple(map(float, asked)))
+        variant, last = self.task.make(numbers.tolist()), first + len(own.places)
+        own = replace(own, places=tuple(map(float, variant.asked[first:last])))
+        return replace(own, wanted=tuple(map(float, variant.wanted[first:last]))) if own.given == "values" else own
 
     def with_sketch(self, driver: Real) -> Real:
         """Places of the driver, and that of the sketch, where it counts."""
@@ -194,4 +195,4 @@ class Candidates:
 
 def reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
     """Outputs of a quantity by name, at some of the places."""
-    return lambda name: found[f"{n}.{name}"][:, where]
+    return lambda name: found[name if name == WANTED else f"{n}.{name}"][:, where]

@@ -17,6 +17,7 @@ from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.peaks import FIT, SIDE, peak, value
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
+from tmm_cli.variants.variant import WANTED
 from tmm_cli.vectors import Real
 
 AWAY = 1e100  # where a variant cannot be assembled
@@ -92,7 +93,7 @@ class Law(Deviation):
         return {"run": output_place(motion, self.name)}
 
     def deviations(self, read: Read, over: Over) -> Real:
-        off = read("run") - np.array(self.wanted)
+        off = read("run") - read(WANTED)
         off = off - off[:, :1] if self.relative else off
         turned: Real = np.angle(np.exp(1j * off)) if over.swings else off
         return turned
@@ -106,7 +107,7 @@ class Law(Deviation):
     def deviations_on(self, results: Results, ends: Ends) -> Real:
         run = output_place(motion_at(results, np.array(self.places)), self.name)
         over = Over(results.linkage, results.linkage.output_swings(self.name))
-        found: Real = self.deviations(lambda __: run[None, :], over)[0]
+        found: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
         return found
 
 

@@ -1,0 +1,44 @@
+"""`tmm sheets`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from tmm_cli import solve
+from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.reporting import write_sheets
+from tmm_cli.cli.talk import OK, say
+from tmm_cli.draw import remarks
+from tmm_cli.draw.layout.files import files_of_sheets, formats_of
+from tmm_cli.errors import _
+from tmm_cli.results.warnings import warnings
+
+
+def sheets(
+    files: Files,
+    paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Of the paper.")] = "A1",
+    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png: with commas.")] = "pdf",
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    positions: Annotated[
+        Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")
+    ] = "detail",
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+) -> None:
+    """Draw the sheets to hand in, framed and to scale, into DIR/<problem>/."""
+
+    def work(file: str) -> int:
+        wanted = formats_of(formats)
+        problem = opened(file, variant_settings(file, variants, variant, settings))
+        results = solve(problem, "forces")
+        for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
+            say(text)
+        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, every=positions == "all"))
+        return OK
+
+    each(files, work, out=out, headed=False)

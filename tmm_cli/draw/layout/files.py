@@ -1,0 +1,51 @@
+"""Large sheets as files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from importlib.util import find_spec
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.formats import FORMATS, lacking_in
+from tmm_cli.draw.layout.contents import chosen
+from tmm_cli.draw.layout.large import large_sheets
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+
+MOST = 24  # positions of which plans are drawn
+
+
+def formats_of(text: str) -> list[str]:
+    """Formats from their names with commas. Raises ProblemError."""
+    wanted = [part.strip().lower() for part in text.split(",") if part.strip()]
+    for name in wanted or [text]:
+        if name not in FORMATS:
+            raise ProblemError(
+                _("there is no such format of drawings"), found=quote(name), allowed=", ".join(FORMATS),
+                near=nearest(name, FORMATS), file="--as",
+            )  # fmt: skip
+    if "dxf" in wanted and find_spec("ezdxf") is None:
+        raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
+    return wanted
+
+
+def files_of_sheets(
+    results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], *, every: bool
+) -> Iterator[tuple[str, bytes]]:
+    """Every sheet in every format, by the name of its file. Raises ProblemError.
+
+    every: whether motion plans are drawn of all positions.
+    """
+    choice = chosen(results, every=every)
+    if len(choice.plans) > MOST:
+        raise ProblemError(
+            _("plans of so many positions fill no sheet that is read"), found=str(len(choice.plans)),
+            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
+        )  # fmt: skip
+    texts: set[str] = set()
+    for stem, sheet in large_sheets(choice, paper):
+        texts.update(sheet.texts())
+        for name in formats:
+            yield f"{stem}.{name}", FORMATS[name](sheet)
+    for note in lacking_in(texts):
+        say(note)

@@ -1,0 +1,122 @@
+"""The large sheets of a project: drawings made as large as fits, put beside one another, framed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, islice, repeat
+
+from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
+from tmm_cli.draw.layout.packing import Field, Size, pack, spread
+from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
+from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
+
+PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
+EDGE = 6.0  # mm between the frame and what is drawn
+LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
+MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
+NOTABLE = 1.06  # times larger: it is drawn again
+TRIES = 6  # of drawing all as large as it was thought to become
+
+
+@dataclass(frozen=True)
+class LargeSheet(Drawing):
+    """A framed sheet; pictures: what stands on it, each with its lower left corner (mm)."""
+
+    pictures: tuple[tuple[complex, Picture], ...] = ()
+
+
+def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, LargeSheet]]:
+    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b."""
+    problem, size = choice.results.problem, PAPERS[paper]
+    field = field_of(size, problem.title_texts.block)
+    found = [(subject, *_sheet(number, choice, size, field)) for number, subject in enumerate(SUBJECTS)]
+    count = sum(len(pages) for __, ___, pages in found)
+    for number, (subject, pictures, pages) in enumerate(found):
+        for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
+            titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)
+            yield f"sheet-{number}{letter}", framed([pictures[k] for k in page], field, size, titles)
+
+
+def field_of(paper: Size, block: str) -> Field:
+    """What is free for drawings, each with the gap to its right and below it."""
+    low, high = inner(paper)
+    room, taken = high - low - (2 * EDGE - GAP) * (1 + 1j), SIZES[block]
+    return Field(room.real, room.imag, (taken[0] - EDGE + GAP, taken[1] - EDGE + GAP))
+
+
+def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
+    """All drawings of a sheet, and which of them stand on which of its pages."""
+    shrunk = max(paper) / max(PAPERS["A1"])
+    sources = [source for source in CONTENTS if source.sheet == number]
+    parts = [_first(source, choice, shrunk) for source in sources]
+    best: tuple[list[Picture], list[Page]] | None = None
+    for __ in range(TRIES):
+        every = [piece for part in parts for piece in part]
+        rooms, pages = arranged(every, field, shrunk)
+        if best and (len(pages) > len(best[1]) or not _larger(rooms, best[0])):
+            return best
+        wanted = iter(rooms)
+        sized = zip(sources, parts, strict=True)
+        parts = [_again(source, choice, part, [*islice(wanted, len(part))]) for source, part in sized]
+        pictures = [piece.drawn for part in parts for piece in part]
+        sizes = [picture.paper for picture in pictures]
+        if all(pack(spaced(sizes, page), field) is not None for page in pages):
+            best = pictures, pages
+        elif best:
+            return best
+        else:  # what proves larger than thought is not made larger again
+            parts = [[replace(piece, most=min(piece.most, piece.drawn.longest)) for piece in part] for part in parts]
+    return best or (pictures, filled(sizes, field) or [[k] for k in range(len(sizes))])
+
+
+def _larger(rooms: Sequence[float], drawn: Sequence[Picture]) -> bool:
+    """Whether it is worth while to draw all again."""
+    return any(room > NOTABLE * one.longest for room, one in zip(rooms, drawn, strict=True))
+
+
+def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
+    """The drawings of a source as large as usual."""
+    number = len(getattr(choice, source.over)) if source.over else 1
+    usual = source.usual and source.usual * max(SMALLEST, min(1.0, math.sqrt(MANY / max(number, 1))))
+    pictures = _drawn(source, choice, repeat(Space(usual and usual * shrunk)))
+    if usual is None:
+        least, most = LETTERS
+        return [Piece(one, one.longest / shrunk, least * one.longest, most * one.longest) for one in pictures]
+    return [Piece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
+
+
+def _again(source: Source, choice: Choice, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
+    """The same in other rooms, where they are other ones."""
+    if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
+        return pieces
+    pictures = _drawn(source, choice, map(Space, rooms))
+    return [replace(piece, drawn=picture) for piece, picture in zip(pieces, pictures, strict=True)]
+
+
+def _drawn(source: Source, choice: Choice, rooms: Iterable[Space]) -> list[Picture]:
+    """The drawings of a source, each in its room."""
+    every, found = iter(source.drawings(choice)), list[Picture]()
+    for room in rooms:
+        with within(room):
+            drawn = next(every, None)
+        if drawn is None:
+            break
+        if isinstance(drawn[1], Picture):
+            found.append(replace(drawn[1], stem=drawn[0]))
+    return found
+
+
+def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> LargeSheet:
+    """A sheet with these pictures on its field."""
+    sizes = [(picture.paper[0] + GAP, picture.paper[1] + GAP) for picture in pictures]
+    places = spread(pack(sizes, field) or [], sizes, field)
+    low, high = inner(paper)
+    corner = complex(low.real + EDGE, high.imag - EDGE)
+    placed = [(corner + complex(x, -y - one.paper[1]), one) for (x, y), one in zip(places, pictures, strict=True)]
+    marks = [mark for at, one in placed for mark in one.moved(at).marks]
+    block = title_block(titles, complex(high.real, low.imag))
+    return LargeSheet(paper, (*marks, frame(paper), *block), tuple(placed))

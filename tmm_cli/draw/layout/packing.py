@@ -1,0 +1,120 @@
+"""Boxes put beside and below one another on a field, one corner of which is taken; sizes and places in mm."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from random import Random
+
+Size = tuple[float, float]
+MIXED = 12  # orders by chance that are tried too, always the same ones
+
+
+@dataclass(frozen=True)
+class Field:
+    """Width and height; `taken` is what the title block has in the lower right corner."""
+
+    width: float
+    height: float
+    taken: Size = (0.0, 0.0)
+
+    @property
+    def area(self) -> float:
+        """What is free for boxes."""
+        return self.width * self.height - self.taken[0] * self.taken[1]
+
+    def depth(self, start: float, end: float) -> float:
+        """How far down from the upper edge a box between these distances from the left edge may reach."""
+        return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
+
+    def holds(self, at: Size, size: Size) -> bool:
+        """Whether a box fits there; `at`: its upper left corner, from the left and down from the upper edge."""
+        right, low = at[0] + size[0], at[1] + size[1]
+        return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
+
+
+def pack(sizes: Sequence[Size], field: Field) -> list[Size] | None:
+    """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted."""
+    if sum(width * height for width, height in sizes) > field.area:
+        return None
+    turned = Field(field.height, field.width, field.taken[::-1])
+    for order in _orders(sizes):
+        places = _in_order(sizes, order, field)
+        if places is not None:
+            return places
+        places = _in_order([(height, width) for width, height in sizes], order, turned)
+        if places is not None:
+            return [(x, y) for y, x in places]
+    return None
+
+
+def _orders(sizes: Sequence[Size]) -> Iterator[Sequence[int]]:
+    """Orders in which boxes are put down: as they come, then the large ones first."""
+    every = range(len(sizes))
+    yield every
+    keys = (
+        lambda k: -sizes[k][1],
+        lambda k: -sizes[k][0] * sizes[k][1],
+        lambda k: -sizes[k][0],
+        lambda k: -sum(sizes[k]),
+    )
+    for key in keys:
+        yield sorted(every, key=key)
+    mixed = Random(len(sizes))
+    yield from (mixed.sample(every, len(sizes)) for __ in range(MIXED))
+
+
+def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:
+    """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
+    skyline = [(0.0, field.width, 0.0)]  # from, to, down to
+    places = [(0.0, 0.0)] * len(sizes)
+    for k in order:
+        width, height = sizes[k]
+        best: tuple[float, float] | None = None
+        for start, __, ___ in skyline:
+            end = start + width
+            if end > field.width + 1e-9:
+                break
+            top = max(down for left, right, down in skyline if right > start + 1e-9 and left < end - 1e-9)
+            if top + height <= field.depth(start, end) + 1e-9 and (best is None or (top, start) < best):
+                best = top, start
+        if best is None:
+            return None
+        top, start = best
+        places[k] = (start, top)
+        skyline = list(_lowered(skyline, start, start + width, top + height))
+    return places
+
+
+def _lowered(
+    skyline: Sequence[tuple[float, float, float]], start: float, end: float, down: float
+) -> Iterator[tuple[float, float, float]]:
+    """The skyline with a box under which it goes down to here."""
+    for left, right, depth in skyline:
+        if left < start - 1e-9:
+            yield left, min(right, start), depth
+        if left <= start + 1e-9 < right:
+            yield start, end, down
+        if right > end + 1e-9:
+            yield max(left, end), right, depth
+
+
+def spread(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> list[Size]:
+    """The same arrangement with the free room shared out: first across, then down.
+
+    Distances of the corners grow all by one factor, so boxes that did not overlap do not afterwards.
+    """
+    for axis in (0, 1):
+        low, high = 1.0, 4.0
+        while high - low > 1e-4:
+            factor = (low + high) / 2
+            if all(field.holds(_stretched(at, axis, factor), size) for at, size in zip(places, sizes, strict=True)):
+                low = factor
+            else:
+                high = factor
+        places = [_stretched(at, axis, low) for at in places]
+    return list(places)
+
+
+def _stretched(at: Size, axis: int, factor: float) -> Size:
+    return (at[0] * factor, at[1]) if axis == 0 else (at[0], at[1] * factor)

@@ -1,0 +1,113 @@
+"""How large the drawings of a sheet are made: at round scales, in their usual proportion, as large as fits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from tmm_cli.draw.layout.packing import Field, Size, pack
+from tmm_cli.draw.layout.picture import Picture
+from tmm_cli.plans.record import round_scale
+
+GAP = 7.0  # mm between two drawings
+LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
+FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
+STEP = 1.04  # by which a drawing without a scale is made larger
+MOST = 3.0  # of its usual size: nothing is made larger
+SIZES = 60  # that are tried from the largest to the least
+PAGES = 40  # of one sheet at most
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A drawing; the room (mm, its longest side) that is usual for it, the least and the largest."""
+
+    drawn: Picture
+    usual: float
+    least: float = 0.0
+    most: float = math.inf
+
+    @property
+    def length(self) -> float:
+        """The longest side of the figure, SI; none where there is no scale."""
+        return max(self.drawn.figure) * self.drawn.mu if self.drawn.figure and self.drawn.mu else 0.0
+
+    def fitted(self, room: float) -> float:
+        """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
+        return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
+
+    def larger(self, room: float) -> float:
+        """The next room in which it becomes larger."""
+        if not self.length:
+            return STEP * room
+        return next(room * step for step in FINER if step == FINER[-1] or self.fitted(room * step) > 0.99 * room * step)
+
+    def size(self, room: float) -> Size:
+        """Its size (mm) in another room: letters stay as large as they are."""
+        (width, height), figure, factor = self.drawn.paper, self.drawn.figure, room / (self.drawn.longest or 1.0)
+        if figure is None:
+            return width * factor, height * factor
+        return width + (factor - 1) * figure[0], height + (factor - 1) * figure[1]
+
+
+Page = list[int]  # numbers of pieces
+
+
+def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[float], list[Page]]:
+    """A room for each piece, and which pieces stand on which page.
+
+    shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size.
+    """
+    few, found = PAGES, None
+    for share in shares():
+        rooms = [piece.fitted(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
+        pages = filled([piece.size(room) for piece, room in zip(pieces, rooms, strict=True)], field)
+        if pages is not None and len(pages) < few:
+            few, found = len(pages), (rooms, pages)
+        if found is not None and share * shrunk**0.5 < LEAST:
+            break
+    if found is None:
+        raise ValueError("a drawing is larger than the sheet at its least size")
+    rooms, pages = found
+    for page in pages:
+        grow(pieces, rooms, page, field, MOST * shrunk)
+    return rooms, pages
+
+
+def shares() -> Iterator[float]:
+    """Of the usual size, from what is more to what is hardly legible."""
+    yield from (1.3 * 0.95**k for k in range(SIZES))
+
+
+def spaced(sizes: Sequence[Size], page: Page) -> list[Size]:
+    """Sizes of these pieces with the gap that each has to its right and below it."""
+    return [(sizes[k][0] + GAP, sizes[k][1] + GAP) for k in page]
+
+
+def filled(sizes: Sequence[Size], field: Field) -> list[Page] | None:
+    """Pages filled one after the other; None where a piece alone does not fit."""
+    pages: list[Page] = []
+    for number in range(len(sizes)):
+        if pages and pack(spaced(sizes, [*pages[-1], number]), field) is not None:
+            pages[-1].append(number)
+        elif pack(spaced(sizes, [number]), field) is not None:
+            pages.append([number])
+        else:
+            return None
+    return pages
+
+
+def grow(pieces: Sequence[Piece], rooms: list[float], page: Page, field: Field, most: float) -> None:
+    """Make pieces of a page larger, those first that are farthest below their usual size, while all fit."""
+    growing = set(page)
+    while growing:
+        number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
+        before, rooms[number] = rooms[number], pieces[number].larger(rooms[number])
+        sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
+        if (
+            rooms[number] > min(most * pieces[number].usual, pieces[number].most * (1 + 1e-9))
+            or pack(spaced(sizes, page), field) is None
+        ):
+            rooms[number] = before
+            growing.discard(number)

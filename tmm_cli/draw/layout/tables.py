@@ -1,0 +1,62 @@
+"""Tables as drawings: words and numbers in ruled cells, folded into parts beside one another where they are long."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+from tmm_cli.draw.drawing import Line, Mark, Text
+from tmm_cli.draw.fonts import width
+from tmm_cli.draw.layout.picture import Picture, longest_for, picture
+from tmm_cli.draw.layout.writing import DARK, cut
+
+SIZE = 3.2  # mm: letters of a table as it comes
+BOLD, FINE = 0.5, 0.2  # mm: lines
+AIR, ROW = 1.4, 1.7  # of the size: room beside a text, height of a row
+FOLDED = 28  # rows, beyond which a table goes on beside itself
+APART = 3.0  # of the size, between two parts
+WIDEST = 24.0  # of the size: a longer text is cut
+
+
+def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> Picture:
+    """A table, its letters as large as the room lets them be."""
+    cells = [[cut(text, 1.0, WIDEST) for text in row] for row in (heads, *rows)]
+    columns = [max(width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
+    parts = max(math.ceil(len(rows) / FOLDED), 1)
+    most = math.ceil(len(rows) / parts)
+    step = sum(columns) + APART
+    across, up = parts * step - APART, ROW * (most + 1)
+    longest = longest_for(SIZE * max(across, up))
+    size = longest / max(across, up)
+    marks: list[Mark] = []
+    for part in range(parts):
+        here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
+        marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
+    return picture(marks, title, longest, notes=notes)
+
+
+def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float) -> list[Mark]:
+    """Rows below one another, the heads first; words begin at the left, numbers end at the right."""
+    row, wide = ROW * size, sum(columns)
+    edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
+    high = [-row * k for k in range(len(cells) + 1)]
+    marks: list[Mark] = [
+        Line((1j * y, wide + 1j * y), DARK, BOLD if k in (0, 1, len(cells)) else FINE, layer="text")
+        for k, y in enumerate(high)
+    ]
+    marks += [
+        Line((complex(x, high[-1]), complex(x, 0)), DARK, BOLD if x in (0.0, edges[-1]) else FINE, layer="text")
+        for x in edges
+    ]
+    for k, (start, end) in enumerate(pairwise(edges)):
+        numbers = all(_number(line[k]) for line in cells[1:])
+        for line, y in zip(cells, high, strict=False):
+            if line[k]:
+                at = complex(end - AIR / 2 * size if numbers else start + AIR / 2 * size, y - row / 2)
+                marks.append(Text(at, line[k], size, DARK, "right" if numbers else "left"))
+    return marks
+
+
+def _number(text: str) -> bool:
+    return not text or text == "-" or text.lstrip("+-−")[:1].isdigit()

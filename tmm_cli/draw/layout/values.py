@@ -1,0 +1,143 @@
+"""Tables of values on large sheets: structure, motion in all positions, forces of a position."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.layout.tables import table
+from tmm_cli.draw.mechanism import Position, place_of_driver
+from tmm_cli.errors import _
+from tmm_cli.plans.record import balance_name, reaction_name, subscript
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    SPEED,
+    Dimension,
+)  # fmt: skip
+from tmm_cli.results.reports import walk
+from tmm_cli.tolerances import NO_FORCE
+
+FIGURES = 4  # of each number
+NOTHING = 1e-9  # of the largest number of a column: less is written as zero
+BESIDE = 8  # quantities beside one another in a table
+POSITIONS = 36  # rows of a table at most: of more positions only some have one
+
+
+def structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """Links and kinematic pairs."""
+    for found in walk(results, ("links", "pairs")):
+        rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
+        yield f"table-{found.name}", table(found.title, [column.header for column in found.columns], rows)
+
+
+def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """Speeds, then accelerations, of all points and links in all positions."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    points = {name: motion.named(name) for name in linkage.moving_points}
+    links = {name: motion.link(name) for name in linkage.moving}
+    speeds = [(f"v{_index(name)}", np.abs(point.v), SPEED) for name, point in points.items()]
+    speeds += [(f"ω{_index(name)}", link.omega, ANGULAR_SPEED) for name, link in links.items()]
+    more = [(f"a{_index(name)}", np.abs(point.a), ACCELERATION) for name, point in points.items()]
+    more += [(f"ε{_index(name)}", link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
+    for stem, title, every in (
+        ("speeds", _("Speeds of points, angular speeds of links"), speeds),
+        ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
+    ):
+        moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
+        for start in range(0, len(moving), BESIDE):
+            yield f"table-{stem}", _over_positions(results, title, moving[start : start + BESIDE])
+
+
+def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """What balances the drivers in all positions, by both ways."""
+    reactions, lever = results.reactions, results.lever
+    if reactions is None or lever is None:
+        return
+    several = len(reactions.balances) > 1
+    columns = []
+    for balance in reactions.balances:
+        turns = balance.moment is not None if several else balance.kind == "moment"
+        name = balance_name(balance.driver.link, several, turns=turns)
+        values = balance.generalized if several or turns else balance.force
+        columns.append((name, values, MOMENT if turns else FORCE))
+    if not several:
+        name, __, dimension = columns[0]
+        checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
+        columns.append((_("{name} by the lever").format(name=name), checked, dimension))
+    yield "table-balance", _over_positions(results, _("What balances the driver"), columns)
+
+
+def _over_positions(results: Results, title: str, columns: Sequence[tuple[str, Any, Dimension]]) -> Drawing:
+    """A row a position, angles of the driver first."""
+    units, motion = results.problem.units, results.motion
+    assert motion is not None
+    crank = results.linkage.driver.kind == "turn"
+    place = (_("φ"), np.mod(motion.q, 2 * np.pi), ANGLE) if crank else (_("s"), motion.q, LENGTH)
+    every = [place, *columns]
+    heads = [_("No."), *(f"{name}, {units.symbol(dimension)}" for name, __, dimension in every)]
+    chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
+    cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
+    rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
+    return table(title, heads, rows)
+
+
+def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
+    """Sizes of all forces with their angles from x, and moments, at a position."""
+    results, k = here.results, here.k
+    reactions, units = results.reactions, results.problem.units
+    if reactions is None:
+        return
+    forces = [(load.name, complex(load.force[k])) for load in reactions.applied if load.has_force]
+    forces += [(reaction_name(r.by, r.on), complex(r.force[k])) for r in reactions.all]
+    moments = [(load.couple_name or load.name, float(load.moment[k])) for load in reactions.applied if load.has_moment]
+    several = len(reactions.balances) > 1
+    for balance in reactions.balances:
+        turns = balance.kind == "moment" and balance.moment is not None
+        name = balance_name(balance.driver.link, several, turns=turns)
+        if turns:
+            moments.append((name, float(balance.generalized[k])))
+        else:
+            forces.append((name, complex(balance.vector[k])))
+    largest = max((abs(force) for __, force in forces), default=0.0)
+    rows = [[name, *_polar(force, largest, units), ""] for name, force in forces]
+    rows += [[name, "", "", f"{units.from_si(moment, MOMENT):.{FIGURES}g}"] for name, moment in moments]
+    heads = [_("force or moment"), _("size, {unit}").format(unit=units.symbol(FORCE)), _("angle from x, °"),
+             _("moment, {unit}").format(unit=units.symbol(MOMENT))]  # fmt: skip
+    place = place_of_driver(results, float(here.motion.q[k]))
+    title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
+    notes = [_("R with the indices of two links: from the first one on the second")]
+    yield here.stem("table-forces"), table(title, heads, rows, notes)
+
+
+def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
+    """Size, and angle within a turn; a force that is only rounding has none."""
+    if not abs(force) > NO_FORCE * largest:
+        return "0", "-"
+    angle = math.degrees(math.atan2(force.imag, force.real)) % 360
+    return f"{units.from_si(abs(force), FORCE):.{FIGURES}g}", f"{angle:.1f}"
+
+
+def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
+    """Values (SI) in the units of the file; a dash where there is none."""
+    shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
+    least = NOTHING * np.max(np.abs(shown), where=np.isfinite(shown), initial=0.0)
+    picked = [float(shown[k if len(shown) > 1 else 0]) for k in rows]
+    return ["-" if not math.isfinite(v) else f"{v if abs(v) > least else 0.0:.{FIGURES}g}" for v in picked]
+
+
+def _index(name: str) -> str:
+    """A name as an index: figures below the line, other names after an underscore."""
+    return subscript(name) if name.isdecimal() and name.isascii() else f"_{name}"

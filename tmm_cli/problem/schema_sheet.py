@@ -1,0 +1,35 @@
+"""The shape of the block `sheet`: what the title block of a drawn sheet says, and what it looks like."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from tmm_cli.problem.schema_parts import NAMES, Strict
+
+LONGEST = 200
+
+
+def _words(found: Any) -> str:
+    """A line of text; the number of a group may be written as a number."""
+    if isinstance(found, bool) or not isinstance(found, int | str):
+        raise PydanticCustomError("words", "text is wanted")
+    if len(str(found)) > LONGEST:
+        raise PydanticCustomError("words", f"text is at most {LONGEST} characters long")
+    return str(found)
+
+
+Words = Annotated[str, BeforeValidator(_words), WithJsonSchema({"anyOf": NAMES})]
+
+
+class SheetTexts(Strict):
+    """Texts of the title block. One that is too long for its cell is cut there."""
+
+    student: Words = Field(default="", description="who drew it")
+    group: Words = Field(default="", description="the student's group")
+    teacher: Words = Field(default="", description="who checks it")
+    department: Words = Field(default="", description="the university and its department")
+    code: Words = Field(default="", description="designation of the project; the number of the sheet is added to it")
+    block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")
