@@ -23,7 +23,6 @@ TOP = {
     "linkage",
     "vectors",
     "roots",
-    "double_double",
     "errors",
     "tolerances",
     "quantities",
@@ -32,7 +31,10 @@ NUMERIC = (  # from below; folders of one floor may know one another
     ("structure",), ("pairs", "groups"), ("assembly",), ("kinematics",), ("forces", "plans"), ("dynamics",),
     ("analysis",), ("tape", "variants"), ("schemes", "synthesis"), ("accuracy",),
 )  # fmt: skip
-FLOORS = (("top", "words"), *NUMERIC, ("results",), ("door",), ("draw", "note", "grading", "bench"), ("cli",))
+FLOORS = (
+    ("top", "double_double", "words"), *NUMERIC, ("results",), ("door",), ("draw", "note", "grading", "bench"),
+    ("cli",),
+)  # fmt: skip
 FLOOR = {folder: number for number, folders in enumerate(FLOORS) for folder in folders}
 # what turns a problem with a task into one with lengths, and what shows a problem
 KNOW_PROBLEMS = ("results", "door", "draw", "note", "grading", "bench", "cli")

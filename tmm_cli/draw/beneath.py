@@ -118,7 +118,7 @@ def above(
     millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
-
+    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     if on_large_sheet():
         return _sheet(name, subject, places, _beside_others(places, beneath)), None
 
@@ -126,7 +126,6 @@ def above(
         return replace(beneath(mu), aside=True)
 
     low, high = ground_of(PORTRAIT)
-    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     alone = _best(places, lambda mu: Beneath())
     best = _best(places, beneath, with_tables_aside)
     if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:

@@ -50,17 +50,17 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED, rods
     low, high = foot - half * side, foot + half * side
     with sheet.on_layer("supports"):
         sheet.area([at, low, high], "white", DARK, 1.0, 2.6)
-    _wall(sheet, foot, side, out, GROUND * half, rods)
+    wall(sheet, foot, side, out, GROUND * half, rods)
     return foot + GROUND * half * side
 
 
 def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[Line]) -> None:
     """A piece of the frame's guide about a box: hatched rails, open where rods go through."""
     for side in (1j * along, -1j * along):
-        _wall(sheet, at + side * (look.box[1] / 2 + GAP), along, side, look.box[0] / 2 + BEYOND, rods)
+        wall(sheet, at + side * (look.box[1] / 2 + GAP), along, side, look.box[0] / 2 + BEYOND, rods)
 
 
-def _wall(sheet: Sheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Line]) -> None:
+def wall(sheet: Sheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Line]) -> None:
     """A line with hatching on its outer side, open where rods go through."""
     for low, high in free_runs(-reach, reach, _all_covered(rods, middle, along, out)):
         start, end = middle + low * along, middle + high * along

@@ -12,10 +12,11 @@ from itertools import pairwise
 import numpy as np
 
 from tmm_cli.draw.actuators import Cylinder, cylinders
+from tmm_cli.draw.hull import outline
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, apart
 from tmm_cli.draw.sheet import Sheet, border
 from tmm_cli.draw.wheels import bars as follower_bars
-from tmm_cli.draw.wheels import outline as outline_of
+from tmm_cli.draw.wheels import outline as shape_of
 from tmm_cli.linkage import Slide
 from tmm_cli.vectors import cross, dot
 
@@ -156,8 +157,25 @@ def _bar(bars: list[Bar], at: complex, along: complex) -> Bar:
     return same
 
 
+def _lay(bars: list[Bar], start: complex, end: complex) -> None:
+    """A bar between two places (mm), or the one on their line made to reach them."""
+    if abs(end - start) > ON_LINE:
+        bar = _bar(bars, start, (end - start) / abs(end - start))
+        bar.take(start)
+        bar.take(end)
+
+
 def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar]) -> Form:
     """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
+    driven, boxes = cylinders(scene.linkage), []
+    for pair in scene.of(link):
+        if pair.slide is not None and pair.name in driven:
+            _lay(bars, *Cylinder.of(sheet, scene, pair.slide).part(link))
+        elif pair.slide is not None and pair.slide.runner == link:
+            boxes.append(sheet.on(scene.at(pair)))
+    for mesh in scene.linkage.meshes:
+        for start, end in follower_bars(shape_of(scene, mesh), link):
+            _lay(bars, sheet.on(start), sheet.on(end))
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]
         for place in bar.holds:
@@ -178,15 +196,6 @@ def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], ba
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
     hull = _flat(outline(loose)) if len(loose) > 1 else ()
-    driven = cylinders(scene.linkage)
-    boxes = []
-    for pair in scene.of(link):
-        if pair.slide is not None and pair.name in driven:
-            struts.append(Cylinder.of(sheet, scene, pair.slide).part(link))
-        elif pair.slide is not None and pair.slide.runner == link:
-            boxes.append(sheet.on(scene.at(pair)))
-    for mesh in scene.linkage.meshes:
-        struts += [(sheet.on(start), sheet.on(end)) for start, end in follower_bars(outline_of(scene, mesh), link)]
     return Form(joints, boxes, hull, bars, struts, welds)
 
 
@@ -229,21 +238,3 @@ def _join(
                 return
     start, end = min(((p, q) for p in bar.tips for other in others for q in other.tips), key=lambda w: abs(w[1] - w[0]))
     struts.append((start, end))
-
-
-def outline(places: list[complex]) -> list[complex]:
-    """The convex hull; the two ends when all lie on a line."""
-    places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
-    if len(places) < 3:
-        return places or [complex(np.nan, np.nan)]
-    ordered = sorted(places, key=lambda p: (p.real, p.imag))
-
-    def half(points: list[complex]) -> list[complex]:
-        chain: list[complex] = []
-        for p in points:
-            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (p - chain[-1])).imag <= 1e-3:
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    return half(ordered) + half(ordered[::-1])

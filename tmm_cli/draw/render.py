@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.draw.actuators import Cylinder, cylinders, driver_name, springs
-from tmm_cli.draw.fixed import guide, support, support_side
+from tmm_cli.draw.fixed import guide, support, support_side, wall
 from tmm_cli.draw.forms import Form, Line, by_pairs, by_points
 from tmm_cli.draw.labels import gathered
 from tmm_cli.draw.rigid import rigid
 from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene, spread
-from tmm_cli.draw.sheet import DARK, THIN, Sheet, border, hatch
+from tmm_cli.draw.sheet import DARK, THIN, Sheet, border
 from tmm_cli.draw.symbols import STRUCTURAL, Look, body, box, sliding_arrow, turning_arrow
 from tmm_cli.draw.wheel_symbols import CHAIN
 from tmm_cli.draw.wheel_symbols import draw as draw_wheels
@@ -76,7 +76,7 @@ def _render(
             found.draw(sheet, hue)
             drawn.cylinders[pair.name] = (found.back + found.front) / 2
         else:
-            slider(sheet, scene, pair, look, hue[pair.slide.runner])
+            slider(sheet, scene, pair, look, hue[pair.slide.runner], rods)
     if look.measured:
         springs(sheet, scene)
     hinges = gathered((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
@@ -126,7 +126,7 @@ def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str
             sheet.note(_("disk of cam {link}: not to scale, its law alone is given").format(link=found.mesh.i))
 
 
-def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str) -> None:
+def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str, rods: Sequence[Line] = ()) -> None:
     """The box of a sliding pair, hatched where it is the frame."""
     slide = pair.slide
     assert slide is not None
@@ -137,8 +137,7 @@ def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str) -> N
     box(sheet, at, along, colour, size, look)
     if slide.runner == FRAME:
         for side in (1j * along, -1j * along):
-            edge, half = at + side * size[1] / 2, along * size[0] / 2
-            hatch(sheet, edge - half, edge + half, side)
+            wall(sheet, at + side * size[1] / 2, along, side, size[0] / 2, rods)
         if not look.measured:
             sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
 
