@@ -21,9 +21,10 @@ from tmm_cli.draw.fonts import corners
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.dxf import plain
 from tmm_cli.draw.layout.contents import chosen
-from tmm_cli.draw.layout.large import PAPERS, field_of, large_sheets
+from tmm_cli.draw.layout.files import files_of_sheets
+from tmm_cli.draw.layout.large import PAPERS, field_of, framed, large_sheets
 from tmm_cli.draw.layout.packing import Field, pack, spread
-from tmm_cli.draw.layout.title_block import SIZES, inner
+from tmm_cli.draw.layout.title_block import SIZES, Titles, inner
 from tmm_cli.draw.layout.writing import cut, wrap
 from tmm_cli.draw.mechanism import detailed
 from tmm_cli.draw.scene import Scene
@@ -140,7 +141,8 @@ def dxf_places(data):
 def test_a_named_segment_measures_what_its_scale_says(name, kind, places_of):
     results = solved(name)
     sheet = drawn(name)["sheet-1"]
-    places = places_of(FORMATS[kind](sheet))
+    lines = Drawing(sheet.paper, tuple(mark for mark in sheet.marks if not isinstance(mark, Text)))  # letters cost time
+    places = places_of(FORMATS[kind](lines))
     ((at, picture),) = [(at, one) for at, one in sheet.pictures if one.stem == "mechanism"]
     high = at + complex(*picture.paper)
     places = places[(places.real > at.real) & (places.real < high.real)]
@@ -163,16 +165,16 @@ HOSTILE = {
 def test_texts_of_the_title_block_stay_in_it_whatever_they_are(block):
     texts = ", ".join(f"{key}: {value!r}" for key, value in HOSTILE.items())
     text = SHAPER.read_text(encoding="utf-8") + f"sheet: {{{texts}, block: {block}}}\n"
-    results = solve(build(read_text(text, "x.yaml")))
-    (__, sheet), *___ = large_sheets(chosen(results, every=False), "A3")
+    problem = build(read_text(text, "x.yaml"))
+    titles = Titles(problem.title_texts, "$x$ " * 50, "Forces", "2b", 7)
+    sheet = framed([], field_of(PAPERS["A3"], block), PAPERS["A3"], titles)
     __, high = inner(sheet.paper)
     low = complex(high.real - SIZES[block][0], 5)
     end = complex(high.real, 5 + SIZES[block][1])
     written = [corners(mark) for mark in sheet.marks if isinstance(mark, Text) and _within(mark.at, low, end)]
     assert len(written) > 8
     assert all(_within(corner, low - 0.01, end + 0.01) for one in written for corner in one)
-    for kind in FORMATS:
-        assert FORMATS[kind](Drawing(sheet.paper, tuple(m for m in sheet.marks if isinstance(m, Text))))
+    assert all(FORMATS[kind](sheet) for kind in FORMATS)
 
 
 def _within(place, low, high):
@@ -216,13 +218,13 @@ def test_a_dxf_has_layers_millimetres_and_cyrillic_letters_and_no_errors():
 
 
 def test_the_command_writes_a_file_a_sheet_and_format(tmp_path):
-    done = tmm("sheets", SHAPER, "--format", "A2", "--as", "pdf,dxf", "-o", tmp_path)
+    done = tmm("sheets", SHAPER, "--format", "A2", "--as", "svg,dxf", "-o", tmp_path)
     assert done.returncode == 0, done.stderr
-    stems = {path.stem for path in (tmp_path / "shaper").iterdir()}
-    assert {"sheet-0", "sheet-1", "sheet-2"} <= stems
-    (tmp_path / "shaper" / "sheet-9.pdf").write_bytes(b"of an earlier run")
-    assert tmm("sheets", SHAPER, "-o", tmp_path).returncode == 0
-    assert not (tmp_path / "shaper" / "sheet-9.pdf").exists() and (tmp_path / "shaper" / "sheet-0.dxf").exists()
+    written = {path.name for path in (tmp_path / "shaper").iterdir()}
+    assert {"sheet-0.dxf", "sheet-1.dxf", "sheet-2.dxf", "sheet-0.svg"} <= written
+    (tmp_path / "shaper" / "sheet-9.svg").write_bytes(b"of an earlier run")
+    assert tmm("sheets", SHAPER, "--as", "svg", "-o", tmp_path).returncode == 0
+    assert not (tmp_path / "shaper" / "sheet-9.svg").exists() and (tmp_path / "shaper" / "sheet-0.dxf").exists()
 
 
 def test_an_unknown_format_and_a_missing_library_are_said_in_a_line(tmp_path, monkeypatch):
@@ -243,3 +245,11 @@ def test_plans_of_all_positions_go_on_on_further_sheets():
     assert not [
         mark for sheet in pages.values() for mark in sheet.marks if isinstance(mark, Circle) and mark.radius < 0
     ]
+
+
+def test_a_pdf_has_a_page_for_every_sheet():
+    written = dict(files_of_sheets(solved("crank-rocker"), "A3", ["pdf"], lambda note: None, every=False))
+    pages = PdfReader(io.BytesIO(written["sheets.pdf"])).pages
+    assert len(pages) == len(drawn("crank-rocker", "A3"))
+    assert [float(side) * 25.4 / 72 for side in pages[0].mediabox[2:]] == pytest.approx([420, 297], abs=1e-3)
+    assert [f"Sheet {number}" in page.extract_text() for number, page in enumerate(pages[:1])] == [True]

@@ -5,9 +5,9 @@ Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.Proble
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import cache
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from tmm_cli.analysis import pipeline
@@ -71,9 +71,22 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 
 def inputs_of(problem: Problem) -> Inputs:
     """What the stages need of a problem."""
-    again = problem.extended
-    extended = None if again is None else cache(lambda: inputs_of(again()))
+    extended = None if problem.extended is None else ExtendedInputs(problem.extended)
     return Inputs(problem.linkage, problem.request, problem.pressure_limits, problem.lever_limit, extended)
+
+
+@dataclass(frozen=True)
+class ExtendedInputs:
+    """The same as double-doubles, made when first asked for; a class, so that results can go to other processes."""
+
+    problem: Callable[[], Problem]
+
+    def __call__(self) -> Inputs:
+        return self._made
+
+    @cached_property
+    def _made(self) -> Inputs:
+        return inputs_of(self.problem())
 
 
 def count(problem: ChainProblem) -> ChainResults:

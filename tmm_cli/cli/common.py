@@ -11,7 +11,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
-from rich.progress import track
+from rich.progress import Progress, track
 
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.errors import _
@@ -111,6 +111,11 @@ def progress(files: Sequence[Any]) -> Iterable[Any]:
     if len(files) < 2:
         return files
     return track(files, description="", console=Console(stderr=True), transient=True)
+
+
+def bars(quiet: bool = False) -> Progress:
+    """Progress on a terminal; elsewhere, or when quiet, nothing."""
+    return Progress(console=Console(stderr=True), transient=True, disable=quiet or not sys.stderr.isatty())
 
 
 def emit_json(content: dict[str, Any]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,10 +11,8 @@ from types import FrameType
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import Progress
 
-from tmm_cli.cli.common import console, refusing
+from tmm_cli.cli.common import bars, console, refusing
 from tmm_cli.cli.opening import introduce
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
 from tmm_cli.errors import _
@@ -88,16 +85,16 @@ def _graded(
     table = read_table(variants, task)
     jobs = jobs or os.cpu_count() or 1
     way = cluster(scheduler) if scheduler else processes(jobs)
-    with _bars() as bars, _stoppable() as stopped:
-        reading = bars.add_task(_("read"), total=len(table.rows))
+    with bars() as shown, _stoppable() as stopped:
+        reading = shown.add_task(_("read"), total=len(table.rows))
         handed = []
         for one in read_submissions(submissions, task, table.rows):
             handed.append(one)
-            bars.advance(reading)
+            shown.advance(reading)
         place = {student: n for n, student in enumerate(table.rows)}
         handed.sort(key=lambda one: place.get(one.student, len(place)))
-        grading = bars.add_task(_("graded"), total=len(handed))
-        marks = graded(task, table, handed, way, out / KEPT, lambda count: bars.advance(grading, count), stopped)
+        grading = shown.add_task(_("graded"), total=len(handed))
+        marks = graded(task, table, handed, way, out / KEPT, lambda count: shown.advance(grading, count), stopped)
     if len(marks) < len(handed):
         told = _("stopped: {done} of {count} are graded; the next run takes them over, and grades the others")
         say(told.format(done=len(marks), count=len(handed)))
@@ -118,11 +115,6 @@ def _chosen(formats: str | None, known: list[str]) -> list[str]:
                 near=nearest(name, known),
             )  # fmt: skip
     return found
-
-
-def _bars() -> Progress:
-    """Progress on a terminal; elsewhere nothing."""
-    return Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty())
 
 
 @contextmanager

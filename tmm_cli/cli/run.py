@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -38,9 +39,10 @@ def run(
         results = computed(file, "forces", position, settings=own, digits=digits, drawings=drawings)
         pictures: Iterable[tuple[str, bytes]] | None = None
         if drawings and not isinstance(results, ChainResults):
+            from tmm_cli.cli.drawing import by_all_cores
             from tmm_cli.draw import files as drawn
 
-            pictures = drawn(results, say)
+            pictures = drawn(results, say, partial(by_all_cores, quiet=len(files) > 1))
         found = bounds_of(results, digits)
         written = write_results(results, out, pictures, found)
         if as_json:

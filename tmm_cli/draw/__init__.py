@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import math
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from itertools import chain
 
 from tmm_cli.analysis.in_detail import balancing, chosen_here, in_detail
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.force_plans import forces
-from tmm_cli.draw.formats import Drawn
-from tmm_cli.draw.formats import files as every_format
+from tmm_cli.draw.formats import Drawn, Way, here, in_parts
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.groups import groups
 from tmm_cli.draw.lever import lever
-from tmm_cli.draw.mechanism import detailed, position
+from tmm_cli.draw.mechanism import Position, position
 from tmm_cli.draw.motion_plans import motion_plans
 from tmm_cli.draw.positions import all_positions
 from tmm_cli.draw.structure import at_sketch, scheme
@@ -21,9 +23,30 @@ from tmm_cli.draw.synthesis import synthesised
 from tmm_cli.errors import _
 from tmm_cli.quantities import FORCE, MOMENT
 
+OF_POSITION = (position, motion_plans, group_loads, forces, lever)
+MOST_PARTS = 32  # of the positions in detail, each of which takes the results to another process
+
+Part = Callable[[], Drawn]  # may be pickled
+
 
 def sheets(results: Results) -> Drawn:
     """Every sheet with its file's stem: those of the structure, of the cycle, then of each position in detail."""
+    return chain.from_iterable(part() for part in parts(results))
+
+
+def parts(results: Results) -> list[Part]:
+    """All sheets in parts that can be drawn apart, in their order."""
+    if results.motion is None:
+        return [partial(_of_mechanism, results)]
+    chosen = in_detail(results)
+    size = math.ceil(len(chosen) / MOST_PARTS) or 1
+    of_positions = [
+        partial(_of_positions, results, chosen[first : first + size]) for first in range(0, len(chosen), size)
+    ]
+    return [partial(_of_mechanism, results), *of_positions]
+
+
+def _of_mechanism(results: Results) -> Drawn:
     found = at_sketch(results)
     if found is not None:
         yield "structure", scheme(results.problem.title, *found).finish()
@@ -34,16 +57,22 @@ def sheets(results: Results) -> Drawn:
     if bool(results.motion.placed.any()):
         yield from all_positions(results)
         yield from diagrams(results)
-    for here in detailed(results):
-        for sheets_of in (position, motion_plans, group_loads, forces, lever):
-            yield from sheets_of(here)
 
 
-def files(results: Results, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format; say: where a note on them goes."""
+def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:
+    assert results.motion is not None
+    for k in chosen:
+        for sheets_of in OF_POSITION:
+            yield from sheets_of(Position(results, results.motion, k))
+
+
+def files(
+    results: Results, say: Callable[[str], None] = lambda note: None, way: Way = here
+) -> Iterable[tuple[str, bytes]]:
+    """Every sheet in every format of a run; say: where a note on them goes; way: who draws."""
     for remark in remarks(results):
         say(remark)
-    yield from every_format(sheets(results), say)
+    yield from in_parts(parts(results), say, way)
 
 
 def remarks(results: Results) -> Iterable[str]:

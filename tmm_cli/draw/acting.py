@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.draw.annotations import beside, dimension
 from tmm_cli.draw.drawing import Style
-from tmm_cli.draw.labels import STEP
+from tmm_cli.draw.ground import STEP
 from tmm_cli.draw.mechanism import LOAD_MM, couple
 from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, Sheet
@@ -21,6 +21,7 @@ ARM = "#00757d"
 ALIKE, LONGER = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
 NEAR, RIGHT = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
 LEAST, ON_BAR, COVERED = 5.0, 0.6, 0.6  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
+SEEN = 1.5  # mm: a shorter arm is only in the table
 RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 
 
@@ -78,6 +79,7 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
     One that would lie on a link stands beside it as a dimension. links: points (mm) that stand for them.
     """
     drawn: set[int] = set()
+    beside_links: list[tuple[complex, complex, str]] = []
     for equation in equations:
         centre = sheet.on(equation.centre)
         feet: list[complex] = []
@@ -86,10 +88,12 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
                 continue
             drawn.add(term.number)
             at, foot = sheet.on(term.acting.at), sheet.on(term.foot)
-            sheet.line([at, foot], ARM, 0.45, "--", 1.6)
+            sheet.line([at, foot], ARM, 0.45, "--", 1.6, faint=True)
             length = abs(foot - centre)
+            if length < SEEN:
+                continue
             if length > LEAST and beside(links, centre, foot, ON_BAR) > COVERED * length / STEP:
-                dimension(sheet, centre, foot, term.letter.name)
+                beside_links.append((centre, foot, term.letter.name))
                 continue
             sheet.line([centre, foot], ARM, 0.7, z=4.6)
             # arms in one line share its beginning: each letter stands at the part that no shorter one has
@@ -100,6 +104,8 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
             feet.append(foot)
             if length > LEAST:
                 _right_angle(sheet, foot, way, at)
+    for centre, foot, name in beside_links:  # now that all is drawn that they keep off
+        dimension(sheet, centre, foot, name)
 
 
 def _right_angle(sheet: Sheet, foot: complex, way: complex, at: complex) -> None:
@@ -107,4 +113,4 @@ def _right_angle(sheet: Sheet, foot: complex, way: complex, at: complex) -> None
     back, side = -RIGHT * way, RIGHT * 1j * way
     if dot(side, at - foot) < 0:
         side = -side
-    sheet.line([foot + back, foot + back + side, foot + side], ARM, 0.45, z=4.6, blocks=False)
+    sheet.line([foot + back, foot + back + side, foot + side], ARM, 0.45, z=4.6)

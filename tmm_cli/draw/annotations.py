@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.draw.labels import aside, extent, row
+from tmm_cli.draw.boxes import around, aside, row
+from tmm_cli.draw.labels import extent
 from tmm_cli.draw.sheet import DARK, NAMES, THIN, Sheet
 from tmm_cli.vectors import Vector, cross, dot
 
@@ -13,6 +14,8 @@ OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, 
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
+AT_HEAD = 0.25  # of the price of what a text covers: of what is near a head
+UNWISHED = {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}  # price of where a text stands
 BETWEEN = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
 UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
 
@@ -37,7 +40,8 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     tail = 2 * HEAD + 3 + width
     fits = length > 2 * HEAD + 1 and length > width + 3
     inner = length > INNER * HEAD
-    stands = tuple(BETWEEN) if fits else ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT)
+    others = ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT) + ("wider",) * inner
+    stands = tuple(BETWEEN) if fits else others
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
@@ -46,7 +50,7 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         middle = first + BETWEEN.get(stand, 0.5) * (last - first)
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
-        if stand not in BETWEEN:
+        if stand in ("after", "before"):
             reach = 2 * HEAD + 1.5 + width / 2
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * up_of(u), u
@@ -57,18 +61,20 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
         found = 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
-        found += beside(crowd, *stretch, 1.5)
+        legs = [(z, foot + 2 * OVER * side) for z, foot in ((start, first), (end, last))]
+        found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
-        squares = (first, last, *row(middle, v, width, height))
-        found += sum(sheet.ground.covered(z, height, height, crowd) for z in squares)
-        return found + 0.25 * offset + {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5}.get(stand, 0.0)
+        squares = np.array([*row(middle, v, width, height), first, last])
+        prices = sheet.ground.price(around(squares, height, height))
+        found += float(prices[:-2].sum() + AT_HEAD * prices[-2:].sum())
+        return found + 0.25 * offset + UNWISHED.get(stand, 0.0)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
     side, offset, stand = min(choices, key=lambda one: cost(*one))
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
-            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4)
+            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4, faint=True)
     if not inner:
         sheet.line([first, last], DARK, 0.6, z=4.5)
     backs = (last, first) if inner else (first - 2 * HEAD * u, last + 2 * HEAD * u)  # of short ones heads from outside
@@ -113,4 +119,4 @@ def _angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, na
     for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
         if abs(turn) * radius > 7:
             sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK, 0.5, 4.5)
-    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic", far=True)
+    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic")

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import Assemblies, Assembly, GroupAssemblies, listed
 from tmm_cli.draw.drawing import Drawing
-from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.ground import Ground
 from tmm_cli.draw.render import names, render, spot
 from tmm_cli.draw.scene import Scene
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, scale_words

@@ -92,7 +92,7 @@ def chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool
     top = sheet.ground.high.imag - (ROW if over.spans else 0.0)
     under = ROW if over.numbers else 0.6 * ROW
     low = sheet.ground.low.imag + 2 * ROW
-    heads = [_head(plot, most) for plot in plots]
+    heads = [_head(plot, x.length) for plot in plots]
     free = top - low - sum(ROW * (len(rows) + 0.3) + under for rows in heads)
     panels = []
     for plot, rows in zip(plots, heads, strict=True):
@@ -129,8 +129,8 @@ class Panel:
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """A line; one that lies above the grid keeps labels off."""
-        self.sheet.line([start, end], colour, width, style, z, blocks=z > 1)
+        """A line; one that lies above the grid keeps labels off, others are interrupted under them."""
+        self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
         """A line from below to above at a place across, mm."""

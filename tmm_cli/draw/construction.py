@@ -70,7 +70,7 @@ def construction(
         _size(sheet, size, units)
     for spot in drawn.spots:
         if spot.name:
-            sheet.label(spot.name, sheet.on(spot.at), 11, far=True)
+            sheet.label(spot.name, sheet.on(spot.at), 11)
     sheet.labels += lines
     sheet.ground.lines += [label.line for label in lines if label.line]
     sheet.labels.sort(key=lambda label: label.size < 11)  # letters of points first
@@ -108,7 +108,7 @@ def _curve(sheet: Sheet, places: Sequence[complex], style: str) -> list[Sequence
     low, high = sheet.field
     for piece in pieces:
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
-        sheet.ground.points.append(np.array(piece))
+        sheet.ground.path(piece)
         for way in (piece, piece[::-1]):
             tip = way[0]
             if min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag) > ON_EDGE:
@@ -128,7 +128,7 @@ def _named(sheet: Sheet, name: str, pieces: Sequence[Sequence[complex]]) -> None
     if name and places:
         crowd = sheet.ground.crowd
         free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < QUIET)), -abs(z)))
-        sheet.label(name, free, 10, NAMES, "italic", far=True)
+        sheet.label(name, free, 10, NAMES, "italic")
 
 
 def _along(sheet: Sheet, arc: Arc) -> list[complex]:
@@ -158,7 +158,7 @@ def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
             sheet.line([leg, at], THIN, 0.7, "--", 1.5)
         sheet.circle(at, 0.6, face=DARK)
         sheet.ground.rivals.append(at)
-        sheet.label(centre.name, at, 11, far=True)
+        sheet.label(centre.name, at, 11)
         sheet.labels.append(Label("R", (legs[0] + at) / 2, 10, NAMES, "italic", (legs[0], at)))
         return
     text = _("to {centre}, {radius}").format(centre=centre.name, radius=_value("R", centre.radius, "length", units))

@@ -174,7 +174,7 @@ def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], ba
         elif pair.slide is not None and pair.slide.runner == link:
             boxes.append(sheet.on(scene.at(pair)))
     for mesh in scene.linkage.meshes:
-        for start, end in follower_bars(shape_of(scene, mesh), link):
+        for start, end in follower_bars(shape_of(scene, mesh)) if mesh.j == link else ():
             _lay(bars, sheet.on(start), sheet.on(end))
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import Form
-from tmm_cli.draw.labels import Ground
+from tmm_cli.draw.ground import Ground
 from tmm_cli.draw.layout.picture import on_large_sheet
 from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.room import snug

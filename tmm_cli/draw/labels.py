@@ -1,36 +1,39 @@
-"""Where labels go: beside their anchor, where they cover the least of what is drawn."""
+"""Where labels go: beside their anchor, or farther off with a thin line to it, where they cover nothing."""
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from itertools import pairwise
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tmm_cli.draw import script
+from tmm_cli.draw.boxes import Boxes, around, asides, crossing, gaps, nearest, runs
 from tmm_cli.draw.drawing import POINT
+from tmm_cli.draw.ground import LINE, Ground, over
 
-STEP = 1.2  # mm between the points that stand for a line
-RINGS = (1.2, 3.0, 5.5, 9.0)  # mm from the anchor to the label's near side
-FARTHER = (13.0, 18.0, 24.0)
-DIRECTIONS = 16
+RINGS = (1.2, 2.2, 3.4, 5.5, 8.0, 11.0, 15.0, 20.0, 26.0, 34.0, 44.0, 56.0, 70.0)  # mm from the anchor to the label
+ASIDE = (1.0, 2.2, 3.4, 5.5, 8.0, 11.0, 16.0, 22.0, 30.0, 40.0)  # mm from a line to its label
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)  # where a text stands beside a line, shares of its length
+DIRECTIONS = 16
+FIRST = 3  # rings that are looked at together first, later ones if there is nothing free
+LEADER = 4.0  # mm from which a line leads from a place to its label
+SHORT = 0.5  # mm by which it ends before the label
+FARTHER, LED, MIDDLE = 0.35, 2.0, 3.0  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
+MISTAKEN, CROSSED = 6.0, 0.2  # of standing nearer to what has another name, of a line that a leader crosses
+ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
+CONTENT = 1.5
+SAME = 0.5  # mm: nearer places are one
 
-Box = tuple[float, float, float, float]  # left, right, low, high
 Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
 class Label:
-    """A text asked for at an anchor (mm on paper), `size` points high.
-
-    line: it stands beside this line, wherever along it. far: it may stand farther off, a thin line leads to it then.
-    """
+    """A text asked for at an anchor (mm on paper), `size` points high; line: it stands beside it, wherever along it."""
 
     text: script.Words
     anchor: complex
@@ -38,147 +41,179 @@ class Label:
     colour: str
     style: str = "normal"
     line: tuple[complex, complex] | None = None
-    far: bool = False
 
 
-@dataclass
-class Ground:
-    """What is drawn already, as points on paper (mm), and the labels put down so far as boxes.
+@dataclass(frozen=True)
+class Placed:
+    """A label at its middle; leader: from its anchor, where it stands far off."""
 
-    rivals: lettered places; no label stands nearer to one of them than to its own; likewise lines that have names.
-    """
+    label: Label
+    middle: complex
+    leader: tuple[complex, complex] | None
 
-    low: complex
-    high: complex
-    points: list[NDArray[Any]] = field(default_factory=list)
-    boxes: list[Box] = field(default_factory=list)
-    rivals: list[complex] = field(default_factory=list)
-    lines: list[tuple[complex, complex]] = field(default_factory=list)
 
-    @property
-    def crowd(self) -> NDArray[Any]:
-        """All points of what is drawn."""
-        return np.concatenate([np.zeros(0, complex), *self.points])
+@dataclass(frozen=True)
+class Places:
+    """Boxes for a label, the feet of their leaders, and what each costs by what is drawn and by its distance."""
 
-    def line(self, start: complex, end: complex) -> None:
-        """A line is in the way."""
-        number = max(2, int(abs(end - start) / STEP))
-        if math.isfinite(abs(end - start)) and number < 5000:
-            self.points.append(start + (end - start) * np.linspace(0, 1, number))
+    middles: NDArray[Any]
+    boxes: Boxes
+    feet: NDArray[Any]
+    ends: NDArray[Any]  # of leaders, those of near labels at their feet
+    price: NDArray[Any]
 
-    def curve(self, places: Sequence[complex]) -> None:
-        """A line through places is in the way; of a smooth one they stand for it."""
-        array = np.array(places)
-        if len(array) > 2 and np.abs(np.diff(array)).max() < 2 * STEP:
-            self.points.append(array)
+
+class Choice:
+    """Places for one label; those farther off are looked at only while nothing nearer is free."""
+
+    def __init__(self, ground: Ground, label: Label, rivals: NDArray[Any]) -> None:
+        self.ground, self.label, self.size = ground, label, extent(label.text, label.size)
+        self.rivals = rivals[np.abs(rivals - label.anchor) > SAME]
+        self._far = self._tiers()
+        self._known: list[Places] = []
+
+    def _tiers(self) -> Iterator[Places]:
+        for feet, middles, asked in (beside if self.label.line else about_anchor)(self.label, *self.size):
+            boxes = around(middles, *self.size)
+            off = nearest(boxes, feet) - feet
+            away = np.abs(off)
+            led = away > LEADER
+            ends = np.where(led, feet + off * (1 - SHORT / np.maximum(away, SHORT)), feet)
+            price = asked + LED * led + self.ground.price(boxes) + self._mistaken(middles, boxes, away, led)
+            price[led] += self._crossing(feet[led], ends[led])
+            yield Places(middles, boxes, feet, ends, price)
+
+    def _crossing(self, feet: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+        """The price of leaders that run through texts, or over lines."""
+        if not len(feet):
+            return np.zeros(0)
+        both, texts = np.concatenate([feet, ends]), np.array(self.ground.boxes)
+        lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
+        through = runs(texts, feet, ends) > 0 if len(texts) else np.zeros((0, len(feet)))
+        found: NDArray[Any] = LINE * through.sum(axis=0) + CROSSED * crossing(feet, ends, *lines.T).sum(axis=1)
+        return found
+
+    def _mistaken(self, middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]) -> NDArray[Any]:
+        """The price of standing nearer to another lettered place, or to another line, than to one's own."""
+        if self.label.line is not None:
+            others = [line for line in self.ground.lines if line != self.label.line]
+            if not others:
+                return np.zeros(len(middles))
+            here = asides(middles, *np.array([self.label.line]).T)[:, 0]
+            nearer = asides(middles, *np.array(others).T).min(axis=1) < here + 0.5
+        elif len(self.rivals):
+            nearer = gaps(boxes, self.rivals).min(axis=1) < away + 0.8
         else:
-            for start, end in pairwise(places):
-                self.line(start, end)
+            return np.zeros(len(middles))
+        return np.where(nearer, np.where(led, MISTAKEN / 3, MISTAKEN), 0.0)
 
-    def spot(self, place: complex, radius: float = 1.0) -> None:
-        """A small figure is in the way."""
-        self.points.append(place + radius * np.exp(1j * np.linspace(0, 2 * np.pi, 9)))
+    @cached_property
+    def need(self) -> float:
+        """The least that this label must cost: the more, the less choice it has."""
+        first = self._tier(0)
+        assert first is not None
+        return float(np.sort(first.price)[:4].sum())
 
-    def place(self, label: Label) -> complex:
-        """The middle of the label where it covers the least; the label is then in the way of others."""
-        width, height = extent(label.text, label.size)
-        reach = abs(label.line[1] - label.line[0]) / 2 if label.line else (FARTHER if label.far else RINGS)[-1]
-        crowd = self.crowd
-        near = crowd[np.abs(crowd - label.anchor) < reach + 2 * width + 5]
-        best, best_cost, last = label.anchor, math.inf, 0.0
-        for middle, price in candidates(label, width, height):
-            if price > last + 1e-9 and best_cost < last + 0.2:
-                break
-            last = max(last, price)
-            cost = self.covered(middle, width, height, near) + price + self._mistaken(label, middle, width, height)
-            if cost < best_cost:
-                best, best_cost = middle, cost
-        self.boxes.append(about(best, width, height))
+    def _tier(self, number: int) -> Places | None:
+        if number == len(self._known):
+            found = next(self._far, None)
+            if found is None:
+                return None
+            self._known.append(found)
+        return self._known[number]
+
+    def best(self, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, Places, int]:
+        """The cheapest place, given the boxes of other labels and their leaders (number, ends)."""
+        best: tuple[float, Places, int] | None = None
+        number = 0
+        while (places := self._tier(number)) is not None and (best is None or best[0] > LINE / 2):
+            cost = places.price + over(places.boxes, taken)
+            if len(leaders):
+                cost = cost + LINE * (runs(places.boxes, *leaders.T) > 0).sum(axis=1)
+            if len(taken):
+                led = places.ends != places.feet
+                cost[led] += LINE * (runs(taken, places.feet[led], places.ends[led]) > 0).sum(axis=0)
+            k = int(np.argmin(cost))
+            if best is None or cost[k] < best[0]:
+                best = float(cost[k]), places, k
+            number += 1
+        assert best is not None
         return best
 
-    def _mistaken(self, label: Label, middle: complex, width: float, height: float) -> float:
-        """The price of standing nearer to another lettered place, or to another line, than to one's own."""
-        if label.line is not None:
-            here = aside(middle, *label.line)
-            others = [aside(middle, *line) for line in self.lines if line != label.line]
-            return 6.0 if others and min(others) < here + 0.5 else 0.0
-        if not self.rivals:
-            return 0.0
-        box = about(middle, width, height)
-        others = [away(box, r) for r in self.rivals if abs(r - label.anchor) > 0.5]
-        return 6.0 if others and min(others) < away(box, label.anchor) + 0.8 else 0.0
 
-    def covered(self, middle: complex, width: float, height: float, near: NDArray[Any]) -> float:
-        """The price of what a text there covers: of these points, of other labels, of the edge."""
-        left, right, low, high = about(middle, width + 0.8, height + 0.6)
-        inside = (near.real > left) & (near.real < right) & (near.imag > low) & (near.imag < high)
-        cost = float(np.count_nonzero(inside))
-        for a, b, c, d in self.boxes:
-            across, up = min(right, b) - max(left, a), min(high, d) - max(low, c)
-            if across > 0 and up > 0:
-                cost += 20 + across * up
-        if left < self.low.real or right > self.high.real or low < self.low.imag or high > self.high.imag:
-            cost += 50
-        return cost
+def place(ground: Ground, labels: Sequence[Label]) -> list[Placed]:
+    """Where labels cover the least: those with the least choice first; then each once more, given the others."""
+    anchors = np.array([label.anchor for label in labels if label.line is None], complex)
+    rivals = np.concatenate([anchors, np.array(ground.rivals, complex)])
+    choices = [Choice(ground, label, rivals) for label in labels]
+    boxes, leaders = np.full((len(labels), 4), np.nan), np.full((len(labels), 2), np.nan, complex)
+    middles, costs = [label.anchor for label in labels], [0.0] * len(labels)
+    order = sorted(range(len(labels)), key=lambda k: -choices[k].need)
+    for turn in range(ROUNDS):
+        moved = False
+        for k in order if not turn else [k for k in order if costs[k] > CONTENT]:
+            others = np.arange(len(labels)) != k
+            taken = boxes[others & np.isfinite(boxes[:, 0])]
+            led = leaders[others & np.isfinite(leaders[:, 0])]
+            costs[k], places, best = choices[k].best(taken, led)
+            moved = moved or abs(places.middles[best] - middles[k]) > SAME
+            middles[k], boxes[k] = complex(places.middles[best]), places.boxes[best]
+            foot, end = places.feet[best], places.ends[best]
+            leaders[k] = (foot, end) if foot != end else (np.nan, np.nan)
+        if turn and not moved:
+            break
+    return [
+        Placed(label, middle, (complex(foot), complex(end)) if np.isfinite(foot) else None)
+        for label, middle, (foot, end) in zip(labels, middles, leaders, strict=True)
+    ]
 
 
-def candidates(label: Label, width: float, height: float) -> Iterator[tuple[complex, float]]:
-    """Middles of a label's box and what each costs, cheapest first."""
-    if label.line is not None:
-        start, end = label.line
-        span = (end - start) / (abs(end - start) or 1.0)
-        for gap in (1.0, 2.2, 4.0, 7.0, 11.0, 16.0):
-            for share in ALONG:
-                for side in (1j, -1j):
-                    out = side * span if (1j * span).imag >= 0 else -side * span  # above first
-                    off = gap + abs(out.real) * width / 2 + abs(out.imag) * height / 2
-                    yield start + share * (end - start) + off * out, 1.5 * gap + 3 * abs(share - 0.5)
-        return
-    for ring, reach in enumerate((*RINGS, *FARTHER) if label.far else RINGS):
-        for step in range(DIRECTIONS):
-            along = cmath.rect(1, 2 * math.pi * (step + 0.5 * (ring % 2)) / DIRECTIONS + math.pi / 4)
-            # the box touches a circle about the anchor
-            yield label.anchor + reach * along + complex(along.real * width / 2, along.imag * height / 2), 0.35 * reach
+Tier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leaders, middles of boxes, prices
+
+
+@cache
+def _directions(number: int, between: bool) -> NDArray[Any]:
+    """Unit vectors all round, or those between them."""
+    found: NDArray[Any] = np.exp(1j * (2 * np.pi * (np.arange(number) + 0.5 * between) / number + np.pi / 4))
+    return found
+
+
+def about_anchor(label: Label, width: float, height: float) -> Iterator[Tier]:
+    """Places about an anchor: the box touches a circle about it."""
+    for start, stop in ((0, FIRST), *((n, n + 2) for n in range(FIRST, len(RINGS), 2))):
+        found = []
+        for ring, reach in enumerate(RINGS[start:stop], start):
+            along = _directions(DIRECTIONS * (1 + (reach > LEADER)), ring % 2 == 1)
+            off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
+            found.append((label.anchor + off, np.full(len(along), FARTHER * reach)))
+        middles, prices = (np.concatenate(part) for part in zip(*found, strict=True))
+        yield np.full(len(middles), label.anchor), middles, prices
+
+
+def beside(label: Label, width: float, height: float) -> Iterator[Tier]:
+    """Places beside a line, above it first."""
+    assert label.line is not None
+    start, end = label.line
+    span = (end - start) / (abs(end - start) or 1.0)
+    up = 1j * span if (1j * span).imag >= 0 else -1j * span
+    shares = np.repeat(ALONG, 2)
+    out = np.tile([up, -up], len(ALONG))
+    feet = start + shares * (end - start)
+    half = np.abs(out.real) * width / 2 + np.abs(out.imag) * height / 2
+    for reach in ASIDE:
+        yield feet, feet + (reach + half) * out, 1.5 * reach + MIDDLE * np.abs(shares - 0.5)
 
 
 def gathered(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
     """Items by their place (mm): those that coincide on paper stand together."""
     found: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
-        same = next((items for place, items in found if abs(place - at) < 0.5), None)
+        same = next((items for place, items in found if abs(place - at) < SAME), None)
         if same is None:
             found.append((at, [item]))
         else:
             same.append(item)
     return found
-
-
-def aside(place: complex, start: complex, end: complex) -> float:
-    """How far a place is from a stretch of a line."""
-    span = end - start
-    share = ((place - start) * span.conjugate()).real / (abs(span) ** 2 or 1.0)
-    return abs(place - start - min(max(share, 0.0), 1.0) * span)
-
-
-def about(middle: complex, width: float, height: float) -> Box:
-    """The box about its middle."""
-    return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
-
-
-def row(middle: complex, along: complex, width: float, height: float) -> list[complex]:
-    """Middles of squares that hold a text along a unit vector, side by side, as large as it is high."""
-    reach = max(width - height, 0.0) / 2
-    return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
-
-
-def nearest(box: Box, place: complex) -> complex:
-    """The place of a box that is nearest to another place."""
-    return complex(min(max(place.real, box[0]), box[1]), min(max(place.imag, box[2]), box[3]))
-
-
-def away(box: Box, place: complex) -> float:
-    """How far a place is from a box."""
-    return abs(nearest(box, place) - place)
 
 
 def extent(text: script.Words, size: float) -> tuple[float, float]:

@@ -101,7 +101,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
         hinged = any(abs(at - sheet.on(scene.point(hinge.point))) <= MEASURED.hinge for hinge in linkage.hinges)
         if not hinged:  # a dot in a circle would look like two pairs
             sheet.circle(at, 0.6, face=DARK)
-        sheet.label(", ".join(called), at, 10, far=bool(mark) and name in moving)
+        sheet.label(", ".join(called), at, 10)
     for link, form in drawn.forms.items():
         sheet.label(link, form.middle, 10, NAMES, "italic")
     return drawn
@@ -118,7 +118,7 @@ def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7,
     """One position as thin lines."""
     for link in scene.linkage.moving:
         for edge in by_points(sheet, scene, link, whole=False).edges:
-            sheet.line(edge, colour, width, z=z, blocks=False)
+            sheet.line(edge, colour, width, z=z, faint=True)
 
 
 def paths(results: Results) -> list[Vector]:
@@ -135,7 +135,7 @@ def paths(results: Results) -> list[Vector]:
 def trace(sheet: Sheet, found: Iterable[Vector]) -> None:
     """Paths (m) as dashed lines, once only where a point comes back on the way on which it went."""
     for path in found:
-        sheet.line(once(sheet.origin + path / sheet.mu), THIN, 0.7, "--", 1.5, blocks=False)
+        sheet.line(once(sheet.origin + path / sheet.mu), THIN, 0.7, "--", 1.5, faint=True)
 
 
 def once(path: Vector) -> list[complex]:

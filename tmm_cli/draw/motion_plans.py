@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tmm_cli.draw.blocks import Block, Row
+from tmm_cli.draw.boxes import aside
 from tmm_cli.draw.drawing import Drawing
-from tmm_cli.draw.labels import aside
 from tmm_cli.draw.lever import letter_points
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Figure, room

@@ -105,7 +105,7 @@ def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Li
         start, end = at + ((low - here) / sheet.mu - OVER) * along, at + ((high - here) / sheet.mu + OVER) * along
         axis = [border(at, start, *sheet.field), border(at, end, *sheet.field)]
         with sheet.on_layer("construction"):
-            sheet.line(axis, THIN, 0.6, CHAIN, 1.2, blocks=False)
+            sheet.line(axis, THIN, 0.6, CHAIN, 1.2, faint=True)
         return
     low_side = -1j * along if (1j * along).imag > 0 else 1j * along
     reach = (look.box[0] / 2 + BEYOND) * along

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.draw.labels import about, extent
+from tmm_cli.draw.boxes import about
+from tmm_cli.draw.labels import extent
 from tmm_cli.draw.sheet import DARK, GREY_TEXT, THIN, Sheet
 from tmm_cli.vectors import Real, Vector, dot
 
@@ -158,9 +159,11 @@ def draw_ruler(sheet: Sheet, ruler: Ruler, numbers: Sequence[Number]) -> None:
             middle = ruler.at(run, sign * (TICK + GAP + across(ruler, number) / 2))
             if abs(run - number.run) > 1.0:
                 sheet.line([tip, ruler.at(run, sign * (TICK + GAP))], THIN, 0.4, z=2.6)
-            sheet.text(middle, number.text, SIZE, colour=DARK if number.strong else GREY_TEXT, ha="center")
-            sheet.ground.boxes.append(about(middle, *extent(number.text, SIZE)))
-            sheet.ground.spot(middle, 1.0)
+            colour = DARK if number.strong else GREY_TEXT
+            if sheet.ground.free(about(middle, *extent(number.text, SIZE))):
+                sheet.text(middle, number.text, SIZE, colour=colour, ha="center")
+            else:
+                sheet.label(number.text, tip, SIZE, colour)
 
 
 def spread(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:

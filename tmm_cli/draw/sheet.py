@@ -5,15 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
 from tmm_cli.draw import script
 from tmm_cli.draw.blocks import Block, Row, nearest_free, roomiest
+from tmm_cli.draw.boxes import about, outside, row, wider
 from tmm_cli.draw.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
 from tmm_cli.draw.fonts import SHARE
-from tmm_cli.draw.labels import Ground, Label, about, nearest, row
+from tmm_cli.draw.ground import AIR, Ground
+from tmm_cli.draw.labels import Label, place
 from tmm_cli.draw.labels import extent as label_extent
 from tmm_cli.draw.layout.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.room import Room
@@ -33,7 +35,6 @@ GREY_TEXT = "#505050"  # of titles of columns
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-LEADER = 4.0  # mm from which a line leads from a place to its label
 
 
 class Sheet:
@@ -55,9 +56,9 @@ class Sheet:
         if room is not None:
             self.origin = room.origin
         self.marks: list[Mark] = []
+        self.faint: list[int] = []  # marks that are interrupted where texts stand
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
-        self.faint = Ground(self.ground.low, self.ground.high)  # lines that labels may cover, and blocks may not
         self.block = Block()
         if not on_large_sheet():
             self._strip(title)
@@ -100,23 +101,33 @@ class Sheet:
             if line.strip():
                 align: Align = ha if one else "left"
                 self.marks.append(Text(start + off * along, line, own, colour, align, bold, italic, turn))
+        wide, high = label_extent(text, size)
+        middle = complex(at) + (0.5 - SHARE[ha]) * (wide - 0.6) * along
+        places = row(middle, along, wide, high) if turn else []
+        self.ground.boxes += [about(place, high, high) for place in places] or [about(middle, wide, high)]
 
     def label(
-        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal", *,
-        far: bool = False,
+        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal",
+        line: tuple[complex, complex] | None = None,
     ) -> None:  # fmt: skip
-        """A text beside a place (mm); where exactly is decided when all is drawn."""
+        """A text beside a place (mm), or anywhere beside a line; where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
-            self.labels.append(Label(text, anchor, size, colour, style, far=far))
+            self.labels.append(Label(text, anchor, size, colour, style, line))
 
     def line(
         self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: Style = "-", z: float = 3, *,
-        blocks: bool = True,
+        blocks: bool = True, faint: bool = False,
     ) -> None:  # fmt: skip
-        """A polyline through places (mm), of this width (points); places that are not finite interrupt it."""
+        """A polyline through places (mm), of this width (points); places that are not finite interrupt it.
+
+        faint: it is interrupted where texts stand.
+        """
         for stretch in whole_stretches(places):
+            if faint:
+                self.faint.append(len(self.marks))
             self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
-            (self.ground if blocks else self.faint).curve(stretch)
+            if faint or blocks:
+                (self.ground.faint if faint else self.ground.solid).path(stretch)
 
     def area(
         self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
@@ -125,8 +136,8 @@ class Sheet:
         """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
         outline = None if edge == "none" else edge
         self.marks.append(Area(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
-        for start, end in pairwise([*corners, corners[0]]) if blocks else ():
-            self.ground.line(start, end)
+        if blocks:
+            self.ground.path([*corners, corners[0]])
 
     def circle(
         self, at: complex, radius: float, face: str = "white", edge: str = DARK, width: float = 1.0, z: float = 6
@@ -148,8 +159,7 @@ class Sheet:
         side = 1j * along * head * 0.27
         with self.on_layer("vectors" if self.layer == "construction" else self.layer):
             self.line([start, neck + 0.3 * head * along], colour, width, z=z)
-            self.area([end, neck + side, neck - side], colour, "none", z=z, blocks=False)
-        self.ground.line(neck, end)
+            self.area([end, neck + side, neck - side], colour, "none", z=z)
 
     def note(self, text: script.Words) -> None:
         """A line of the corner box: scale factors and remarks."""
@@ -163,6 +173,7 @@ class Sheet:
         """Put the notes into the emptiest corner, place the labels; on a large sheet, cut it out below its caption."""
         self.corner()
         self.settle()
+        self._interrupt()
         if on_large_sheet():
             longest = max(self.figure or self.paper)
             if self.free and self.figure:
@@ -171,14 +182,22 @@ class Sheet:
             return picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
         return Drawing.of(self.paper, self.marks)
 
+    def _interrupt(self) -> None:
+        """Leave out of faint lines what is under texts."""
+        boxes = wider(np.array(self.ground.boxes), AIR)
+        for number in reversed(self.faint):
+            mark = self.marks[number]
+            assert isinstance(mark, Line)
+            self.marks[number : number + 1] = [replace(mark, places=part) for part in outside(mark.places, boxes)]
+        self.faint.clear()
+
     def settle(self) -> None:
         """Place the labels that are waiting, in the field that the ground has now."""
-        for label in self.labels:
-            at = self.ground.place(label)
-            self.text(at, label.text, label.size, colour=label.colour, ha="center", style=label.style)
-            edge = nearest(self.ground.boxes[-1], label.anchor)
-            if label.far and abs(edge - label.anchor) > LEADER:
-                self.line([label.anchor, edge], THIN, 0.5, z=1.1)
+        for placed in place(self.ground, self.labels):
+            label = placed.label
+            self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
+            if placed.leader:
+                self.line(placed.leader, THIN, 0.5, z=1.1, faint=True)
         self.labels.clear()
 
     def along(self, at: complex, text: str, size: float, along: complex) -> None:
@@ -186,8 +205,6 @@ class Sheet:
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.text(at, text, size, ha="center", turn=turn)
-        width, height = label_extent(text, size)
-        self.ground.boxes += [about(place, height, height) for place in row(at, along, width, height)]
 
     def corner(self) -> None:
         """Put notes and table where they cover the least of the drawing."""
@@ -196,7 +213,7 @@ class Sheet:
         if on_large_sheet():
             shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
         else:
-            crowd = np.concatenate([self.ground.crowd, self.faint.crowd])
+            crowd = np.concatenate([self.ground.crowd, self.ground.faint.crowd, self.ground.written])
             shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)

@@ -12,7 +12,6 @@ import numpy as np
 
 from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
-from tmm_cli.draw.labels import about, extent
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
 from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.vectors import cross, dot, unit
@@ -181,7 +180,6 @@ def numbers(sheet: Sheet, forms: Mapping[str, Form], hue: Mapping[str, str]) -> 
     """The numbers of links: in the middle of a plate where nothing is drawn there, or beside the link."""
     for link, form in forms.items():
         if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > CLEAR):
-            sheet.ground.boxes.append(about(form.middle, *extent(link, 11)))
             sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
         else:
             sheet.label(link, form.middle, 11, hue[link], "italic")

@@ -114,7 +114,7 @@ def extremes(results: Results) -> Sheet:
                 sheet.circle(at, 0.8 * MEASURED.hinge, edge=INERTIA)
             else:
                 sheet.circle(at, 0.6, INERTIA, INERTIA)
-            sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA, far=True)
+            sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("I: start of the working stroke, II: its end"))
     return sheet

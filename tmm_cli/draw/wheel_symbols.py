@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.draw.boxes import aside
 from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Line
-from tmm_cli.draw.labels import aside
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, hatch
 from tmm_cli.draw.wheels import CamShape, Disc, Outline, Teeth
 from tmm_cli.linkage import FRAME

@@ -90,11 +90,9 @@ def contact(found: Outline) -> complex:
     return found.pitch if isinstance(found, Teeth) else found.touch
 
 
-def bars(found: Outline, link: str) -> list[tuple[complex, complex]]:
+def bars(found: Outline) -> list[tuple[complex, complex]]:
     """Straight parts of a cam's follower, m: its stem, and its face or none where it has a roller."""
-    if isinstance(found, Teeth) or found.mesh.j != link:
-        return []
-    return [part for part in (found.stem, found.face) if part[0] != part[1]]
+    return [] if isinstance(found, Teeth) else [part for part in (found.stem, found.face) if part[0] != part[1]]
 
 
 def extent(found: Iterable[Outline], size: float, links: Collection[str] | None = None) -> list[complex]:

@@ -41,7 +41,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     if count < 2:
         yield from here(jobs, stopped)
         return
-    with ProcessPoolExecutor(count, get_context("spawn"), _begin) as pool:
+    with ProcessPoolExecutor(count, get_context("spawn"), begin) as pool:
         futures = {pool.submit(job): number for number, job in enumerate(jobs)}
         for future in as_completed(futures):
             if not future.cancelled():
@@ -53,7 +53,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                 pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _begin() -> None:
+def begin() -> None:
     """Ctrl-C reaches all processes: the first one tells the others. What has no value is told in words."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RuntimeWarning)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.fonts import lacking
@@ -13,19 +14,40 @@ from tmm_cli.draw.formats.svg import svg
 from tmm_cli.errors import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
+WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
+Written = list[tuple[str, bytes]]
+Job = Callable[[], tuple[Written, set[str]]]  # may be pickled: files by name, and characters that the font lacks
+Way = Callable[[Sequence[Job]], Iterable[tuple[Written, set[str]]]]  # what jobs give, in their order
+
+
+def here(jobs: Sequence[Job]) -> Iterable[tuple[Written, set[str]]]:
+    """One after the other, in this process."""
+    return (job() for job in jobs)
 
 
 def files(drawn: Drawn, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
     """Every sheet in the formats of a run, by the name of its file; at last what there is to say of them all."""
-    texts: set[str] = set()
-    for stem, sheet in drawn:
-        texts.update(sheet.texts())
-        for kind in OF_A_RUN:
-            yield f"{stem}.{kind}", FORMATS[kind](sheet)
-    for note in lacking_in(texts):
+    return in_parts([lambda: drawn], say)
+
+
+def in_parts(
+    parts: Sequence[Callable[[], Drawn]], say: Callable[[str], None] = lambda note: None, way: Way = here
+) -> Iterable[tuple[str, bytes]]:
+    """The same of sheets that come in parts, each of which is a job; way: who does the jobs."""
+    boxes: set[str] = set()
+    for written, lost in way([partial(_written, part) for part in parts]):
+        boxes |= lost
+        yield from written
+    for note in lacking_in(boxes):
         say(note)
+
+
+def _written(part: Callable[[], Drawn]) -> tuple[Written, set[str]]:
+    every = list(part())
+    lost = lacking("".join(text for __, sheet in every for text in sheet.texts()))
+    return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in every for kind in OF_A_RUN], lost
 
 
 def lacking_in(texts: Iterable[str]) -> Iterable[str]:

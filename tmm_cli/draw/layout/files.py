@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from importlib.util import find_spec
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.formats import FORMATS, lacking_in
+from tmm_cli.draw.formats import FORMATS, WITH_PAGES, lacking_in
 from tmm_cli.draw.layout.contents import chosen
 from tmm_cli.draw.layout.large import large_sheets
 from tmm_cli.errors import _
@@ -32,7 +32,7 @@ def formats_of(text: str) -> list[str]:
 def files_of_sheets(
     results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], *, every: bool
 ) -> Iterator[tuple[str, bytes]]:
-    """Every sheet in every format, by the name of its file. Raises ProblemError.
+    """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
 
     every: whether motion plans are drawn of all positions.
     """
@@ -42,10 +42,11 @@ def files_of_sheets(
             _("plans of so many positions fill no sheet that is read"), found=str(len(choice.plans)),
             allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
         )  # fmt: skip
-    texts: set[str] = set()
-    for stem, sheet in large_sheets(choice, paper):
-        texts.update(sheet.texts())
-        for name in formats:
-            yield f"{stem}.{name}", FORMATS[name](sheet)
-    for note in lacking_in(texts):
+    sheets = dict(large_sheets(choice, paper))
+    for name in formats:
+        if name in WITH_PAGES:
+            yield f"sheets.{name}", WITH_PAGES[name](*sheets.values())
+        else:
+            yield from ((f"{stem}.{name}", FORMATS[name](sheet)) for stem, sheet in sheets.items())
+    for note in lacking_in(text for sheet in sheets.values() for text in sheet.texts()):
         say(note)

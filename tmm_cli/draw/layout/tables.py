@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from tmm_cli.draw.drawing import Line, Mark, Text
-from tmm_cli.draw.fonts import width
 from tmm_cli.draw.layout.picture import Picture, longest_for, picture
 from tmm_cli.draw.layout.writing import DARK, cut
+from tmm_cli.draw.script import Words, pieces, width
 
 SIZE = 3.2  # mm: letters of a table as it comes
 BOLD, FINE = 0.5, 0.2  # mm: lines
@@ -19,9 +19,9 @@ APART = 3.0  # of the size, between two parts
 WIDEST = 24.0  # of the size: a longer text is cut
 
 
-def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> Picture:
+def table(title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()) -> Picture:
     """A table, its letters as large as the room lets them be."""
-    cells = [[cut(text, 1.0, WIDEST) for text in row] for row in (heads, *rows)]
+    cells = [[cut(one, 1.0, WIDEST) if isinstance(one, str) else one for one in row] for row in (heads, *rows)]
     columns = [max(width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
     parts = max(math.ceil(len(rows) / FOLDED), 1)
     most = math.ceil(len(rows) / parts)
@@ -36,7 +36,7 @@ def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]], notes
     return picture(marks, title, longest, notes=notes)
 
 
-def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float) -> list[Mark]:
+def _part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
     """Rows below one another, the heads first; words begin at the left, numbers end at the right."""
     row, wide = ROW * size, sum(columns)
     edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
@@ -52,11 +52,14 @@ def _part(cells: Sequence[Sequence[str]], columns: Sequence[float], size: float)
     for k, (start, end) in enumerate(pairwise(edges)):
         numbers = all(_number(line[k]) for line in cells[1:])
         for line, y in zip(cells, high, strict=False):
-            if line[k]:
-                at = complex(end - AIR / 2 * size if numbers else start + AIR / 2 * size, y - row / 2)
-                marks.append(Text(at, line[k], size, DARK, "right" if numbers else "left"))
+            at = complex(start + AIR / 2 * size, y - row / 2)
+            if numbers:
+                at = complex(end - AIR / 2 * size - width(line[k], size), y - row / 2)
+            for off, letters, own in pieces(line[k], size):
+                if letters:
+                    marks.append(Text(at + off, letters, own, DARK))
     return marks
 
 
-def _number(text: str) -> bool:
-    return not text or text == "-" or text.lstrip("+-−")[:1].isdigit()
+def _number(text: Words) -> bool:
+    return isinstance(text, str) and (not text or text == "-" or text.lstrip("+-−")[:1].isdigit())

@@ -12,8 +12,11 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.tables import table
 from tmm_cli.draw.mechanism import Position, place_of_driver
+from tmm_cli.draw.script import Words
+from tmm_cli.draw.sheet import on_paper
 from tmm_cli.errors import _
-from tmm_cli.plans.record import balance_name, reaction_name, subscript
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import (
     ACCELERATION,
@@ -34,6 +37,8 @@ NOTHING = 1e-9  # of the largest number of a column: less is written as zero
 BESIDE = 8  # quantities beside one another in a table
 POSITIONS = 36  # rows of a table at most: of more positions only some have one
 
+Quantity = tuple[str | Symbol, Any, Dimension]
+
 
 def structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Links and kinematic pairs."""
@@ -48,10 +53,10 @@ def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     assert motion is not None
     points = {name: motion.named(name) for name in linkage.moving_points}
     links = {name: motion.link(name) for name in linkage.moving}
-    speeds = [(f"v{_index(name)}", np.abs(point.v), SPEED) for name, point in points.items()]
-    speeds += [(f"ω{_index(name)}", link.omega, ANGULAR_SPEED) for name, link in links.items()]
-    more = [(f"a{_index(name)}", np.abs(point.a), ACCELERATION) for name, point in points.items()]
-    more += [(f"ε{_index(name)}", link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
+    speeds = [(Symbol("v", name), np.abs(point.v), SPEED) for name, point in points.items()]
+    speeds += [(Symbol("ω", name), link.omega, ANGULAR_SPEED) for name, link in links.items()]
+    more = [(Symbol("a", name), np.abs(point.a), ACCELERATION) for name, point in points.items()]
+    more += [(Symbol("ε", name), link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
     for stem, title, every in (
         ("speeds", _("Speeds of points, angular speeds of links"), speeds),
         ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
@@ -67,27 +72,27 @@ def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
     if reactions is None or lever is None:
         return
     several = len(reactions.balances) > 1
-    columns = []
+    columns: list[Quantity] = []
     for balance in reactions.balances:
         turns = balance.moment is not None if several else balance.kind == "moment"
-        name = balance_name(balance.driver.link, several, turns=turns)
+        name = balance_symbol(balance.driver.link, several, turns=turns)
         values = balance.generalized if several or turns else balance.force
         columns.append((name, values, MOMENT if turns else FORCE))
     if not several:
-        name, __, dimension = columns[0]
+        __, ___, dimension = columns[0]
         checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
-        columns.append((_("{name} by the lever").format(name=name), checked, dimension))
+        columns.append((_("by the lever"), checked, dimension))
     yield "table-balance", _over_positions(results, _("What balances the driver"), columns)
 
 
-def _over_positions(results: Results, title: str, columns: Sequence[tuple[str, Any, Dimension]]) -> Drawing:
+def _over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
     """A row a position, angles of the driver first."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
-    place = (_("φ"), np.mod(motion.q, 2 * np.pi), ANGLE) if crank else (_("s"), motion.q, LENGTH)
+    place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
-    heads = [_("No."), *(f"{name}, {units.symbol(dimension)}" for name, __, dimension in every)]
+    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.symbol(kind))}") for name, __, kind in every)]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
     cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
@@ -100,22 +105,23 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
         return
-    forces = [(load.name, complex(load.force[k])) for load in reactions.applied if load.has_force]
-    forces += [(reaction_name(r.by, r.on), complex(r.force[k])) for r in reactions.all]
-    moments = [(load.couple_name or load.name, float(load.moment[k])) for load in reactions.applied if load.has_moment]
+    own = {load.name: load_symbols(load) for load in reactions.applied}
+    forces = [(own[x.name][0], complex(x.force[k])) for x in reactions.applied if x.has_force]
+    forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
+    moments = [(own[x.name][1], float(x.moment[k])) for x in reactions.applied if x.has_moment]
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         turns = balance.kind == "moment" and balance.moment is not None
-        name = balance_name(balance.driver.link, several, turns=turns)
+        symbol = balance_symbol(balance.driver.link, several, turns=turns)
         if turns:
-            moments.append((name, float(balance.generalized[k])))
+            moments.append((symbol, float(balance.generalized[k])))
         else:
-            forces.append((name, complex(balance.vector[k])))
+            forces.append((symbol, complex(balance.vector[k])))
     largest = max((abs(force) for __, force in forces), default=0.0)
-    rows = [[name, *_polar(force, largest, units), ""] for name, force in forces]
+    rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
     rows += [[name, "", "", f"{units.from_si(moment, MOMENT):.{FIGURES}g}"] for name, moment in moments]
-    heads = [_("force or moment"), _("size, {unit}").format(unit=units.symbol(FORCE)), _("angle from x, °"),
-             _("moment, {unit}").format(unit=units.symbol(MOMENT))]  # fmt: skip
+    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.symbol(FORCE))), _("angle from x, °"),
+             _("moment, {unit}").format(unit=on_paper(units.symbol(MOMENT)))]  # fmt: skip
     place = place_of_driver(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the indices of two links: from the first one on the second")]
@@ -136,8 +142,3 @@ def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable
     least = NOTHING * np.max(np.abs(shown), where=np.isfinite(shown), initial=0.0)
     picked = [float(shown[k if len(shown) > 1 else 0]) for k in rows]
     return ["-" if not math.isfinite(v) else f"{v if abs(v) > least else 0.0:.{FIGURES}g}" for v in picked]
-
-
-def _index(name: str) -> str:
-    """A name as an index: figures below the line, other names after an underscore."""
-    return subscript(name) if name.isdecimal() and name.isascii() else f"_{name}"

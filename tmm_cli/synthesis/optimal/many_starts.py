@@ -1,8 +1,8 @@
 """Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
 
 Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts, settled
-(settling.py), make few steps, and those with the least squares go on. The search ends where several of the last ended
-at the same least.
+(settling.py), make few steps, and those with the least squares go on. The search ends where several of the last of two
+rounds or more ended at the same least; else the best are shaken, as often minima lie side by side.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from tmm_cli.vectors import Real
 SAMPLES = 20_000  # of a round, of which the best and those that evolved start
 TOURNAMENT = ((400, 6), (160, 15), (24, 40), (8, 60))  # so many of them, and their steps: ranks say little at first
 ROUNDS, AGREED = 3, 6  # at most; starts that end at the same least
+SHAKEN, DECADES = ((160, 15), (24, 40), (8, 60)), (-2.5, -0.3)  # as TOURNAMENT; sizes of shakes, shares of the ranges
+SHAKES, GAIN = 4, 1e-4  # at most, as long as one brings more than such a share
 SAME, NEAR = 1e-3, 1e-2  # of an objective: the same least; as good for most uses
 ZERO = 1e-7  # of the size of what is wanted: it is met
 CLOSER, LAST = 360, 100  # places and steps of the winners
@@ -71,6 +73,7 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
     chance = np.random.default_rng(candidates.task.seed)
     evaluate, settle = residuals(candidates), Settling(candidates)
     won: list[tuple[float, Real]] = []
+    near: list[tuple[float, Real]] = []
     stopped, progress = False, candidates.task.progress
     try:
         for k in range(ROUNDS):
@@ -78,8 +81,11 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
             x = _drawn(candidates, chance)
             x = np.vstack([*(evolved if k == 0 else ()), x[candidates.evaluate(x)[1] < LOST]])
             won += _round(candidates, evaluate, settle, x)
-            if Ends.of(won).agree:
+            ends = Ends.of(won)
+            if ends.met or (k and ends.agree):
                 break
+        else:
+            near = _shaken(evaluate, won, chance)
     except KeyboardInterrupt:
         stopped = True
     finally:
@@ -87,8 +93,9 @@ def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
     if not won:
         return Found([], None, stopped)
     won.sort(key=lambda one: one[0])
+    best = sorted([*won[:WINNERS], *near], key=lambda one: one[0])[:WINNERS]
     closer = residuals(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
-    last = _sorted(*descend(closer, np.array([x for __, x in won[:WINNERS]]), LAST))
+    last = _sorted(*descend(closer, np.array([x for __, x in best]), LAST))
     return Found([x for __, x in last], Ends.of([*last, *won[WINNERS:]]), stopped)
 
 
@@ -116,6 +123,22 @@ def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real
         last = _sorted(*descend(evaluate, settled(x[:count]), steps))
         x = np.array([own for __, own in last])
     return last
+
+
+def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator) -> list[tuple[float, Real]]:
+    """Where the best end that are shaken, a little or a lot, again and again."""
+    (count, __), last = SHAKEN[0], SHAKEN[-1][0]
+    found = sorted(won, key=lambda one: one[0])[:last]
+    for __ in range(SHAKES):
+        x = np.repeat([x for __, x in found], count // last, axis=0)
+        x = np.clip(x + 10 ** chance.uniform(*DECADES, (len(x), 1)) * chance.standard_normal(x.shape), 0, 1)
+        for some, steps in SHAKEN:
+            new = _sorted(*descend(evaluate, x[:some], steps))
+            x = np.array([own for __, own in new])
+        before, found = found[0][0], sorted([*found, *new], key=lambda one: one[0])[:last]
+        if found[0][0] > before * (1 - GAIN):
+            break
+    return found
 
 
 def _sorted(x: Real, cost: Real) -> list[tuple[float, Real]]:

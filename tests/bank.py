@@ -1,0 +1,21 @@
+"""Problems of the bank that have dimensions, and their sheets, drawn once for all tests of a run."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from models import PROBLEMS
+
+from tmm_cli import load, solve
+from tmm_cli.draw import sheets
+from tmm_cli.draw.drawing import Drawing
+from tmm_cli.problem.build import is_chain
+from tmm_cli.problem.reader import read_file
+
+NAMES = sorted(path.stem for path in PROBLEMS.glob("*.yaml") if not is_chain(read_file(str(path))))
+
+
+@cache
+def drawn(name: str) -> dict[str, Drawing]:
+    """The sheets of a problem by their stems."""
+    return dict(sheets(solve(load(str(PROBLEMS / f"{name}.yaml")))))

@@ -1,0 +1,58 @@
+"""Many sheets are drawn by several processes: the same files in the same order, whatever becomes of a process."""
+
+import os
+import time
+from functools import partial
+
+import pytest
+from test_commands import ROOT
+
+from tmm_cli import solve
+from tmm_cli.cli import drawing
+from tmm_cli.cli.drawing import FEW, by_all_cores
+from tmm_cli.draw import files, parts
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+
+
+@pytest.fixture(autouse=True)
+def _two_cores(monkeypatch):
+    monkeypatch.setattr(drawing.os, "cpu_count", lambda: 2)
+
+
+def numbered(n):
+    return [(f"{n}.svg", b"")], set()
+
+
+def ending(parent, n):
+    """Ends its process, unless it is this one."""
+    if os.getpid() != parent:
+        os._exit(1)
+    return numbered(n)
+
+
+def lasting(folder, n):
+    time.sleep(0.05)
+    (folder / str(n)).touch()
+    return numbered(n)
+
+
+def test_several_processes_write_the_same_files_in_the_same_order():
+    text = (
+        (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8").replace("detail: [2]", "detail: [0, 1, 2, 3, 4]")
+    )
+    results = solve(build(read_text(text, "sine.yaml")), "kinematics")
+    assert len(parts(results)) == FEW
+    assert list(files(results, way=by_all_cores)) == list(files(results))
+
+
+def test_jobs_of_a_process_that_was_ended_are_done_here():
+    jobs = [partial(numbered, 0), *(partial(ending, os.getpid(), n) for n in range(1, FEW))]
+    assert [name for written, __ in by_all_cores(jobs) for name, __ in written] == [f"{n}.svg" for n in range(FEW)]
+
+
+def test_who_stops_before_the_end_does_not_wait_for_all(tmp_path):
+    found = by_all_cores([partial(lasting, tmp_path, n) for n in range(40)])
+    next(found)
+    found.close()
+    assert 0 < len(list(tmp_path.iterdir())) < 40
