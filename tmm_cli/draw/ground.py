@@ -28,6 +28,7 @@ class Pieces:
 
     fresh: list[tuple[complex, complex]] = field(default_factory=list)
     found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
+    reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
 
     def path(self, places: Sequence[complex]) -> None:
         """A polyline, or the outline of a figure."""
@@ -43,7 +44,16 @@ class Pieces:
         if self.fresh:
             self.found = np.concatenate([self.found, np.array(self.fresh, complex)])
             self.fresh.clear()
+            xs, ys = self.found.real, self.found.imag
+            self.reach = np.stack([xs.min(axis=1), xs.max(axis=1), ys.min(axis=1), ys.max(axis=1)])
         return self.found
+
+    def near(self, field: Box) -> NDArray[Any]:
+        """Ends of those that may come into a field."""
+        every, (left, right, low, high) = self.all, field
+        first, last, under, over = self.reach
+        found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
+        return found
 
     @property
     def crowd(self) -> NDArray[Any]:
@@ -53,16 +63,6 @@ class Pieces:
         whose = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
         found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
-        return found
-
-    def inside(self, boxes: Boxes) -> NDArray[Any]:
-        """How long they are in each box, in all."""
-        starts, ends = self.all.T
-        left, right, low, high = boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()
-        beside = (np.maximum(starts.real, ends.real) < left) | (np.minimum(starts.real, ends.real) > right)
-        past = (np.maximum(starts.imag, ends.imag) < low) | (np.minimum(starts.imag, ends.imag) > high)
-        near = ~(beside | past)
-        found: NDArray[Any] = runs(boxes, starts[near], ends[near]).sum(axis=1)
         return found
 
 
@@ -120,8 +120,11 @@ class Ground:
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
         wide = wider(boxes, AIR)
-        inside = self.solid.inside(wide)
-        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * self.faint.inside(wide)
+        room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
+        solid, faint = self.solid.near(room), self.faint.near(room)
+        lengths = runs(wide, *np.concatenate([solid, faint]).T)
+        inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
+        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * thin
         found += over(boxes, np.array(self.boxes))
         left, right, low, high = boxes.T
         beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)

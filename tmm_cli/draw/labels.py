@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -85,7 +85,10 @@ class Choice:
 
     def _crossing(self, feet: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
         """The price of leaders that run through texts, or over lines."""
-        texts, lines = np.array(self.ground.boxes), self.ground.solid.all
+        if not len(feet):
+            return np.zeros(0)
+        both, texts = np.concatenate([feet, ends]), np.array(self.ground.boxes)
+        lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
         through = runs(texts, feet, ends) > 0 if len(texts) else np.zeros((0, len(feet)))
         found: NDArray[Any] = LINE * through.sum(axis=0) + CROSSED * crossing(feet, ends, *lines.T).sum(axis=1)
         return found
@@ -168,15 +171,21 @@ def place(ground: Ground, labels: Sequence[Label]) -> list[Placed]:
 Tier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leaders, middles of boxes, prices
 
 
+@cache
+def _directions(number: int, between: bool) -> NDArray[Any]:
+    """Unit vectors all round, or those between them."""
+    found: NDArray[Any] = np.exp(1j * (2 * np.pi * (np.arange(number) + 0.5 * between) / number + np.pi / 4))
+    return found
+
+
 def about_anchor(label: Label, width: float, height: float) -> Iterator[Tier]:
     """Places about an anchor: the box touches a circle about it."""
     for start, stop in ((0, FIRST), *((n, n + 2) for n in range(FIRST, len(RINGS), 2))):
         found = []
         for ring, reach in enumerate(RINGS[start:stop], start):
-            number = DIRECTIONS * (1 + (reach > LEADER))
-            along = np.exp(1j * (2 * np.pi * (np.arange(number) + 0.5 * (ring % 2)) / number + np.pi / 4))
+            along = _directions(DIRECTIONS * (1 + (reach > LEADER)), ring % 2 == 1)
             off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
-            found.append((label.anchor + off, np.full(number, FARTHER * reach)))
+            found.append((label.anchor + off, np.full(len(along), FARTHER * reach)))
         middles, prices = (np.concatenate(part) for part in zip(*found, strict=True))
         yield np.full(len(middles), label.anchor), middles, prices
 
