@@ -19,8 +19,8 @@ def about(middle: complex, width: float, height: float) -> Box:
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
 
 
-def around(middles: NDArray[Any], width: float, height: float) -> Boxes:
-    """Boxes of one size about their middles."""
+def around(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
+    """Boxes about their middles, of one size or each of its own."""
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 

@@ -45,11 +45,10 @@ class Pieces:
             self.fresh.clear()
         return self.found
 
-    @property
-    def crowd(self) -> NDArray[Any]:
-        """Points on them, close together."""
+    def points(self, step: float = STEP) -> NDArray[Any]:
+        """Points on them, about so far (mm) apart."""
         starts, ends = self.all.T
-        counts = np.maximum(2, (np.abs(ends - starts) / STEP).astype(int))
+        counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
         whose = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
         found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
@@ -85,7 +84,7 @@ class Ground:
     @property
     def crowd(self) -> NDArray[Any]:
         """Points on solid lines."""
-        return self.solid.crowd
+        return self.solid.points()
 
     @property
     def written(self) -> NDArray[Any]:
