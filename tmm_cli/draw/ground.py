@@ -34,7 +34,7 @@ class Pieces:
         self.fresh += [
             (start, end)
             for start, end in pairwise(places)
-            if np.isfinite(start) and np.isfinite(end) and abs(end - start) < LONGEST
+            if abs(end - start) < LONGEST  # of what is not finite it is not
         ]
 
     @property

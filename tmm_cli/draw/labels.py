@@ -87,17 +87,17 @@ class Placer:
             (beside if label.line else about)(label, *size) for label, size in zip(labels, sizes, strict=True)
         ]
         self.sizes = np.array(sizes)
-        first = self._priced(range(len(labels)))
-        self.known = [[places] for places in first if places is not None]
+        self.known: list[list[Places]] = [[] for __ in labels]
+        wanting: Sequence[int] = range(len(labels))
+        while wanting:
+            self._look_farther(wanting)
+            wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE / 2]
 
-    def _priced(self, numbers: Sequence[int]) -> list[Places | None]:
-        """The next places of some labels, all at once."""
-        found = [next(self.tiers[k], None) for k in numbers]
-        tiers = [tier for tier in found if tier is not None]
-        if not tiers:
-            return [None for __ in found]
-        feet, middles, price = (np.concatenate(part) for part in zip(*tiers, strict=True))
-        lengths = [0 if tier is None else len(tier[0]) for tier in found]
+    def _look_farther(self, numbers: Sequence[int]) -> None:
+        """Get to know the next places of some labels, all at once."""
+        found = [next(self.tiers[k]) for k in numbers]
+        feet, middles, price = (np.concatenate(part) for part in zip(*found, strict=True))
+        lengths = [len(tier[0]) for tier in found]
         whose = np.repeat(np.array(numbers), lengths)
         wide, high = self.sizes[whose].T
         boxes = around(middles, wide, high)
@@ -107,9 +107,12 @@ class Placer:
         ends = np.where(led, feet + off * (1 - SHORT / np.maximum(away, SHORT)), feet)
         price = price + LED * led + self.raster.price(boxes) + self._mistaken(whose, middles, boxes, away, led)
         places, stops = Places(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
-        return [
-            None if stop == start else self._clear(places.part(slice(start, stop))) for start, stop in pairwise(stops)
-        ]
+        for k, start, stop in zip(numbers, stops[:-1], stops[1:], strict=True):
+            self.known[k].append(self._clear(places.part(slice(start, stop))))
+
+    def more(self, k: int) -> bool:
+        """Whether a label has places that are not known yet."""
+        return len(self.known[k]) < (len(ASIDE) if self.labels[k].line else len(RINGED))
 
     def _clear(self, places: Places) -> Places:
         """Of places with leaders only the cheapest, with the price of what their leaders cross."""
@@ -147,10 +150,9 @@ class Placer:
             if best is not None and best[0] <= LINE / 2:
                 break
             if number == len(self.known[k]):
-                (fresh,) = self._priced([k])
-                if fresh is None:
+                if not self.more(k):
                     break
-                self.known[k].append(fresh)
+                self._look_farther([k])
             places = self.known[k][number]
             cost = places.price + over(places.boxes, taken)
             if len(leaders):
