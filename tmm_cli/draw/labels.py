@@ -28,7 +28,7 @@ SHORT = 0.5  # mm by which it ends before the label
 FARTHER, LED, MIDDLE = 0.35, 2.0, 3.0  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
 MISTAKEN, CROSSED = 6.0, 0.2  # of standing nearer to what has another name, of a line that a leader crosses
 ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
-CONTENT = 1.5
+CONTENT = 6.0
 SAME = 0.5  # mm: nearer places are one
 
 Item = TypeVar("Item")
@@ -129,7 +129,7 @@ class Placer:
     ) -> NDArray[Any]:
         """The price of standing nearer to another lettered place, or to another line, than to one's own."""
         nearer = np.zeros(len(middles), bool)
-        if len(self.rivals):
+        if len(self.rivals) and not led.all():  # a leader says what is meant
             off = gaps(boxes, self.rivals)
             own = np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME
             nearer = np.where(own, np.inf, off).min(axis=1) < away + 0.8
@@ -138,7 +138,7 @@ class Placer:
             others = [other for other in self.ground.lines if other != line]
             near = asides(middles[here], *np.array([line, *others]).T)
             nearer[here] = near[:, 1:].min(axis=1, initial=np.inf) < near[:, 0] + 0.5
-        return np.where(nearer, np.where(led, MISTAKEN / 3, MISTAKEN), 0.0)
+        return np.where(nearer, np.where(led, 0.0, MISTAKEN), 0.0)
 
     def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, Places]:
         """The cheapest place of a label, given the boxes of others and their leaders (number, ends).

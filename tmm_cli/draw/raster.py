@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from tmm_cli.draw.boxes import Boxes, wider
 from tmm_cli.draw.ground import A_FAINT, A_LINE, A_TEXT, LINE, OUTSIDE, TEXT, Ground
 
-CELL, MOST = 0.4, 2000  # mm: a square's side; squares on the diagonal of a field, at most
-STEP = 0.3  # mm between the points that are counted on a line
-AIR = 0.2  # mm about a text that are free, besides what the squares at its edge take
+CELL, MOST = 0.5, 2000  # mm: a square's side; squares on the diagonal of a field, at most
+STEP = 0.4  # mm between the points that are counted on a line
+AIR = 0.15  # mm about a text that are free, besides what the squares at its edge take
 SOLID, WRITTEN = 1 << 20, 1 << 40  # in one count: points on faint lines, on solid ones, squares in texts
 
 
@@ -34,7 +34,7 @@ class Raster:
         for left, right, low, high in self._edges(np.reshape(np.array(ground.boxes), (-1, 4))).tolist():
             squares[left:right, low:high] += WRITTEN
         self.sums = np.zeros((across + 1, up + 1), np.int64)
-        np.cumsum(np.cumsum(squares, axis=0), axis=1, out=self.sums[1:, 1:])
+        np.cumsum(np.cumsum(squares, axis=1, out=squares), axis=0, out=self.sums[1:, 1:])
 
     def _squares(self, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         off = (places - self.low) / self.cell
