@@ -31,7 +31,7 @@ TWINS = "this name looks like another one, but its letters differ"
 ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
     "tmm, title, description, units, parameters, synthesis, variants, grading, points, guides, links, driver, gears, "
-    "racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, positions, checks"
+    "racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, positions, checks, sheet"
 )
 
 

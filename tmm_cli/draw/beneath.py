@@ -22,7 +22,8 @@ TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 MOST = 0.5  # of a sheet: more than this is written on another one
-WIDTHS = (110.0, 150.0, 200.0, 260.0)  # mm: what is beneath a drawing on a large sheet is not folded into less
+WIDTHS = (110.0, 150.0, 200.0, 260.0, 330.0)  # mm: what is beneath a drawing on a large sheet is folded into one
+UPRIGHT = 1.4  # times wider than high, such a drawing takes the least room
 LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
 HANGING = " " * 8
 PAPERS = (LANDSCAPE, PORTRAIT)
@@ -163,8 +164,8 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
     def height(wide: float) -> float:
         return most - written.left(low, low + complex(wide, most)).imag
 
-    wide = next((wide for wide in WIDTHS if height(wide) < max(wide, up)), WIDTHS[-1])
-    wide = max(wide, across + 2 * PAD)
+    widths = [max(wide, across + 2 * PAD) for wide in WIDTHS]
+    wide = min(widths, key=lambda wide: max(wide, UPRIGHT * (up + 2 * PAD + height(wide))))
     paper = complex(wide, up + 2 * PAD + height(wide)) + low - edge
     return _Placed((paper.real, paper.imag), mu, middle, written)
 

@@ -53,6 +53,8 @@ def gaps(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]
 
 def runs(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
     """How long each straight line is inside each box: (box, line)."""
+    if not len(boxes) or not len(starts):
+        return np.zeros((len(boxes), len(starts)))
     first, last = inside(boxes, starts, ends)
     found: NDArray[Any] = np.maximum(last - first, 0) * np.abs(ends - starts)
     return found
@@ -62,10 +64,11 @@ def inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDAr
     """Shares of each straight line at which it comes into each box and leaves it (before, where it never does)."""
     way = ends - starts
     left, right, low, high = boxes.T[:, :, None]
-    first, last = np.zeros((len(boxes), len(starts))), np.ones((len(boxes), len(starts)))
+    first: Any = 0.0
+    last: Any = 1.0
     for least, most, at, step in ((left, right, starts.real, way.real), (low, high, starts.imag, way.imag)):
-        step = np.where(np.abs(step) < TINY, TINY, step)
-        one, other = (least - at) / step, (most - at) / step
+        per = 1 / np.where(np.abs(step) < TINY, TINY, step)
+        one, other = (least - at) * per, (most - at) * per
         first, last = np.maximum(first, np.minimum(one, other)), np.minimum(last, np.maximum(one, other))
     return first, last
 

@@ -28,6 +28,7 @@ class Pieces:
 
     fresh: list[tuple[complex, complex]] = field(default_factory=list)
     found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
+    reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
 
     def path(self, places: Sequence[complex]) -> None:
         """A polyline, or the outline of a figure."""
@@ -43,7 +44,16 @@ class Pieces:
         if self.fresh:
             self.found = np.concatenate([self.found, np.array(self.fresh, complex)])
             self.fresh.clear()
+            xs, ys = self.found.real, self.found.imag
+            self.reach = np.stack([xs.min(axis=1), xs.max(axis=1), ys.min(axis=1), ys.max(axis=1)])
         return self.found
+
+    def near(self, field: Box) -> NDArray[Any]:
+        """Ends of those that may come into a field."""
+        every, (left, right, low, high) = self.all, field
+        first, last, under, over = self.reach
+        found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
+        return found
 
     def points(self, step: float = STEP) -> NDArray[Any]:
         """Points on them, about so far (mm) apart."""
@@ -56,12 +66,8 @@ class Pieces:
 
     def inside(self, boxes: Boxes) -> NDArray[Any]:
         """How long they are in each box, in all."""
-        starts, ends = self.all.T
-        left, right, low, high = boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()
-        beside = (np.maximum(starts.real, ends.real) < left) | (np.minimum(starts.real, ends.real) > right)
-        past = (np.maximum(starts.imag, ends.imag) < low) | (np.minimum(starts.imag, ends.imag) > high)
-        near = ~(beside | past)
-        found: NDArray[Any] = runs(boxes, starts[near], ends[near]).sum(axis=1)
+        lines = self.near((boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()))
+        found: NDArray[Any] = runs(boxes, *lines.T).sum(axis=1)
         return found
 
 

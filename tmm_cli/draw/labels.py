@@ -81,7 +81,7 @@ class Placer:
         self.ground, self.labels, self.raster = ground, labels, Raster(ground)
         anchors = [label.anchor for label in labels if label.line is None]
         self.rivals = np.array([*dict.fromkeys([*anchors, *ground.rivals])], complex)
-        self.texts, self.lines = np.reshape(np.array(ground.boxes), (-1, 4)), ground.solid.all
+        self.texts = np.reshape(np.array(ground.boxes), (-1, 4))
         sizes = [extent(label.text, label.size) for label in labels]
         self.tiers = [
             (beside if label.line else about)(label, *size) for label, size in zip(labels, sizes, strict=True)
@@ -120,7 +120,9 @@ class Placer:
             return places
         best = np.argsort(places.price, kind="stable")[:KEPT]
         kept = places.part(best)
-        crossed = crossing(kept.feet, kept.ends, *self.lines.T).sum(axis=1)
+        both = np.concatenate([kept.feet, kept.ends])
+        lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
+        crossed = crossing(kept.feet, kept.ends, *lines.T).sum(axis=1)
         through = (runs(self.texts, kept.feet, kept.ends) > 0).sum(axis=0)
         return replace(kept, price=kept.price + CROSSED * crossed + LINE * through)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import string
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 
 from tmm_cli.draw import fonts
 from tmm_cli.plans.record import Symbol
@@ -43,6 +44,7 @@ def pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
         at += width(part, size)
 
 
+@lru_cache(10_000)
 def width(words: Words, size: float) -> float:
     """Width of a text, in the unit of its size."""
     return sum(
@@ -62,18 +64,20 @@ def filled(sentence: str, **words: Words) -> Words:
     return tuple(found)
 
 
-def wrapped(words: Words, size: float, most: float, hanging: str = "") -> Iterator[Words]:
+@lru_cache(1000)
+def wrapped(words: Words, size: float, most: float, hanging: str = "") -> tuple[Words, ...]:
     """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`."""
+    lines: list[Words] = []
     line: list[str | Symbol] = []
     wide = 0.0
     for token in _tokens(words):
         own = width(token, size)
         if line and wide + own > most:
-            yield _joined(line)
+            lines.append(_joined(line))
             line, wide = [hanging], width(hanging, size)
         line += token
         wide += own
-    yield _joined(line)
+    return (*lines, _joined(line))
 
 
 def _joined(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:

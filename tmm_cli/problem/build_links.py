@@ -205,19 +205,24 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
         if guide not in used:
             raise ProblemError(_("nothing slides on this guide"), path=("guides", guide), found=quote(guide), key=True)
     shared = {h.point for h in members.hinges}
-    everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
-    elsewhere = _points_named(shape, data, links, everything)
+    alone = []
     for name, link in links.items():
         given = list(link.points) if name == FRAME else shape.links[name].points
         running = {s.at for s in members.slides if s.runner == name}
         for number, point in enumerate(given if isinstance(given, list) else ()):
-            if point in shared or point in elsewhere or link.points[point] in running:
-                continue
+            if point not in shared and link.points[point] not in running:
+                alone.append((name, number, point))
+    if not alone:
+        return
+    everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
+    elsewhere = _points_named(shape, data, links, everything)
+    for name, number, point in alone:
+        if point not in elsewhere:
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
             raise ProblemError(
                 _("this point is named nowhere else"), path=path, found=quote(point),
                 allowed=_("a point of another link; a point that is only watched has coordinates (see also:)"),
-                near=nearest(point, [p for p in everything if p != point and p not in link.points]),
+                near=nearest(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,
             )  # fmt: skip
 

@@ -13,13 +13,15 @@ from tmm_cli.draw.layout.packing import Field, Size, pack, spread
 from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
 from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
+from tmm_cli.errors import _
+from tmm_cli.problem.errors import ProblemError
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 EDGE = 6.0  # mm between the frame and what is drawn
 LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
 NOTABLE = 1.06  # times larger: it is drawn again
-TRIES = 6  # of drawing all as large as it was thought to become
+TRIES, FREE = 7, 3  # of drawing all as large as it was thought to become; those before it must not grow any more
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
     sources = [source for source in CONTENTS if source.sheet == number]
     parts = [_first(source, choice, shrunk) for source in sources]
     best: tuple[list[Picture], list[Page]] | None = None
-    for __ in range(TRIES):
+    for number_of_try in range(TRIES):
         every = [piece for part in parts for piece in part]
         rooms, pages = arranged(every, field, shrunk)
         if best and (len(pages) > len(best[1]) or not _larger(rooms, best[0])):
@@ -68,9 +70,17 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
             best = pictures, pages
         elif best:
             return best
-        else:  # what proves larger than thought is not made larger again
+        elif number_of_try >= FREE:  # what proves larger than thought is not made larger again
             parts = [[replace(piece, most=min(piece.most, piece.drawn.longest)) for piece in part] for part in parts]
-    return best or (pictures, filled(sizes, field) or [[k] for k in range(len(sizes))])
+    return best or (pictures, fitting(pictures, field))
+
+
+def fitting(pictures: Sequence[Picture], field: Field) -> list[Page]:
+    """Pages for drawings as they are. Raises ProblemError where one is larger than the field."""
+    for one in pictures:
+        if pack(spaced([one.paper], [0]), field) is None:
+            raise ProblemError(_("{name} is larger than the sheet").format(name=one.stem), allowed=_("a larger format"))
+    return filled([one.paper for one in pictures], field) or []
 
 
 def _larger(rooms: Sequence[float], drawn: Sequence[Picture]) -> bool:

@@ -8,10 +8,13 @@ from dataclasses import dataclass
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
 from tmm_cli.draw.layout.picture import Picture
+from tmm_cli.errors import _
 from tmm_cli.plans.record import round_scale
+from tmm_cli.problem.errors import ProblemError
 
 GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
+EVENER = 1.05  # steps in which pages may become fuller than the average one
 FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
 STEP = 1.04  # by which a drawing without a scale is made larger
 EASED = 0.75  # of the largest sizes at which all fits: so much is shared out again, piece by piece
@@ -58,7 +61,8 @@ Page = list[int]  # numbers of pieces
 def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[float], list[Page]]:
     """A room for each piece, and which pieces stand on which page.
 
-    shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size.
+    shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size. Raises
+    ProblemError where the format is too small.
     """
     few, found = PAGES, None
     for share in shares():
@@ -69,7 +73,7 @@ def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list
         if found is not None and share * shrunk**0.5 < LEAST:
             break
     if found is None:
-        raise ValueError("a drawing is larger than the sheet at its least size")
+        raise ProblemError(_("a drawing is larger than the sheet at its least size"), allowed=_("a larger format"))
     rooms, pages = found
     least = [min(room, max(EASED * room, piece.least)) for piece, room in zip(pieces, rooms, strict=True)]
     rooms = [piece.fitted(room) for piece, room in zip(pieces, least, strict=True)]
@@ -89,11 +93,30 @@ def spaced(sizes: Sequence[Size], page: Page) -> list[Size]:
 
 
 def filled(sizes: Sequence[Size], field: Field) -> list[Page] | None:
-    """Pages filled one after the other; None where a piece alone does not fit."""
+    """As few pages as hold the pieces in their order, about equally full; None where a piece alone does not fit."""
+    fewest = _filled(sizes, field, math.inf)
+    if fewest is None or len(fewest) < 2:
+        return fewest
+    most = sum(area(sizes, page) for page in fewest) / len(fewest)
+    while True:
+        pages = _filled(sizes, field, most)
+        if pages is not None and len(pages) == len(fewest):
+            return pages
+        most *= EVENER
+
+
+def area(sizes: Sequence[Size], page: Page) -> float:
+    """What the pieces of a page take, mm²."""
+    return sum(sizes[k][0] * sizes[k][1] for k in page)
+
+
+def _filled(sizes: Sequence[Size], field: Field, most: float) -> list[Page] | None:
+    """Pages filled one after the other, each with no more than so much."""
     pages: list[Page] = []
     for number in range(len(sizes)):
-        if pages and pack(spaced(sizes, [*pages[-1], number]), field) is not None:
-            pages[-1].append(number)
+        longer = [*pages[-1], number] if pages else []
+        if longer and area(sizes, longer) <= most and pack(spaced(sizes, longer), field) is not None:
+            pages[-1] = longer
         elif pack(spaced(sizes, [number]), field) is not None:
             pages.append([number])
         else:
