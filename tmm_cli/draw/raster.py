@@ -12,7 +12,7 @@ from tmm_cli.draw.ground import A_FAINT, A_LINE, A_TEXT, LINE, OUTSIDE, TEXT, Gr
 
 CELL, MOST = 0.5, 2000  # mm: a square's side; squares on the diagonal of a field, at most
 STEP = 0.4  # mm between the points that are counted on a line
-AIR = 0.15  # mm about a text that are free, besides what the squares at its edge take
+AIR = 0.35  # mm about a text that are free, besides what the squares at its edge take
 SOLID, WRITTEN = 1 << 20, 1 << 40  # in one count: points on faint lines, on solid ones, squares in texts
 
 
