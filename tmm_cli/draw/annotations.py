@@ -55,8 +55,11 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * up_of(u), u
 
+    def least(offset: float, stand: str) -> float:
+        return 0.25 * offset + UNWISHED.get(stand, 0.0)
+
     def cost(side: complex, offset: float, stand: str) -> float:
-        first, last, *__ = lines(side, offset, stand)
+        first, last, middle, v = lines(side, offset, stand)
         outer = 0.0 if inner else 2 * HEAD
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
@@ -64,15 +67,16 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         legs = [(z, foot + 2 * OVER * side) for z, foot in ((start, first), (end, last))]
         found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
         found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
-        return found + 0.25 * offset + UNWISHED.get(stand, 0.0)
+        squares = np.array([*row(middle, v, width, height), first, last])
+        prices = sheet.ground.price(around(squares, height, height))
+        found += float(prices[:-2].sum() + AT_HEAD * prices[-2:].sum())
+        return found + least(offset, stand)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
-    squares = np.array([
-        [*row(middle, v, width, height), first, last] for first, last, middle, v in (lines(*one) for one in choices)
-    ])  # fmt: skip
-    prices = sheet.ground.price(around(squares.ravel(), height, height)).reshape(squares.shape)
-    written = prices[:, :-2].sum(axis=1) + AT_HEAD * prices[:, -2:].sum(axis=1)
-    side, offset, stand = choices[int(np.argmin([cost(*one) for one in choices] + written))]
+    (side, offset, stand), price = choices[0], cost(*choices[0])
+    for choice in choices[1:]:
+        if least(*choice[1:]) < price and (own := cost(*choice)) < price:
+            (side, offset, stand), price = choice, own
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:

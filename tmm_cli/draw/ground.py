@@ -64,12 +64,6 @@ class Pieces:
         found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
         return found
 
-    def inside(self, boxes: Boxes) -> NDArray[Any]:
-        """How long they are in each box, in all."""
-        lines = self.near((boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()))
-        found: NDArray[Any] = runs(boxes, *lines.T).sum(axis=1)
-        return found
-
 
 @dataclass
 class Ground:
@@ -125,8 +119,11 @@ class Ground:
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
         wide = wider(boxes, AIR)
-        inside = self.solid.inside(wide)
-        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * self.faint.inside(wide)
+        room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
+        solid, faint = self.solid.near(room), self.faint.near(room)
+        lengths = runs(wide, *np.concatenate([solid, faint]).T)
+        inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
+        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * thin
         found += over(boxes, np.array(self.boxes))
         left, right, low, high = boxes.T
         beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, islice, repeat
+from itertools import accumulate, chain, repeat
 
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
 from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, arranged, filled, spaced
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, filled, grown, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
@@ -20,8 +20,9 @@ PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 EDGE = 6.0  # mm between the frame and what is drawn
 LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
-NOTABLE = 1.06  # times larger: it is drawn again
-TRIES, FREE = 7, 3  # of drawing all as large as it was thought to become; those before it must not grow any more
+NOTABLE = 1.1  # times larger: it is drawn again
+ENOUGH = 0.72  # of a page: then nothing more is made larger
+ROUNDS = 2  # of making larger what there proves to be room for
 
 
 @dataclass(frozen=True)
@@ -55,24 +56,45 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
     shrunk = max(paper) / max(PAPERS["A1"])
     sources = [source for source in CONTENTS if source.sheet == number]
     parts = [_first(source, choice, shrunk) for source in sources]
-    best: tuple[list[Picture], list[Page]] | None = None
-    for number_of_try in range(TRIES):
-        every = [piece for part in parts for piece in part]
-        rooms, pages = arranged(every, field, shrunk)
-        if best and (len(pages) > len(best[1]) or not _larger(rooms, best[0])):
-            return best
-        wanted = iter(rooms)
-        sized = zip(sources, parts, strict=True)
-        parts = [_again(source, choice, part, [*islice(wanted, len(part))]) for source, part in sized]
-        pictures = [piece.drawn for part in parts for piece in part]
-        sizes = [picture.paper for picture in pictures]
-        if all(pack(spaced(sizes, page), field) is not None for page in pages):
-            best = pictures, pages
-        elif best:
-            return best
-        elif number_of_try >= FREE:  # what proves larger than thought is not made larger again
-            parts = [[replace(piece, most=min(piece.most, piece.drawn.longest)) for piece in part] for part in parts]
-    return best or (pictures, fitting(pictures, field))
+    lengths, pieces = [len(part) for part in parts], [piece for part in parts for piece in part]
+
+    def drawn(rooms: Sequence[float]) -> list[Piece]:
+        """The same pieces in other rooms, source by source."""
+        starts = accumulate(lengths, initial=0)
+        slices = [slice(start, start + length) for start, length in zip(starts, lengths, strict=False)]
+        again = (_again(source, choice, pieces[own], rooms[own]) for source, own in zip(sources, slices, strict=True))
+        return [piece for part in again for piece in part]
+
+    rooms, pages = begun(pieces, field, shrunk)
+    larger = drawn(grown(pieces, rooms, pages, field, shrunk))
+    if all(pack(spaced(_sizes(larger), page), field) is not None for page in pages):
+        pieces = larger
+    else:  # something became larger than thought
+        pieces = drawn(rooms)
+        pages = fitting([piece.drawn for piece in pieces], field)
+    for __ in range(ROUNDS):
+        before = [piece.drawn.longest for piece in pieces]
+        thin = [page for page in pages if area(_sizes(pieces), page) < ENOUGH * field.area]
+        rooms = grown(pieces, before, thin, field, shrunk)
+        if all(room < NOTABLE * old for room, old in zip(rooms, before, strict=True)):
+            break
+        pieces = _taken(pieces, drawn(rooms), pages, field)
+    return [piece.drawn for piece in pieces], pages
+
+
+def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Page], field: Field) -> list[Piece]:
+    """Those of the larger pieces for which there really is room, one after the other."""
+    found = list(pieces)
+    for page in pages:
+        for number in page:
+            tried = [*found[:number], larger[number], *found[number + 1 :]]
+            if pack(spaced(_sizes(tried), page), field) is not None:
+                found = tried
+    return found
+
+
+def _sizes(pieces: Sequence[Piece]) -> list[Size]:
+    return [piece.drawn.paper for piece in pieces]
 
 
 def fitting(pictures: Sequence[Picture], field: Field) -> list[Page]:
@@ -81,11 +103,6 @@ def fitting(pictures: Sequence[Picture], field: Field) -> list[Page]:
         if pack(spaced([one.paper], [0]), field) is None:
             raise ProblemError(_("{name} is larger than the sheet").format(name=one.stem), allowed=_("a larger format"))
     return filled([one.paper for one in pictures], field) or []
-
-
-def _larger(rooms: Sequence[float], drawn: Sequence[Picture]) -> bool:
-    """Whether it is worth while to draw all again."""
-    return any(room > NOTABLE * one.longest for room, one in zip(rooms, drawn, strict=True))
 
 
 def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:

@@ -58,8 +58,8 @@ class Piece:
 Page = list[int]  # numbers of pieces
 
 
-def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[float], list[Page]]:
-    """A room for each piece, and which pieces stand on which page.
+def begun(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[float], list[Page]]:
+    """A room for each piece, smaller than there is, and which pieces stand on which page.
 
     shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size. Raises
     ProblemError where the format is too small.
@@ -76,10 +76,7 @@ def arranged(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list
         raise ProblemError(_("a drawing is larger than the sheet at its least size"), allowed=_("a larger format"))
     rooms, pages = found
     least = [min(room, max(EASED * room, piece.least)) for piece, room in zip(pieces, rooms, strict=True)]
-    rooms = [piece.fitted(room) for piece, room in zip(pieces, least, strict=True)]
-    for page in pages:
-        grow(pieces, rooms, page, field, MOST * shrunk)
-    return rooms, pages
+    return [piece.fitted(room) for piece, room in zip(pieces, least, strict=True)], pages
 
 
 def shares() -> Iterator[float]:
@@ -124,16 +121,20 @@ def _filled(sizes: Sequence[Size], field: Field, most: float) -> list[Page] | No
     return pages
 
 
-def grow(pieces: Sequence[Piece], rooms: list[float], page: Page, field: Field, most: float) -> None:
-    """Make pieces of a page larger, those first that are farthest below their usual size, while all fit."""
-    growing = set(page)
-    while growing:
-        number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
-        before, rooms[number] = rooms[number], pieces[number].larger(rooms[number])
-        sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
-        if (
-            rooms[number] > min(most * pieces[number].usual, pieces[number].most * (1 + 1e-9))
-            or pack(spaced(sizes, page), field) is None
-        ):
-            rooms[number] = before
-            growing.discard(number)
+def grown(
+    pieces: Sequence[Piece], given: Sequence[float], pages: Sequence[Page], field: Field, shrunk: float
+) -> list[float]:
+    """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size."""
+    rooms = list(given)
+    for page in pages:
+        growing = set(page)
+        while growing:
+            number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
+            piece, before = pieces[number], rooms[number]
+            rooms[number] = piece.larger(before)
+            sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
+            most = min(MOST * shrunk * piece.usual, piece.most)
+            if rooms[number] > most or pack(spaced(sizes, page), field) is None:
+                rooms[number] = before
+                growing.discard(number)
+    return rooms
