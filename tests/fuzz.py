@@ -262,7 +262,7 @@ def _spots(data: Any, kind: Any) -> Iterator[Spot]:
 def small(data: dict[str, Any]) -> dict[str, Any]:
     """The same with few positions and a short search: more of them take longer and show no more."""
     positions = data.get("positions")
-    if isinstance(positions, dict) and isinstance(positions.get("count"), int):
+    if isinstance(positions, dict) and isinstance(positions.get("count"), int | float):
         positions["count"] = min(positions["count"], POSITIONS)
     task = data.get("synthesis")
     if isinstance(task, dict) and task.get("task") == "optimal":

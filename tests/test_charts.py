@@ -11,7 +11,7 @@ from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
 from tmm_cli.draw.axes import across, decades, equal, round_up, upwards
-from tmm_cli.draw.chart import Across, Curve, Plot, chart, room
+from tmm_cli.draw.chart import SAMPLE, Across, Curve, Plot, chart, room
 from tmm_cli.draw.diagrams import LINES, diagrams
 from tmm_cli.draw.drawing import POINT, Circle, Line, Text
 from tmm_cli.draw.fonts import corners
@@ -147,6 +147,8 @@ def test_a_panel_of_many_curves_has_a_legend_of_several_rows_above_it():
     named = [m for m in sheet.marks if isinstance(m, Text) and m.text.startswith("a curve")]
     assert len(named) == 9 and len({round(m.at.imag, 3) for m in named}) > 1
     assert all(m.at.imag > panel.y.end and corners(m)[1].real < LANDSCAPE[0] for m in named)
+    lines = [m for m in sheet.finish().marks if isinstance(m, Line)]
+    assert sum(m.places[0].imag > panel.y.end and abs(m.places[-1] - m.places[0]) == SAMPLE for m in lines) == 9
 
 
 def test_values_that_there_are_not_interrupt_a_curve():

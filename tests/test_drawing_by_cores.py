@@ -42,7 +42,7 @@ def test_several_processes_write_the_same_files_in_the_same_order():
         (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8").replace("detail: [2]", "detail: [0, 1, 2, 3, 4]")
     )
     results = solve(build(read_text(text, "sine.yaml")), "kinematics")
-    assert len(parts(results)) == FEW
+    assert len(parts(results)) > FEW
     assert list(files(results, way=by_all_cores)) == list(files(results))
 
 

@@ -32,12 +32,12 @@ NUMERIC = (  # from below; folders of one floor may know one another
     ("analysis",), ("tape", "variants"), ("schemes", "synthesis"), ("accuracy",),
 )  # fmt: skip
 FLOORS = (
-    ("top", "double_double", "words"), *NUMERIC, ("results",), ("door",), ("draw", "note", "grading", "bench"),
-    ("cli",),
+    ("top", "double_double", "words"), *NUMERIC, ("results",), ("door",),
+    ("draw", "animate", "note", "grading", "bench"), ("cli",),
 )  # fmt: skip
 FLOOR = {folder: number for number, folders in enumerate(FLOORS) for folder in folders}
 # what turns a problem with a task into one with lengths, and what shows a problem
-KNOW_PROBLEMS = ("results", "door", "draw", "note", "grading", "bench", "cli")
+KNOW_PROBLEMS = ("results", "door", "draw", "animate", "note", "grading", "bench", "cli")
 READS_A_TASK = (
     "synthesis.reading",
     "synthesis.blocks",

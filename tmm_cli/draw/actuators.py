@@ -75,12 +75,12 @@ def springs(sheet: Sheet, scene: Scene) -> None:
     """All springs, with their names."""
     for spring in scene.linkage.springs:
         if spring.turns:
-            _torsion(sheet, scene, spring)
+            torsion(sheet, scene, spring)
             continue
         start, end = sheet.on(scene.place(spring.i, spring.at_i)), sheet.on(scene.place(spring.j, spring.at_j))
         if not np.isfinite(start + end) or abs(end - start) < 0.5:
             continue
-        (_coils if spring.rate > 0 else _gas)(sheet, start, end)
+        (coils if spring.rate > 0 else gas)(sheet, start, end)
         for link, at in ((spring.i, start), (spring.j, end)):
             sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
             if link == FRAME:
@@ -92,7 +92,7 @@ def springs(sheet: Sheet, scene: Scene) -> None:
         sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * AMPLITUDE, 9, SPRING)
 
 
-def _coils(sheet: Sheet, start: complex, end: complex) -> None:
+def coils(sheet: Sheet, start: complex, end: complex) -> None:
     """A zigzag between two straight ends."""
     length = abs(end - start)
     along = (end - start) / length
@@ -104,7 +104,7 @@ def _coils(sheet: Sheet, start: complex, end: complex) -> None:
     sheet.line([start, start + stub * along, *coils, end - stub * along, end], SPRING, 1.1, z=3.8)
 
 
-def _gas(sheet: Sheet, start: complex, end: complex) -> None:
+def gas(sheet: Sheet, start: complex, end: complex) -> None:
     """A cylinder that only pushes, or a force that does not change with length."""
     along = (end - start) / abs(end - start)
     neck, side = start + 0.6 * (end - start), 1j * along * 1.6
@@ -112,7 +112,7 @@ def _gas(sheet: Sheet, start: complex, end: complex) -> None:
     sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING, 1.1, 3.8)
 
 
-def _torsion(sheet: Sheet, scene: Scene, spring: Spring) -> None:
+def torsion(sheet: Sheet, scene: Scene, spring: Spring) -> None:
     """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
     point = scene.linkage.shared(spring.i, spring.j)
     centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))

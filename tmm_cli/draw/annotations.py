@@ -55,6 +55,9 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * up_of(u), u
 
+    def least(offset: float, stand: str) -> float:
+        return 0.25 * offset + UNWISHED.get(stand, 0.0)
+
     def cost(side: complex, offset: float, stand: str) -> float:
         first, last, middle, v = lines(side, offset, stand)
         outer = 0.0 if inner else 2 * HEAD
@@ -67,10 +70,13 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
         squares = np.array([*row(middle, v, width, height), first, last])
         prices = sheet.ground.price(around(squares, height, height))
         found += float(prices[:-2].sum() + AT_HEAD * prices[-2:].sum())
-        return found + 0.25 * offset + UNWISHED.get(stand, 0.0)
+        return found + least(offset, stand)
 
     choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
-    side, offset, stand = min(choices, key=lambda one: cost(*one))
+    (side, offset, stand), price = choices[0], cost(*choices[0])
+    for choice in choices[1:]:
+        if least(*choice[1:]) < price and (own := cost(*choice)) < price:
+            (side, offset, stand), price = choice, own
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:

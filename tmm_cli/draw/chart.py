@@ -238,7 +238,6 @@ def _write_head(panel: Panel, plot: Plot, rows: Sequence[Iterable[Curve]], top: 
                 panel.line(place, place + SAMPLE, curve.colour, curve.width, curve.style)
             panel.text(place + SAMPLE + 1, curve.label)
             place += _entry(curve)
-    panel.sheet.ground.boxes.append((panel.x.start, panel.x.end, panel.y.end, top))
 
 
 def _spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:

@@ -35,7 +35,7 @@ class Pieces:
         self.fresh += [
             (start, end)
             for start, end in pairwise(places)
-            if np.isfinite(start) and np.isfinite(end) and abs(end - start) < LONGEST
+            if abs(end - start) < LONGEST  # of what is not finite it is not
         ]
 
     @property
@@ -55,20 +55,13 @@ class Pieces:
         found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
         return found
 
-    @property
-    def crowd(self) -> NDArray[Any]:
-        """Points on them, close together."""
+    def points(self, step: float = STEP) -> NDArray[Any]:
+        """Points on them, about so far (mm) apart."""
         starts, ends = self.all.T
-        counts = np.maximum(2, (np.abs(ends - starts) / STEP).astype(int))
+        counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
         whose = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
         found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
-        return found
-
-    def inside(self, boxes: Boxes) -> NDArray[Any]:
-        """How long they are in each box, in all."""
-        lines = self.near((boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()))
-        found: NDArray[Any] = runs(boxes, *lines.T).sum(axis=1)
         return found
 
 
@@ -91,7 +84,7 @@ class Ground:
     @property
     def crowd(self) -> NDArray[Any]:
         """Points on solid lines."""
-        return self.solid.crowd
+        return self.solid.points()
 
     @property
     def written(self) -> NDArray[Any]:
@@ -126,8 +119,11 @@ class Ground:
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
         wide = wider(boxes, AIR)
-        inside = self.solid.inside(wide)
-        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * self.faint.inside(wide)
+        room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
+        solid, faint = self.solid.near(room), self.faint.near(room)
+        lengths = runs(wide, *np.concatenate([solid, faint]).T)
+        inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
+        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * thin
         found += over(boxes, np.array(self.boxes))
         left, right, low, high = boxes.T
         beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)

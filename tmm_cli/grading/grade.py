@@ -20,12 +20,14 @@ from tmm_cli.variants.family import Family, families
 from tmm_cli.vectors import Real
 
 CHUNK = 500  # students at once: all their numbers stay near the processor
+POSITIONS = 100_000  # of all these students, at most: numbers of the work are some hundred megabytes
 
 
 def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
     """Marks of every student, in the order of the submissions. Raises ProblemError."""
-    for first in range(0, len(submissions), CHUNK):
-        yield from _chunk(task, table, submissions[first : first + CHUNK])
+    some = max(1, min(CHUNK, POSITIONS // task.positions))
+    for first in range(0, len(submissions), some):
+        yield from _chunk(task, table, submissions[first : first + some])
 
 
 def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:

@@ -105,12 +105,17 @@ class Task:
         linkage = self.problem.whole.linkage
         return quantities(linkage, mobile(linkage))
 
+    @property
+    def positions(self) -> int:
+        """How many positions a cycle has."""
+        request = self.problem.whole.request
+        return len(request.places) or request.count
+
     @cached_property
     def asked(self) -> tuple[Asked, ...]:
         """What is asked, in the order of the file."""
-        whole, rules = self.problem.whole, self.rules
+        rules, last = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
-        last = len(whole.request.places) or whole.request.count
         with placed_in(self.tree):
             return tuple(
                 asked for n, rule in enumerate(rules.answers)

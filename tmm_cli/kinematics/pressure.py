@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE, RIGHT_ANGLE
+from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE, RIGHT_ANGLE, ROUNDINGS, ROUNDOFF
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -155,6 +155,8 @@ def find_pressure(
                     back = partial(_negative, linkage, upto, lead)
                     place, value = least(back, low, high)
                     place, value = top(back, place, min(high - place, place - low)), -value
+                    if value - angles[k] < ROUNDINGS * ROUNDOFF:  # a flat top: rounding alone would tell where it is
+                        place = float(q[k])
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
                 found.append(Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit))

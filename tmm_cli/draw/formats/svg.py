@@ -20,13 +20,14 @@ def svg(drawing: Drawing) -> bytes:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{across}mm" height="{up}mm" viewBox="0 0 {across} {up}" '
         f'font-family="\'{FAMILY}\', Verdana, sans-serif" stroke-linejoin="round" xml:space="preserve">',
         '<rect width="100%" height="100%" fill="white"/>',
-        *(_element(mark, drawing.paper[1]) for mark in drawing.marks),
+        *(element(mark, drawing.paper[1]) for mark in drawing.marks),
         "</svg>\n",
     ]
     return "\n".join(lines).encode("utf-8", "replace")
 
 
-def _element(mark: Mark, height: float) -> str:
+def element(mark: Mark, height: float) -> str:
+    """A mark on a paper of this height (mm); y goes down from there."""
     match mark:
         case Line():
             dashes = f' stroke-dasharray="{" ".join(f"{d:.3g}" for d in mark.dashes)}"' if mark.dashes else ""

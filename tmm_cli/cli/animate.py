@@ -1,0 +1,40 @@
+"""`tmm animate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli import solve
+from tmm_cli.animate.page import page
+from tmm_cli.cli.common import Settings, Variant, Variants, refusing
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.talk import say
+from tmm_cli.errors import _
+from tmm_cli.results.files import folder_name, write_whole
+from tmm_cli.results.warnings import warnings
+
+
+def animate(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A problem file (YAML).", show_default=False)],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="FILE.html", help="The page; else outputs/<problem>.html.", show_default=False
+        ),
+    ] = None,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+) -> None:
+    """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
+    with refusing():
+        problem = opened(file, variant_settings(file, variants, variant, settings))
+        results = solve(problem)
+        target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
+        write_whole(target, page(results).encode())
+        for warning in warnings(results):
+            say(_("warning: {warning}").format(warning=warning))
+        say(_("written: {folder}").format(folder=target))
