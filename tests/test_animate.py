@@ -14,11 +14,11 @@ from models import PROBLEMS
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.animate.content import FRAMES, frames, picture_of
-from tmm_cli.animate.page import MOST, page
+from tmm_cli.animate.page import FEWEST, MOST, page
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
-COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4"]
+COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4", "excavator", "summing-lever"]
 HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'
 
 
@@ -44,6 +44,14 @@ def test_a_page_is_small_and_asks_for_nothing(name):
     assert "default-src 'none'" in html
     assert not re.findall(r"(?:src|href|url|@import|fetch|XMLHttpRequest|WebSocket)\s*[=(]", html)
     assert set(re.findall(r"https?://[^\s\"']+", html)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
+    whole = page_of("shaper")
+    monkeypatch.setattr("tmm_cli.animate.page.MOST", len(whole.encode()) * 3 // 4)
+    fewer = page(results_of("shaper"))
+    assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
+    assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
 
 
 def test_links_are_in_every_frame_where_the_results_have_them():
