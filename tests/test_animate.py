@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from functools import cache
 
 import numpy as np
@@ -13,11 +14,11 @@ from models import PROBLEMS
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.animate.content import FRAMES, frames, picture_of
-from tmm_cli.animate.page import MOST, page
+from tmm_cli.animate.page import FEWEST, MOST, page
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
-COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4"]
+COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4", "excavator", "summing-lever"]
 HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'
 
 
@@ -43,6 +44,14 @@ def test_a_page_is_small_and_asks_for_nothing(name):
     assert "default-src 'none'" in html
     assert not re.findall(r"(?:src|href|url|@import|fetch|XMLHttpRequest|WebSocket)\s*[=(]", html)
     assert set(re.findall(r"https?://[^\s\"']+", html)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
+    whole = page_of("shaper")
+    monkeypatch.setattr("tmm_cli.animate.page.MOST", len(whole.encode()) * 3 // 4)
+    fewer = page(results_of("shaper"))
+    assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
+    assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
 
 
 def test_links_are_in_every_frame_where_the_results_have_them():
@@ -75,3 +84,109 @@ def test_names_from_files_are_data():
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium, where it is installed with what drives it."""
+    api = pytest.importorskip("playwright.sync_api")
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    with api.sync_playwright() as play:
+        try:
+            opened = play.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        except api.Error:
+            pytest.skip("no Chromium is found")
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def opened(browser, tmp_path):
+    """Opens the page of a problem; at the end nothing was asked of a network, and nothing went wrong."""
+    wrong, contexts = [], []
+
+    def opening(name, width=1200, **options):
+        file = tmp_path / f"{name}.html"
+        file.write_text(page_of(name), encoding="utf-8")
+        context = browser.new_context(viewport={"width": width, "height": 800}, **options)
+        contexts.append(context)
+        tab = context.new_page()
+        tab.on("request", lambda request: request.url == file.as_uri() or wrong.append(request.url))
+        tab.on("pageerror", lambda error: wrong.append(str(error)))
+        tab.on("console", lambda message: wrong.append(message.text))
+        tab.goto(file.as_uri())
+        return tab
+
+    yield opening
+    for context in contexts:
+        context.close()
+    assert not wrong
+
+
+def place(tab):
+    return float(tab.input_value("#at"))
+
+
+def until(tab, holds):
+    """Waits for the place of the page; its own policy forbids the browser's waiting for an expression."""
+    for _ in range(200):
+        if holds(place(tab)):
+            return
+        tab.wait_for_timeout(50)
+    raise AssertionError(f"the page stays at {place(tab)}")
+
+
+def test_keys_play_step_and_stop(opened):
+    tab = opened("shaper")
+    tab.keyboard.press("ArrowRight")
+    tab.keyboard.press("ArrowRight")
+    assert place(tab) == 2
+    tab.keyboard.press("ArrowLeft")
+    assert place(tab) == 1
+    tab.keyboard.press("ArrowUp")
+    assert tab.input_value("#speed") == "2"
+    tab.keyboard.press(" ")
+    until(tab, lambda at: at > 5)
+    tab.keyboard.press(" ")
+    stopped = place(tab)
+    tab.wait_for_timeout(100)
+    assert place(tab) == stopped
+
+
+def test_a_mechanism_that_does_not_turn_fully_goes_to_and_fro(opened):
+    tab = opened("excavator")
+    tab.keyboard.press("End")
+    end = place(tab)
+    tab.keyboard.press(" ")
+    until(tab, lambda at: at < end - 3)
+
+
+@pytest.mark.parametrize("name", ["shaper", "planetary-dwell-press", "cam-lever"])
+def test_links_are_drawn_where_the_frame_has_them(opened, name):
+    tab, data = opened(name), data_of(page_of(name))
+    frame = 50
+    for _ in range(frame):
+        tab.keyboard.press("ArrowRight")
+    for number, body in enumerate(data["bodies"]):
+        here = {key: values[frame] if isinstance(values, list) else values for key, values in body.items()}
+        shown = tab.evaluate(
+            f"(() => {{ const g = document.querySelector('[data-body=\"{number}\"]'); if (!g) return null;"
+            " const m = g.transform.baseVal.consolidate().matrix; return [m.a, m.b, m.e, m.f]; })()"
+        )
+        if shown is not None:
+            turn, stretch = here["turn"], here["stretch"]
+            wanted = [stretch * np.cos(turn), stretch * np.sin(turn), here["x"], here["y"]]
+            assert shown == pytest.approx(wanted, abs=1e-4)
+
+
+def test_a_finger_moves_it_and_a_narrow_screen_holds_it(opened):
+    tab = opened("shaper", width=360, has_touch=True, is_mobile=True)
+    assert tab.evaluate("document.documentElement.scrollWidth") == 360
+    tab.tap("#charts svg >> nth=3", position={"x": 160, "y": 40})
+    last = len(data_of(page_of("shaper"))["driver"]["values"]) - 1
+    assert place(tab) == pytest.approx(last / 2, abs=0.05 * last)
+    tab.tap("#play")
+    before = place(tab)
+    until(tab, lambda at: at > before + 2)
+    sizes = tab.evaluate("[...document.querySelectorAll('#labels text')].map((t) => t.getBoundingClientRect().height)")
+    assert min(sizes) >= 9

@@ -147,9 +147,9 @@ class Picture:
         for link in sorted(parts):
             before = len(self.sheet.marks)
             draw_higher(self.sheet, found, {link: DARK}, span)
-            # the place where they touch, and the other link's dashed disk, move otherwise
-            shown = [m for m in self.sheet.marks[before:-1] if not (isinstance(m, Line) and m.style == DASHED)]
-            self.bodies[link].take(shown)
+            # the place where they touch comes last with the second link; it and the first one's disk move otherwise
+            shown = self.sheet.marks[before:-1] if link == found.mesh.j else self.sheet.marks[before:]
+            self.bodies[link].take([m for m in shown if not (isinstance(m, Line) and m.style == DASHED)])
 
     def _wheel(self, disc: Disc) -> None:
         ways = unit(np.linspace(0, 2 * np.pi, 97))

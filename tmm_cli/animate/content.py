@@ -9,11 +9,12 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.animate.bodies import Body, Picture
+from tmm_cli.draw.actuators import cylinders
 from tmm_cli.draw.drawing import Area, Circle, Line
 from tmm_cli.draw.motion_plans import Sort, sorts
 from tmm_cli.draw.over_cycle import Quantities, balances, output
-from tmm_cli.draw.scene import Scene, fit, fixed_pivots, to_scale
-from tmm_cli.draw.sheet import COLOURS, Sheet, with_unit
+from tmm_cli.draw.scene import ON_LINE, Scene, fit, fixed_pivots, to_scale
+from tmm_cli.draw.sheet import COLOURS, THIN, Sheet, with_unit
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
@@ -24,17 +25,21 @@ from tmm_cli.vectors import Real, Vector
 PAPER, LARGEST, EDGE = (400.0, 400.0), 120.0, 9.0  # mm: sheet, longest side of what moves, room about it for names
 PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
 USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
-OUT = 4.0  # mm from a hinge to its name
+OUT, BOX_SIDE = 4.0, 6.5  # mm from a hinge to its name; from the middle of a box to the number of its link
 FRAMES = 180  # a turn
+SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 LEAST = 1e-6  # of a plan: nearer points are one
 
 
+def loops(results: Results) -> int:
+    """Turns of the driver after which all comes again; 0 where it goes to and fro."""
+    reach = results.driver_range
+    return reach.turns if reach is not None and reach.full and results.linkage.driver.kind == "turn" else 0
+
+
 def frames(results: Results, count: int) -> Results:
-    """The same results at about so many places close together at which the mechanism moves. Raises ProblemError."""
-    reach, turns = results.driver_range, 1
-    if reach is not None and reach.full and results.linkage.driver.kind == "turn":
-        turns = reach.turns
-    q = results.closely(count * turns + 1)
+    """The same results at about so many places a turn at which the mechanism moves. Raises ProblemError."""
+    q = results.closely(count * (loops(results) or 1) + 1)
     moved = at_places(results, q)
     assert moved.motion is not None
     if not moved.motion.moving.all():
@@ -48,12 +53,11 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
     """Everything that the script needs; places in mm of a sheet with y down, angles in rad, plans in SI."""
     motion = picture.motion
     names = list(picture.bodies)
-    reach, driver = results.driver_range, results.linkage.driver
-    loops = reach is not None and reach.full and driver.kind == "turn"
+    driver, turns = results.linkage.driver, loops(results)
     units, measure = results.problem.units, ANGLE if driver.kind == "turn" else LENGTH
     return {
-        "loops": loops,
-        "seconds": 4.0 * (reach.turns if loops and reach is not None else 1),
+        "loops": turns > 0,
+        "seconds": SECONDS * (turns or 1),
         "driver": {
             "name": ("φ" if driver.kind == "turn" else "s") + driver.link,
             "unit": units.symbol(measure),
@@ -124,41 +128,50 @@ def rounded(values: Any, digits: int) -> list[float | None]:
 
 
 def labels(picture: Picture, names: Sequence[str]) -> list[dict[str, Any]]:
-    """Names of points and numbers of links: their places in the axes of the bodies that carry them."""
-    found: dict[complex, dict[str, Any]] = {}
-    linkage, scene, sheet = picture.scene.linkage, picture.scene, picture.sheet
-    for link in (FRAME, *linkage.moving):
-        points = linkage.links[link].points
-        for name, local in points.items():
-            if link != FRAME and (name in linkage.links[FRAME].points or linkage.owner(name) != link):
-                continue
-            at = sheet.on(scene.place(link, complex(local)))
-            here = next((z for z in found if abs(z - at) < 1e-6), None)
-            if here is not None and found[here]["body"] == names.index(link):
-                found[here]["text"] += f", {name}"
-                continue
-            middle = sum(sheet.on(scene.place(link, complex(z))) for z in points.values()) / len(points)
-            own, out = picture.bodies[link].own(at), picture.bodies[link].own(at) - picture.bodies[link].own(middle)
-            if link == FRAME:
-                out = complex(-2 if at.real < sheet.origin.real else 2)
-            own += OUT * (out / abs(out) if abs(out) > 1 else 1 + 0.6j)
-            found[at] = {"body": names.index(link), "at": pair(own), "text": name, "kind": "point"}
+    """Names of points beyond the ends of links, numbers beside links: in the axes of the bodies that carry them."""
+    linkage, found = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
+    for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
+        there = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
+        # on a link with more points there is a way out
+        carrier = FRAME if FRAME in there else max(there, key=lambda link: len(linkage.links[link].points) > 1)
+        local = complex(linkage.local(carrier, name))
+        found.setdefault((carrier, complex(round(local.real, 9), round(local.imag, 9))), []).append(name)
+    points = [
+        {"body": names.index(link), "at": pair(_beyond(picture, link, local)), "text": ", ".join(text), "kind": "point"}
+        for (link, local), text in found.items()
+    ]
     numbers = [
         {"body": names.index(link), "at": pair(_beside(picture, link)), "text": link, "kind": "link"}
         for link in linkage.moving
         if np.isfinite(picture.forms[link].middle)
     ]
-    return [*found.values(), *numbers]
+    return [*points, *numbers]
+
+
+def _beyond(picture: Picture, link: str, local: complex) -> complex:
+    """Where the name of a point is, in its link's axes: away from the middle of the link, outside a slider's box."""
+    sheet, scene = picture.sheet, picture.scene
+    at, driven = sheet.on(scene.place(link, local)), cylinders(scene.linkage)
+    slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
+    boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
+    own = picture.bodies[link].own(at)
+    if link == FRAME:
+        return own + OUT * (-1 if at.real < sheet.origin.real else 1)
+    places = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
+    out = own - picture.bodies[link].own(sum(places) / len(places))
+    return own + (2 * OUT if boxed else OUT) * (out / abs(out) if abs(out) > 1 else complex(0.8, 0.6))
 
 
 def _beside(picture: Picture, link: str) -> complex:
-    """Beside the middle of a link, in its axes."""
+    """Where the number of a link is, in its axes: on its plate, beside its longest line, or beside its box."""
     form, own = picture.forms[link], picture.bodies[link].own
-    if len(form.hull) > 2 or not form.lines:
-        return own(form.middle) + (0 if len(form.hull) > 2 else 3.5 - 3.5j)
-    start, end = max(form.lines, key=lambda line: abs(line[1] - line[0]))
-    way = own(end) - own(start)
-    return own(form.middle) + (3.0j * way / abs(way) if abs(way) > 1 else 3.5 - 3.5j)
+    if len(form.hull) > 2:
+        return own(form.middle)
+    start, end = max(form.lines, key=lambda line: abs(line[1] - line[0]), default=(0j, 0j))
+    if abs(end - start) > 1:
+        return own(form.middle + 3j * (end - start) / abs(end - start))
+    slide = next((slide for slide in picture.scene.linkage.slides if slide.runner == link), None)
+    return own(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * BOX_SIDE)
 
 
 def pair(z: complex) -> list[float]:
@@ -191,15 +204,18 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
     for letter in first.ends:
         letters.setdefault(index(plan.ends[letter] for plan in plans), []).append(letter)
     letters.setdefault(index(0j for __ in plans), []).insert(0, sort.pole)
-    vectors = [
-        {
-            "from": index(plan.vectors[n].start for plan in plans),
-            "to": index(plan.vectors[n].end for plan in plans),
-            "colour": COLOURS[vector.kind],
-            "wide": vector.kind == "absolute",
-        }
-        for n, vector in enumerate(first.vectors)
-    ]
+    vectors: dict[tuple[int, int], dict[str, Any]] = {}
+    for n, vector in enumerate(first.vectors):
+        ends = index(plan.vectors[n].start for plan in plans), index(plan.vectors[n].end for plan in plans)
+        mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
+        if ends[0] != ends[1] and (ends not in vectors or not mass):
+            vectors[ends] = {
+                "from": ends[0],
+                "to": ends[1],
+                "colour": THIN if mass else COLOURS[vector.kind],
+                "width": 0.45 if mass or vector.kind != "absolute" else 0.7,
+            }
+    below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN)
     every = np.concatenate(points)
     every = every[np.abs(every) <= USUAL * size]
     scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
@@ -208,7 +224,7 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
             unit=sort.unit
         ),
         "points": [[rounded(z.real, 4), rounded(z.imag, 4)] for z in points],
-        "vectors": [vector for vector in vectors if vector["from"] != vector["to"]],
+        "vectors": below,
         "letters": [{"point": n, "text": ", ".join(dict.fromkeys(text))} for n, text in letters.items()],
         "scale": float(f"{scale:.5g}"),
         "view": [

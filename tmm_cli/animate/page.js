@@ -48,7 +48,7 @@ const plans = data.plans.map((plan) => {
   figure.appendChild(document.createElement("figcaption")).textContent = plan.title;
   byId("plans").appendChild(figure);
   const vectors = plan.vectors.map((vector) => made(svg, "path", {
-    stroke: vector.colour, fill: vector.colour, "stroke-width": vector.wide ? 0.7 : 0.5, "stroke-linejoin": "round"}));
+    stroke: vector.colour, fill: vector.colour, "stroke-width": vector.width, "stroke-linejoin": "round"}));
   const letters = plan.letters.map((letter) => made(svg, "text", {dy: ".35em"}, letter.text));
   return {plan, vectors, letters};
 });
@@ -64,10 +64,16 @@ function arrow(from, to) {
 function drawPlan({plan, vectors, letters}) {
   const points = plan.points.map(([x, y]) => [now(x) * plan.scale, -now(y) * plan.scale]);
   plan.vectors.forEach((vector, n) => vectors[n].setAttribute("d", arrow(points[vector.from], points[vector.to])));
+  // a letter that would cover an earlier one is left out; those of hinges come first
+  const taken = [];
   plan.letters.forEach((letter, n) => {
     const [x, y] = points[letter.point], far = Math.hypot(x, y);
-    const u = far > 1 ? x / far : -0.7, v = far > 1 ? y / far : -0.7;
-    letters[n].setAttribute("transform", `translate(${x + AIR * u} ${y + AIR * v})`);
+    const u = x + AIR * (far > 1 ? x / far : -0.7), v = y + AIR * (far > 1 ? y / far : -0.7);
+    const half = 1.2 * letter.text.length;
+    const free = taken.every(([a, b, other]) => Math.abs(u - a) > half + other || Math.abs(v - b) > 3.8);
+    if (free) taken.push([u, v, half]);
+    letters[n].setAttribute("visibility", free ? "visible" : "hidden");
+    letters[n].setAttribute("transform", `translate(${u} ${v})`);
   });
 }
 
@@ -81,12 +87,20 @@ const charts = data.charts.map((chart) => {
   const svg = made(figure, "svg", {viewBox: `0 0 ${WIDE} ${HIGH}`});
   byId("charts").appendChild(figure);
   const every = chart.courses.flatMap((course) => course.values).filter((value) => value !== null);
-  const low = Math.min(0, ...every), high = Math.max(0, ...every), size = high - low || 1;
+  let low = Math.min(...every), high = Math.max(...every);
+  const reach = high - low;
+  if (Math.min(Math.abs(low), Math.abs(high)) <= reach) { // zero is near enough to be shown
+    low = Math.min(0, low);
+    high = Math.max(0, high);
+  }
+  const size = high - low || 1;
   const up = (value) => HIGH - BOTTOM - (HIGH - TOP - BOTTOM) * (value - low) / size;
-  made(svg, "path", {d: `M${LEFT} ${up(0)}H${WIDE - RIGHT}`, stroke: "#8a8a8a", "stroke-width": 0.7});
+  if (low <= 0 && high >= 0) {
+    made(svg, "path", {d: `M${LEFT} ${up(0)}H${WIDE - RIGHT}`, stroke: "#8a8a8a", "stroke-width": 0.7});
+  }
   for (const [frame, number] of data.marks) {
     made(svg, "path", {d: `M${across(frame)} ${TOP}V${HIGH - BOTTOM}`, stroke: "#e4e4e4", "stroke-width": 0.7});
-    if (data.marks.length <= 24) made(svg, "text", {x: across(frame), y: HIGH - 4, "font-size": 9, fill: "#505050"}, number);
+    if (data.marks.length <= 24) made(svg, "text", {x: across(frame), y: HIGH - 4, class: "number"}, number);
   }
   const hand = made(svg, "path", {stroke: "#b3261e", "stroke-width": 0.8});
   const dots = chart.courses.map((course, n) => {
@@ -101,6 +115,9 @@ const charts = data.charts.map((chart) => {
     made(svg, "path", {d, fill: "none", stroke: colour, "stroke-width": 1.4, "stroke-linejoin": "round"});
     return made(svg, "circle", {r: 3, fill: colour});
   });
+  for (const value of [low, high]) {
+    if (value !== 0) made(svg, "text", {x: LEFT, y: up(value) + (value === low ? -2 : 3), class: "end"}, figures(value));
+  }
   const follow = (event) => {
     const box = svg.getBoundingClientRect();
     const x = (event.clientX - box.left) / box.width * WIDE;

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.draw.drawing import POINT
 from tmm_cli.draw.ground import Ground
-from tmm_cli.draw.layout.picture import longest_for, on_large_sheet
+from tmm_cli.draw.layout.picture import fits, longest_for, on_large_sheet
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Room
 from tmm_cli.draw.script import Words, width, wrapped
@@ -23,7 +23,6 @@ SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above a
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
 MOST = 0.5  # of a sheet: more than this is written on another one
 WIDTHS = (110.0, 150.0, 200.0, 260.0, 330.0)  # mm: what is beneath a drawing on a large sheet is folded into one
-UPRIGHT = 1.4  # times wider than high, such a drawing takes the least room
 LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
 HANGING = " " * 8
 PAPERS = (LANDSCAPE, PORTRAIT)
@@ -164,9 +163,9 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
     def height(wide: float) -> float:
         return most - written.left(low, low + complex(wide, most)).imag
 
-    widths = [max(wide, across + 2 * PAD) for wide in WIDTHS]
-    wide = min(widths, key=lambda wide: max(wide, UPRIGHT * (up + 2 * PAD + height(wide))))
-    paper = complex(wide, up + 2 * PAD + height(wide)) + low - edge
+    sizes = [(wide, up + 2 * PAD + height(wide)) for wide in (max(wide, across + 2 * PAD) for wide in WIDTHS)]
+    wide, high = min(sizes, key=lambda size: (not fits(*size), size[0] * size[1]))
+    paper = complex(wide, high) + low - edge
     return _Placed((paper.real, paper.imag), mu, middle, written)
 
 

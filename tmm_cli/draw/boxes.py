@@ -19,8 +19,8 @@ def about(middle: complex, width: float, height: float) -> Box:
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
 
 
-def around(middles: NDArray[Any], width: float, height: float) -> Boxes:
-    """Boxes of one size about their middles."""
+def around(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
+    """Boxes about their middles, of one size or each of its own."""
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 
@@ -75,7 +75,14 @@ def inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDAr
 
 def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
     """Stretches of a polyline that are in none of the boxes."""
-    starts, ways = np.asarray(places[:-1], complex), np.diff(places)
+    z = np.asarray(places, complex)
+    left, right, low, high = boxes.T
+    across, up = (left < z.real.max()) & (right > z.real.min()), (low < z.imag.max()) & (high > z.imag.min())
+    boxes = boxes[across & up]
+    if not len(boxes):
+        yield tuple(places)
+        return
+    starts, ways = z[:-1], np.diff(z)
     firsts, lasts = inside(boxes, starts, starts + ways)
     stretch: list[complex] = []
     for k, (start, way) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):

@@ -35,7 +35,7 @@ class Pieces:
         self.fresh += [
             (start, end)
             for start, end in pairwise(places)
-            if np.isfinite(start) and np.isfinite(end) and abs(end - start) < LONGEST
+            if abs(end - start) < LONGEST  # of what is not finite it is not
         ]
 
     @property
@@ -55,11 +55,10 @@ class Pieces:
         found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
         return found
 
-    @property
-    def crowd(self) -> NDArray[Any]:
-        """Points on them, close together."""
+    def points(self, step: float = STEP) -> NDArray[Any]:
+        """Points on them, about so far (mm) apart."""
         starts, ends = self.all.T
-        counts = np.maximum(2, (np.abs(ends - starts) / STEP).astype(int))
+        counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
         whose = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
         found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
@@ -85,7 +84,7 @@ class Ground:
     @property
     def crowd(self) -> NDArray[Any]:
         """Points on solid lines."""
-        return self.solid.crowd
+        return self.solid.points()
 
     @property
     def written(self) -> NDArray[Any]:

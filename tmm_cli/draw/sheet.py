@@ -212,7 +212,7 @@ class Sheet:
         if on_large_sheet():
             shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
         else:
-            crowd = np.concatenate([self.ground.crowd, self.ground.faint.crowd, self.ground.written])
+            crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
             shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)

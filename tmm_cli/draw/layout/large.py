@@ -11,7 +11,7 @@ from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
 from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, filled, grown, spaced
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
@@ -22,6 +22,7 @@ LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the larg
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
 NOTABLE = 1.1  # times larger: it is drawn again
 ENOUGH = 0.72  # of a page: then nothing more is made larger
+EASED = (1.0, 0.75, 0.55, 0.4, 0.3)  # of rooms: so much smaller something is tried
 ROUNDS = 2  # of making larger what there proves to be room for
 
 
@@ -54,23 +55,27 @@ def field_of(paper: Size, block: str) -> Field:
 def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
     """All drawings of a sheet, and which of them stand on which of its pages."""
     shrunk = max(paper) / max(PAPERS["A1"])
-    sources = [source for source in CONTENTS if source.sheet == number]
-    parts = [_first(source, choice, shrunk) for source in sources]
+    asked = [(source, choice, field) for source in CONTENTS if source.sheet == number]
+    parts = [_first(*one, shrunk) for one in asked]
     lengths, pieces = [len(part) for part in parts], [piece for part in parts for piece in part]
 
     def drawn(rooms: Sequence[float]) -> list[Piece]:
         """The same pieces in other rooms, source by source."""
         starts = accumulate(lengths, initial=0)
         slices = [slice(start, start + length) for start, length in zip(starts, lengths, strict=False)]
-        again = (_again(source, choice, pieces[own], rooms[own]) for source, own in zip(sources, slices, strict=True))
+        again = [_again(*one, pieces[own], rooms[own]) for one, own in zip(asked, slices, strict=True)]
         return [piece for part in again for piece in part]
 
     rooms, pages = begun(pieces, field, shrunk)
-    larger = drawn(grown(pieces, rooms, pages, field, shrunk))
+    larger = drawn(grown(pieces, eased(pieces, rooms, EASED[1], all_of_them=False), pages, field, shrunk))
     if all(pack(spaced(_sizes(larger), page), field) is not None for page in pages):
         pieces = larger
     else:  # something became larger than thought
-        pieces = drawn(rooms)
+        for share in EASED:
+            found = drawn(eased(pieces, rooms, share, all_of_them=True))
+            if all(pack(spaced(_sizes(found), [k]), field) is not None for k in range(len(found))):
+                break
+        pieces = found
         pages = fitting([piece.drawn for piece in pieces], field)
     for __ in range(ROUNDS):
         before = [piece.drawn.longest for piece in pieces]
@@ -105,30 +110,30 @@ def fitting(pictures: Sequence[Picture], field: Field) -> list[Page]:
     return filled([one.paper for one in pictures], field) or []
 
 
-def _first(source: Source, choice: Choice, shrunk: float) -> list[Piece]:
+def _first(source: Source, choice: Choice, field: Field, shrunk: float) -> list[Piece]:
     """The drawings of a source as large as usual."""
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(SMALLEST, min(1.0, math.sqrt(MANY / max(number, 1))))
-    pictures = _drawn(source, choice, repeat(Space(usual and usual * shrunk)))
+    pictures = _drawn(source, choice, field, repeat(usual and usual * shrunk))
     if usual is None:
         least, most = LETTERS
         return [Piece(one, one.longest / shrunk, least * one.longest, most * one.longest) for one in pictures]
     return [Piece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
 
 
-def _again(source: Source, choice: Choice, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
+def _again(source: Source, choice: Choice, field: Field, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
     """The same in other rooms, where they are other ones."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
-    pictures = _drawn(source, choice, map(Space, rooms))
+    pictures = _drawn(source, choice, field, rooms)
     return [replace(piece, drawn=picture) for piece, picture in zip(pieces, pictures, strict=True)]
 
 
-def _drawn(source: Source, choice: Choice, rooms: Iterable[Space]) -> list[Picture]:
+def _drawn(source: Source, choice: Choice, field: Field, rooms: Iterable[float | None]) -> list[Picture]:
     """The drawings of a source, each in its room."""
     every, found = iter(source.drawings(choice)), list[Picture]()
     for room in rooms:
-        with within(room):
+        with within(Space(room, (field.width - GAP, field.height - GAP))):
             drawn = next(every, None)
         if drawn is None:
             break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -42,9 +43,13 @@ class Picture(Drawing):
 
 @dataclass(frozen=True)
 class Space:
-    """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes."""
+    """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes.
+
+    most: width and height (mm) of the field of the sheet.
+    """
 
     longest: float | None
+    most: Size = (math.inf, math.inf)
 
 
 _SPACE: ContextVar[Space | None] = ContextVar("space", default=None)
@@ -69,6 +74,12 @@ def longest_for(usual: float) -> float:
     """The longest side (mm) of what is drawn now, where it would be this one."""
     space = _SPACE.get()
     return usual if space is None or space.longest is None else space.longest
+
+
+def fits(width: float, height: float) -> bool:
+    """Whether there is room on the sheet for what is so large (mm) and has a heading."""
+    space = _SPACE.get()
+    return space is None or (width <= space.most[0] and height + MOST * LINE * HEAD + AIR <= space.most[1])
 
 
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:

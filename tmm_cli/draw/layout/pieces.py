@@ -17,7 +17,7 @@ LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet
 EVENER = 1.05  # steps in which pages may become fuller than the average one
 FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
 STEP = 1.04  # by which a drawing without a scale is made larger
-EASED = 0.75  # of the largest sizes at which all fits: so much is shared out again, piece by piece
+ROUGHLY = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
 PAGES = 40  # of one sheet at most
@@ -41,6 +41,10 @@ class Piece:
         """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
         return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
+    def about(self, room: float) -> float:
+        """The same, a little larger than the room where the round scale wants that."""
+        return self.fitted(ROUGHLY * room) if self.length else room
+
     def larger(self, room: float) -> float:
         """The next room in which it becomes larger."""
         if not self.length:
@@ -59,14 +63,14 @@ Page = list[int]  # numbers of pieces
 
 
 def begun(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[float], list[Page]]:
-    """A room for each piece, smaller than there is, and which pieces stand on which page.
+    """A room for each piece, and which pieces stand on which page.
 
     shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size. Raises
     ProblemError where the format is too small.
     """
     few, found = PAGES, None
     for share in shares():
-        rooms = [piece.fitted(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
+        rooms = [piece.about(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
         pages = filled([piece.size(room) for piece, room in zip(pieces, rooms, strict=True)], field)
         if pages is not None and len(pages) < few:
             few, found = len(pages), (rooms, pages)
@@ -74,9 +78,15 @@ def begun(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[fl
             break
     if found is None:
         raise ProblemError(_("a drawing is larger than the sheet at its least size"), allowed=_("a larger format"))
-    rooms, pages = found
-    least = [min(room, max(EASED * room, piece.least)) for piece, room in zip(pieces, rooms, strict=True)]
-    return [piece.fitted(room) for piece, room in zip(pieces, least, strict=True)], pages
+    return found
+
+
+def eased(pieces: Sequence[Piece], rooms: Sequence[float], share: float, *, all_of_them: bool) -> list[float]:
+    """Smaller rooms for what has no scale, or for all pieces."""
+    return [
+        room if piece.length and not all_of_them else piece.fitted(max(share * room, min(room, piece.least)))
+        for piece, room in zip(pieces, rooms, strict=True)
+    ]
 
 
 def shares() -> Iterator[float]:
