@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -10,18 +10,20 @@ from models import PROBLEMS
 from test_draw import plain
 
 from tmm_cli import load, solve
-from tmm_cli.draw.acting import ARM
+from tmm_cli.draw.acting import ARM, Forces
 from tmm_cli.draw.beneath import Beneath, Table
 from tmm_cli.draw.drawing import Area, Line
-from tmm_cli.draw.equations import written
+from tmm_cli.draw.equations import figure, table_of_forces, written
 from tmm_cli.draw.force_plans import forces, lanes, table
 from tmm_cli.draw.group_loads import group_loads
 from tmm_cli.draw.mechanism import detailed
 from tmm_cli.draw.script import plain as line
-from tmm_cli.draw.sheet import INERTIA, LOAD, REACTION
+from tmm_cli.draw.script import wrapped
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.moments import loaded_parts
-from tmm_cli.plans.record import NamedVector
+from tmm_cli.plans.record import NamedVector, Symbol
 
 
 def sheets_of(name, kind):
@@ -171,3 +173,34 @@ def lie_together(one, other):
     across = [abs((p - one[0]).imag * along.real - (p - one[0]).real * along.imag) for p in (other[0], other[-1])]
     runs = sorted(((p - one[0]) * along.conjugate()).real for p in (other[0], other[-1]))
     return max(across) < 0.5 and min(runs[1], abs(one[-1] - one[0])) - max(runs[0], 0) > 2
+
+
+def test_couples_are_listed_by_size_and_sense_as_the_equations_take_them():
+    forward, backward, force = (
+        Acting(Symbol("M", "1"), "inertia", "1", 0j, 0j, 0.5),
+        Acting(Symbol("M", "2"), "inertia", "2", 0j, 0j, -0.25),
+        Acting(Symbol("G", "3"), "load", "3", 0j, -10j),
+    )
+    cells = [row[1:] for row in table_of_forces([forward, backward, force]).rows]
+    assert cells == [("0.5 N·m", "ccw"), ("0.25 N·m", "cw"), ("10 N", "270.0°")]
+
+
+@pytest.mark.parametrize("ways", [(1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, 1, 1)])
+def test_forces_on_one_line_do_not_hide_one_another(ways):
+    sheet = Sheet("T", "S", [0j, 1 + 0j])
+    sheet.line([sheet.on(0j), sheet.on(0j) - 40j], DARK)  # a link: what goes down begins there at some cost
+    forces = Forces(sheet)
+    forces.draw(Acting(Symbol("F", str(k)), "load", "1", 0j, 1j * way) for k, way in enumerate(ways))
+    tips = [sum(mark.corners) / 3 for mark in sheet.marks if isinstance(mark, Area) and is_head(mark)]
+    assert len(tips) == 3 and all(abs(one - other) > 5 for one, other in combinations(tips, 2))
+
+
+def test_a_unit_is_not_left_alone_on_a_line():
+    text = "M = 11.77·0.02707 + 6.867·0.06766 = 125.8 N·m"
+    for most in range(20, 100):
+        *__, last = wrapped(text, 3.0, float(most))
+        assert len(line(last).split()) > 1
+
+
+def test_small_numbers_are_written_out():
+    assert figure(9.447e-05) == "0.00009447" and figure(12345.6) == "12350" and figure(4e-9) == "4e-09"

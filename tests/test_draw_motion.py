@@ -96,3 +96,9 @@ def test_a_vector_too_short_to_be_seen_is_in_the_table_with_its_value():
         0.21 * here.motion.link("4").omega[3] ** 2, rel=1e-3
     )
     assert rows["a^τ_AO"][1:] == ("", "0", "0")
+
+
+def test_a_stone_on_the_frame_s_pivot_is_measured_to_the_pole():
+    here, ((sort, __), __) = plans("press-class-iii")
+    (sliding,) = (v for v in sort.plan(here.motion, here.k).vectors if v.kind == "sliding")
+    assert sliding.name == "g5p" and sliding.end == 0

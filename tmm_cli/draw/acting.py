@@ -30,10 +30,13 @@ class Forces:
     """Arrows on a sheet, with tail or head at their places, as it covers less; couples as open circles."""
 
     sheet: Sheet
-    taken: list[tuple[complex, complex]] = field(default_factory=list)
+    taken: list[tuple[complex, complex, bool]] = field(default_factory=list)
     coupled: list[complex] = field(default_factory=list)
+    ways: list[tuple[complex, complex]] = field(default_factory=list)
 
     def draw(self, acting: Iterable[Acting]) -> None:
+        acting = list(acting)
+        self.ways += [(self.sheet.on(one.at), one.force / abs(one.force)) for one in acting if not one.couple]
         for one in acting:
             at, colour = self.sheet.on(one.at), COLOURS[one.kind]
             if one.couple:
@@ -44,18 +47,20 @@ class Forces:
                 self._force(at, one.force / abs(one.force), one.symbol, colour, "--" if one.kind == "inner" else "-")
 
     def _force(self, at: complex, along: complex, name: Words, colour: str, style: Style) -> None:
-        start = at
-        if self._covered(at, -along) + 3 < self._covered(at, along):
-            start = at - LOAD_MM * along
-        alike = sum(abs(at - place) < 1 and abs(along - way) < ALIKE for place, way in self.taken)
-        self.taken.append((at, along))
-        end = start + (LOAD_MM + (LONGER * alike if start == at else 0.0)) * along
+        alike = [out for place, way, out in self.taken if abs(at - place) < 1 and abs(along - way) < ALIKE]
+        against = any(abs(at - place) < 1 and abs(along + way) < ALIKE for place, way in self.ways)
+        # one that ends at its place would lie on one that begins there against it, or on another that ends there
+        free = not against and all(alike)
+        out = not free or self._covered(at, -along) + 3 >= self._covered(at, along)
+        self.taken.append((at, along, out))
+        start = at if out else at - LOAD_MM * along
+        end = start + (LOAD_MM + LONGER * sum(alike) if out else LOAD_MM) * along
         if style == "-":
             self.sheet.arrow(start, end, colour, 1.5)
         else:
             self.sheet.line([start, end], colour, 1.0, style, 4)
             self.sheet.arrow(end - 4 * along, end, colour, 1.0)
-        self.sheet.label(name, end if start == at else start, 9.5, colour)
+        self.sheet.label(name, end if out else start, 9.5, colour)
 
     def _covered(self, at: complex, way: complex) -> int:
         """How much is drawn along a way from a place."""

@@ -10,6 +10,7 @@ import numpy as np
 from tmm_cli.draw.scene import ON_LINE, Scene
 from tmm_cli.draw.sheet import DARK, Sheet, hatch
 from tmm_cli.linkage import FRAME, Driver, Linkage, Slide, Spring
+from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import cross, dot, unit
 
 BARREL, LEAST = 2.3, 8.0  # mm: half the width of a cylinder, its least length
@@ -66,9 +67,9 @@ class Cylinder:
         sheet.line([self.piston, self.end], rod, 1.8, z=4.7)
 
 
-def driver_name(driver: Driver, symbol: str) -> str:
+def driver_name(driver: Driver, letter: str) -> Symbol:
     """ω1, or ω21 where the base moves: of link 2 against link 1."""
-    return symbol + driver.link + ("" if driver.base == FRAME else driver.base)
+    return Symbol(letter, driver.link + ("" if driver.base == FRAME else driver.base))
 
 
 def springs(sheet: Sheet, scene: Scene) -> None:

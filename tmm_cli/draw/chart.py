@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from tmm_cli.draw.axes import TICKS, Axis, decades, equal, limits, round_up, upwards
 from tmm_cli.draw.drawing import POINT, Align, Style
 from tmm_cli.draw.fonts import width as width_of
+from tmm_cli.draw.script import Words, parts
+from tmm_cli.draw.script import width as width_of_words
 from tmm_cli.draw.sheet import DARK, THIN, Sheet
 
 FINE = "#dcdcdc"  # of grids
@@ -57,7 +59,7 @@ class Plot:
     words: str
     curves: Sequence[Curve]
     jumps: Sequence[Jump] = ()
-    scale: Callable[[float], str] | None = None
+    scale: Callable[[float], Words] | None = None
     share: float = 1.0
     degrees: bool = False
     logarithmic: bool = False
@@ -74,7 +76,7 @@ class Across:
     """The common axis. numbers: of positions, by their places; spans: stretches that have a name."""
 
     axis: Axis
-    words: str
+    words: Words
     numbers: Sequence[tuple[float, str]] = ()
     spans: Sequence[tuple[float, float, str]] = ()
 
@@ -140,7 +142,7 @@ class Panel:
         """A line from side to side at a height, mm."""
         self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
 
-    def text(self, at: complex, text: str, ha: Align = "left", size: float = SMALL, colour: str = DARK) -> None:
+    def text(self, at: complex, text: Words, ha: Align = "left", size: float = SMALL, colour: str = DARK) -> None:
         self.sheet.text(at, text, size, ha=ha, colour=colour)
 
     def grid(self, across: bool = True) -> None:
@@ -206,9 +208,9 @@ def _entry(curve: Curve) -> float:
 
 def _head(plot: Plot, most: float) -> list[list[Curve]]:
     """Rows above a panel with the entries of its legend in each; the first one begins with its words."""
-    words = plot.words if plot.scale is None else plot.words + plot.scale(0.00025)
+    words = (plot.words, *(parts(plot.scale(0.00025)) if plot.scale else ()))
     rows: list[list[Curve]] = [[]]
-    if sum(map(_entry, plot.legend)) < most - width_of(words, PLAIN * POINT) - 2 * APART:
+    if sum(map(_entry, plot.legend)) < most - width_of_words(words, PLAIN * POINT) - 2 * APART:
         return [list(plot.legend)]
     left = 0.0
     for curve in plot.legend:

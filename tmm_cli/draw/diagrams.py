@@ -14,7 +14,8 @@ from tmm_cli.draw.axes import Axis, across
 from tmm_cli.draw.chart import Across, Curve, Jump, Plot, chart, room
 from tmm_cli.draw.drawing import Drawing, Style
 from tmm_cli.draw.over_cycle import Quantities
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, REACTION, THIN, Sheet, on_paper, safe, scale_text, with_unit
+from tmm_cli.draw.script import Words
+from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, NAMES, REACTION, THIN, Sheet, on_paper, safe, scale_words, with_unit
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
@@ -143,14 +144,14 @@ def _sheet(
     return sheet.finish()
 
 
-def _across(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[Axis, str]:
+def _across(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[Axis, Words]:
     """The axis of the driver's turn (deg) or of its run, and what is written below it."""
     if results.linkage.driver.kind == "turn":
         axis = across(*ends, start, most, degrees=True)
-        return axis, f"{_('turn of the crank from position 0, deg')};  {scale_text('φ', axis.mu, 'deg/mm')}"
+        return axis, (f"{_('turn of the crank from position 0, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
     axis, units = across(*ends, start, most), results.problem.units
-    scale = scale_text("s", axis.mu * units.factor(LENGTH), "m/mm")
-    return axis, f"{with_unit(_('driver'), LENGTH, units)};  {scale}"
+    scale = scale_words("s", axis.mu * units.factor(LENGTH), "m/mm")
+    return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
 
 
 def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
@@ -186,4 +187,4 @@ def _scale(found: Quantities, units: UnitSystem, unit: str) -> Any:
     elif not unit:
         unit = {"T": "J", "P": "W"}.get(found.symbol, "1")
     per = f"({unit})/mm" if "/" in unit else f"{unit}/mm"
-    return lambda mu: scale_text(symbol, mu * factor, per)
+    return lambda mu: scale_words(symbol, mu * factor, per)

@@ -18,6 +18,7 @@ from tmm_cli.quantities import LENGTH
 from tmm_cli.tolerances import NO_MOMENT
 
 INDENT = "    "
+PLAIN = 1e-6  # a smaller number is written with a power of ten
 Word = str | Symbol
 
 
@@ -94,12 +95,13 @@ def _sum(terms: Iterable[tuple[tuple[Word, ...], float]]) -> list[Word]:
 
 
 def table_of_forces(acting: Iterable[Acting], unit: str = "N·m") -> Table:
-    """Sizes, and angles of forces from x; unit: of couples."""
+    """Sizes, angles of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
-        angle = "" if one.couple else f"{round(float(np.degrees(np.angle(one.force))), 1) % 360:.1f}°"
-        size = f"{figure(one.moment)} {unit}" if one.couple else f"{figure(one.size)} N"
-        rows.append((one.symbol, size, angle))
+        way = f"{round(float(np.degrees(np.angle(one.force))), 1) % 360:.1f}°"
+        if one.couple:  # the equations have its sense as a sign
+            way = _("ccw") if one.moment > 0 else _("cw") if one.moment < 0 else ""
+        rows.append((one.symbol, f"{figure(one.size)} {unit if one.couple else 'N'}", way))
     return Table((_("force"), _("size"), _("from x")), rows)
 
 
@@ -119,4 +121,6 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
 def figure(value: float) -> str:
     """A number with four figures, without powers of ten as far as people write it so."""
     text = f"{value:.4g}"
-    return text if "e-" in text else f"{float(text):.10g}"
+    if "e-" not in text:
+        return f"{float(text):.10g}"
+    return np.format_float_positional(float(text)) if abs(value) > PLAIN else text

@@ -16,7 +16,7 @@ from tmm_cli.draw.render import arrows, names, render, spot
 from tmm_cli.draw.room import snug
 from tmm_cli.draw.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.sheet import DARK, THIN, Sheet, cells, safe
-from tmm_cli.draw.structure import Part, parts
+from tmm_cli.draw.structure import Part, counted, parts
 from tmm_cli.draw.symbols import FREE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
 from tmm_cli.draw.wheel_symbols import draw
 from tmm_cli.errors import _
@@ -90,7 +90,7 @@ def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: 
         group = part.group
         words = [
             _("class {roman}, order {order}, type {type}").format(
-                roman=ROMAN[min(group.group_class, 10)], order=group.order, type=group.type
+                roman=ROMAN[min(group.group_class, 10)], order=group.order, type=counted(group.type)
             ),
             _("links: {links}").format(links=links),
         ]

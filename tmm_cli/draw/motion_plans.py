@@ -9,6 +9,7 @@ from typing import Literal
 from tmm_cli.draw.blocks import Block, Row
 from tmm_cli.draw.boxes import aside
 from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.equations import figure
 from tmm_cli.draw.lever import letter_points
 from tmm_cli.draw.mechanism import Position
 from tmm_cli.draw.room import Figure, room
@@ -101,9 +102,9 @@ def table(here: Position, sort: Sort, plan: Plan, mu: float) -> list[Row]:
         first, *others = reading.symbols
         names = (first, *(part for symbol in others for part in (" = ", symbol)))
         length = f"{reading.size / mu:.1f}" if reading.size else "0"
-        rows.append(Row((names, reading.segment, length, f"{reading.size:.4g}")))
+        rows.append(Row((names, reading.segment, length, figure(reading.size))))
     rows.append(Row((_("link"), _("sense"), "", sort.turning), head=True))
     for turn in turns(here.motion, here.k, sort.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""
-        rows.append(Row((turn.symbol, sense, "", f"{abs(turn.value):.4g}")))
+        rows.append(Row((turn.symbol, sense, "", figure(abs(turn.value)))))
     return rows

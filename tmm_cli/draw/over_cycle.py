@@ -14,7 +14,17 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import angle, followers, named
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import balance_name, reaction_name
-from tmm_cli.quantities import ANGLE, FORCE, INERTIA, MASS, MOMENT, NUMBER, Dimension
+from tmm_cli.quantities import (
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    MASS,
+    MOMENT,
+    NUMBER,
+    Dimension,
+)
 from tmm_cli.results.reports.cycle import output_motion
 
 MOST = 6  # courses in a panel of reactions
@@ -45,8 +55,11 @@ def output(results: Results, motion: Motion, link: str) -> list[Quantities]:
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
     found = []
+    turning = {ANGULAR_SPEED: _("ω of {link}"), ANGULAR_ACCELERATION: _("ε of {link}")}
     curves, given = output_motion(results, motion, link), output_motion(results, results.motion, link)
     for (name, values, dimension), (__, points, ___) in zip(curves, given, strict=True):
+        if dimension in turning:
+            name = turning[dimension].format(link=link)
         if dimension == ANGLE:
             values = np.unwrap(values)
             points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
@@ -65,8 +78,8 @@ def balances(whole: Results, results: Results) -> list[Quantities]:
         name = balance_name(curve.driver.link, several, turns=turns) if several else ""
         values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
         found[turns].append(Course(name, values, dots))
-    moments = _("balancing moments Mb") if several else _("balancing moment Mb")
-    forces = _("balancing forces Fb") if several else _("balancing force Fb")
+    moments = _("balancing moments") if several else _("balancing moment")
+    forces = _("balancing forces") if several else _("balancing force")
     every = (Quantities(moments, MOMENT, found[True]), Quantities(forces, FORCE, found[False]))
     return [quantities for quantities in every if quantities.courses]
 

@@ -66,11 +66,15 @@ def filled(sentence: str, **words: Words) -> Words:
 
 @lru_cache(1000)
 def wrapped(words: Words, size: float, most: float, hanging: str = "") -> tuple[Words, ...]:
-    """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`."""
+    """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`.
+
+    The last word, which may be a unit, is not parted from the one before it.
+    """
     lines: list[Words] = []
     line: list[str | Symbol] = []
     wide = 0.0
-    for token in _tokens(words):
+    *tokens, before, last = ((), (), *_tokens(words))
+    for token in (*tokens, (*before, *last)):
         own = width(token, size)
         if line and wide + own > most:
             lines.append(_joined(line))

@@ -19,7 +19,6 @@ from tmm_cli.draw.labels import Label, place
 from tmm_cli.draw.labels import extent as label_extent
 from tmm_cli.draw.layout.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.room import Room
-from tmm_cli.errors import _
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
@@ -273,13 +272,8 @@ def border(inner: complex, outer: complex, low: complex, high: complex) -> compl
     return inner + max(share, 0.0) * way
 
 
-def scale_text(symbol: str, mu: float, unit: str) -> str:
-    """μ_l = 0.005 m/mm."""
-    return _("μ_{symbol} = {mu} {unit}").format(symbol=symbol, mu=f"{mu:.10g}", unit=unit)
-
-
 def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
-    """The same with its index."""
+    """μ_l = 0.005 m/mm."""
     return Symbol("μ", symbol), f" = {mu:.10g} {unit}"
 
 

@@ -166,7 +166,7 @@ class Legend:
             return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
         group = part.group
         return _("{title}: class {roman}, order {order}, {type}").format(
-            title=part.title, roman=ROMAN[min(group.group_class, 10)], order=group.order, type=_short(group.type)
+            title=part.title, roman=ROMAN[min(group.group_class, 10)], order=group.order, type=counted(group.type)
         )
 
     def height(self, paper: float) -> float:
@@ -189,7 +189,7 @@ class Legend:
             sheet.text(complex(MARGIN + left + 4, top - 4 - ROW * row), line, 9)
 
 
-def _short(kind: str) -> str:
+def counted(kind: str) -> str:
     """RRRRRR as 6R: types of large groups only count their pairs."""
     if len(kind) <= 5:
         return kind

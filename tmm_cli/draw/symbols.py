@@ -13,6 +13,7 @@ import numpy as np
 from tmm_cli.draw.drawing import Style
 from tmm_cli.draw.forms import Form
 from tmm_cli.draw.scene import ON_LINE, Scene, apart
+from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import DARK, Sheet
 from tmm_cli.vectors import cross, dot, unit
 
@@ -145,7 +146,7 @@ def quiet(
     return min(choices or [wish * complex(unit(np.pi / 8 * n)) for n in turns], key=cost)
 
 
-def turning_arrow(sheet: Sheet, pivot: complex, start: float, sense: int, name: str, colour: str) -> None:
+def turning_arrow(sheet: Sheet, pivot: complex, start: float, sense: int, name: Words, colour: str) -> None:
     """An arrow of rotation about a pivot; it begins beside the link, or where there is more room."""
     radius, crowd = 8.5, sheet.ground.crowd
 
@@ -161,7 +162,7 @@ def turning_arrow(sheet: Sheet, pivot: complex, start: float, sense: int, name: 
     sheet.label(name, places[11], 10, colour)
 
 
-def sliding_arrow(sheet: Sheet, at: complex, along: complex, width: float, name: str, colour: str) -> None:
+def sliding_arrow(sheet: Sheet, at: complex, along: complex, width: float, name: Words, colour: str) -> None:
     """The way of a driven slider, beside its box of this width."""
     side = quiet(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
     foot = at + side * (width / 2 + 8)

@@ -111,7 +111,8 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
         slide, under = stone.slide, stone.under
         ends[under], names[under] = complex(motion.point(slide.carrier, stone.local).v[k]), stone.below
         runner, symbol = complex(motion.point(slide.runner, slide.at).v[k]), Symbol("v", stone.name + stone.below)
-        vectors.append(NamedVector(under + stone.letter, ends[under], runner, "sliding", symbol))
+        segment = under + (stone.letter if stone.letter in ends else "p")  # a pivot of the frame is the pole
+        vectors.append(NamedVector(segment, ends[under], runner, "sliding", symbol))
     for name, wheel, place in pitch_points(motion, k):
         pose, letter = motion.poses[wheel], other_than(ends, name.lower())
         ends[letter] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
