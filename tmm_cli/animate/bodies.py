@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.draw.actuators import Cylinder, coils, cylinders, gas, torsion
+from tmm_cli.draw.actuators import SPRING, Cylinder, coils, cylinders, gas, torsion
 from tmm_cli.draw.drawing import Area, Circle, Line, Mark
 from tmm_cli.draw.fixed import support, support_side, wall
 from tmm_cli.draw.forms import Form, by_points
@@ -210,6 +210,11 @@ class Picture:
             self._add(name, start, np.unwrap(np.angle(way)), length / length[0])
             with self._on(name):
                 (coils if spring.rate > 0 else gas)(self.sheet, complex(start[0]), complex(end[0]))
+            for link, at, out in ((spring.i, start[0], -way[0]), (spring.j, end[0], way[0])):
+                with self._on(link):
+                    self.sheet.circle(complex(at), 0.75, "white", SPRING, 1.0, 6.1)
+                    if link == FRAME:
+                        wall(self.sheet, complex(at), 1j * out / abs(out), out / abs(out), 2.6, ())
 
     def _hinges(self, pairs: list[Pair]) -> None:
         """A circle for each turning pair of a place, bars that go on beyond it, supports of those on the frame."""

@@ -68,8 +68,9 @@ function drawPlan({plan, vectors, letters}) {
   const taken = [];
   plan.letters.forEach((letter, n) => {
     const [x, y] = points[letter.point], far = Math.hypot(x, y);
-    const u = x + AIR * (far > 1 ? x / far : -0.7), v = y + AIR * (far > 1 ? y / far : -0.7);
-    const half = 1.2 * letter.text.length;
+    const half = 1.1 * letter.text.length, [left, , wide] = plan.view;
+    const beside = x + AIR * (far > 1 ? x / far : -0.7), v = y + AIR * (far > 1 ? y / far : -0.7);
+    const u = Math.min(Math.max(beside, left + half), left + wide - half);
     const free = taken.every(([a, b, other]) => Math.abs(u - a) > half + other || Math.abs(v - b) > 3.8);
     if (free) taken.push([u, v, half]);
     letters[n].setAttribute("visibility", free ? "visible" : "hidden");

@@ -1,0 +1,118 @@
+"""What follows the mechanism: plans of velocities and accelerations, diagrams, the same frames in all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.motion_plans import Sort
+from tmm_cli.draw.over_cycle import Quantities, balances, output
+from tmm_cli.draw.sheet import COLOURS, THIN, with_unit
+from tmm_cli.errors import _
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.vectors import Vector
+
+PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
+USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
+MOST_LETTERS = 4  # at one point of a plan
+LEAST = 1e-6  # of a plan: nearer points are one
+
+
+def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
+    """A plan in all frames: its points (SI, y up), vectors between them, letters at them; units a SI unit, its view."""
+    plans = [sort.plan(motion, k) for k in range(len(motion.q))]
+    first = plans[0]
+    size = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
+    points: list[Vector] = []
+
+    def index(places: Iterable[complex]) -> int:
+        course = np.array(list(places))
+        for number, other in enumerate(points):
+            if np.max(np.abs(other - course)) < LEAST * size:
+                return number
+        points.append(course)
+        return len(points) - 1
+
+    letters: dict[int, list[str]] = {}
+    for letter in first.ends:
+        letters.setdefault(index(plan.ends[letter] for plan in plans), []).append(letter)
+    letters.setdefault(index(0j for __ in plans), []).insert(0, sort.pole)
+    vectors: dict[tuple[int, int], dict[str, Any]] = {}
+    for n, vector in enumerate(first.vectors):
+        ends = index(plan.vectors[n].start for plan in plans), index(plan.vectors[n].end for plan in plans)
+        mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
+        if ends[0] != ends[1] and (ends not in vectors or not mass):
+            vectors[ends] = {
+                "from": ends[0],
+                "to": ends[1],
+                "colour": THIN if mass else COLOURS[vector.kind],
+                "width": 0.45 if mass or vector.kind != "absolute" else 0.7,
+            }
+    below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN)
+    every = np.concatenate(points)
+    every = every[np.abs(every) <= USUAL * size]
+    scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
+    return {
+        "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
+            unit=sort.unit
+        ),
+        "points": [[rounded(z.real, 4), rounded(z.imag, 4)] for z in points],
+        "vectors": below,
+        "letters": [{"point": n, "text": _together(text)} for n, text in letters.items()],
+        "scale": float(f"{scale:.5g}"),
+        "view": [
+            round(float(value), 1)
+            for value in (
+                every.real.min() * scale - ROOM,
+                -every.imag.max() * scale - ROOM,
+                np.ptp(every.real) * scale + 2 * ROOM,
+                np.ptp(every.imag) * scale + 2 * ROOM,
+            )
+        ],
+    }
+
+
+def _together(letters: list[str]) -> str:
+    """Letters of one point, not more than have room."""
+    return ", ".join(letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"])
+
+
+def charts(results: Results, whole: Results) -> Iterable[Quantities]:
+    """Motion of the first outputs, and what balances the drivers."""
+    assert whole.motion is not None
+    for link in results.mechanism.outputs[:2]:
+        yield from output(results, whole.motion, link)
+    yield from balances(whole, results)
+
+
+def chart_data(results: Results, quantities: Quantities) -> dict[str, Any]:
+    """A diagram in the units of the file."""
+    units = results.problem.units
+    return {
+        "title": with_unit(quantities.words, quantities.dimension, units),
+        "courses": [
+            {"name": course.name, "values": rounded(units.from_si(course.values, quantities.dimension), 5)}
+            for course in quantities.courses
+        ],
+    }
+
+
+def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
+    """Where the numbered positions are among the frames."""
+    found = []
+    for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
+        k = int(np.argmin(np.abs(motion.q - q)))
+        step = abs(motion.q[-1] - motion.q[0]) / (len(motion.q) - 1)
+        ahead = float((q - motion.q[k]) / (motion.q[-1] - motion.q[0]) * (len(motion.q) - 1))
+        if abs(q - motion.q[k]) <= 1.01 * step:
+            found.append([round(k + ahead, 3), str(number)])
+    return found
+
+
+def rounded(values: Any, digits: int) -> list[float | None]:
+    """To so many significant figures; none where there is no value."""
+    array = np.asarray(values, float)
+    return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in array.tolist()]
