@@ -12,6 +12,7 @@ from test_commands import ROOT
 
 from tmm_cli import load, solve
 from tmm_cli.draw.drawing import Area, Line, Text
+from tmm_cli.draw.mechanism import detailed, position
 from tmm_cli.draw.positions import all_positions, ratio
 from tmm_cli.draw.ruler import TICK, spread
 from tmm_cli.draw.tracks import extreme_states, extremes, output_track
@@ -116,6 +117,9 @@ def test_lengths_have_the_names_of_the_file_s_parameters():
     assert texts[texts.index("guide x from O") :][1:3] == ["e", "40"]
     texts = sheet_of("crank-rocker")[1].texts()
     assert texts[texts.index("OD") : texts.index("OD") + 3] == ["OD", "l4", "400"]
+    texts = sheet_of("planetary-dwell-press")[1].texts()  # a wheel in a ring of three times its radius
+    wheels = [texts[k + 1 : k + 3] for k, text in enumerate(texts) if text == "r"]
+    assert wheels == [["0", "150"], ["2", "50"]]
     texts = sheet_of("shaper")[1].texts()  # parameters are called like lengths
     assert texts[texts.index("CD") : texts.index("CD") + 2] == ["CD", "650"]
     assert texts[texts.index("guide x from O") + 1] == "270"
@@ -182,3 +186,14 @@ def test_numbers_of_the_working_stroke_stand_outside_and_the_sheet_says_so():
         for text in "39"
     )
     assert outer < inner - 4
+
+
+@pytest.mark.parametrize("name", ["shaper", "press-class-iii", "lifting-boom", "planetary-dwell-press"])
+def test_a_position_under_its_loads_fills_its_sheet(name):
+    here = detailed(solve(load(str(ROOT / "problems" / f"{name}.yaml"))))[0]
+    ((__, sheet),) = position(here)
+    marks = np.concatenate([np.ravel(m.places) for m in sheet.marks if isinstance(m, Line) and m.layer != "frame"])
+    marks = marks[np.isfinite(marks)]
+    low, high = ground_of(sheet.paper)
+    used = [np.ptp(part) / room for part, room in ((marks.real, (high - low).real), (marks.imag, (high - low).imag))]
+    assert max(used) > 0.5 and max(used) <= 1

@@ -12,7 +12,8 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.blocks import Row
 from tmm_cli.draw.script import Words
 from tmm_cli.errors import _
-from tmm_cli.linkage import FRAME
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.pairs.base import axis
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, LENGTH, Dimension
 from tmm_cli.tolerances import SAME_PLACES
@@ -23,7 +24,7 @@ Size = tuple[Words, str, float, Dimension]
 
 def lengths(results: Results) -> list[Row]:
     """Rows with name and value in the units of the file; between them the parameter, where any is called otherwise."""
-    sizes = [*_links(results), *_frame(results)]
+    sizes = [*_links(results), *_wheels(results.linkage), *_frame(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
     titles: list[Words] = [_("length"), *([_("in the file")] if named else []), units.symbol(LENGTH)]
@@ -44,6 +45,20 @@ def _links(results: Results) -> Iterator[Size]:
                 if abs(local - place) > 0:
                     both = other + name
                     yield both, _parameter(results, link, both), float(abs(local - place)), LENGTH
+
+
+def _wheels(linkage: Linkage) -> Iterator[Size]:
+    """Radii of pitch circles of wheels in mesh; the mesh is named where there are several."""
+    teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
+    for mesh in teeth:
+        radii = {mesh.i: abs(mesh.ratio)}  # of one that rolls on a rack
+        if mesh.kind == "gear":
+            apart = abs(axis(linkage, mesh.j, mesh.carrier) - axis(linkage, mesh.i, mesh.carrier))
+            turn = float(apart) / abs(1 - mesh.ratio)
+            radii = {mesh.i: turn * abs(mesh.ratio), mesh.j: turn}
+        for link, radius in radii.items():
+            where = (f" ({mesh.name})",) if len(teeth) > 1 else ()
+            yield (Symbol("r", link), *where), "", radius, LENGTH
 
 
 def _parameter(results: Results, link: str, name: str) -> str:

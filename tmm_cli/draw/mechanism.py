@@ -9,10 +9,11 @@ import numpy as np
 
 from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.blocks import Block
 from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.forms import by_points
 from tmm_cli.draw.render import Rendered, render, slider
-from tmm_cli.draw.room import Room
+from tmm_cli.draw.room import Figure, Room, room
 from tmm_cli.draw.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.script import Words
 from tmm_cli.draw.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_words
@@ -28,6 +29,7 @@ from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
 from tmm_cli.vectors import Vector, dot
 
+ABOUT = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 ONE_LINE = 0.1  # mm between lines that look like one
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 
@@ -175,7 +177,15 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     ]
     places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
-    sheet = here.sheet("{caption}", to_scale(scene, [*places, *(at for __, at in loads)]), pad=30)
+    figure, notes = Figure(), [_("loads without scale")] if reactions is not None else []
+    figure.spots(to_scale(scene, [*places, *(at for __, at in loads)]), ABOUT)
+    forces = [(at, complex(load.force[k])) for load, at in loads]
+    balances = reactions.balances if reactions is not None else ()
+    for at, force in [*forces, *((complex(b.at[k]), complex(b.vector[k])) for b in balances)]:
+        if abs(force) > 0:
+            figure.spots([at], ABOUT / 2, LOAD_MM * force / abs(force))
+    found = room(figure, Block([*notes, scale_words("l", 0.0025, "m/mm")]))
+    sheet = here.sheet("{caption}", room=found)
     measured(sheet, scene)
     taken: list[tuple[complex, complex]] = []
     coupled: list[complex] = []
@@ -192,7 +202,8 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
             couple(sheet, at, np.sign(moment), colour, load_symbols(load)[1], radius)
     if reactions is not None:
         _balance(sheet, reactions, k)
-        sheet.note(_("loads without scale"))
+    for note in notes:
+        sheet.note(note)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     yield here.stem("position"), sheet.finish()
 
