@@ -16,6 +16,7 @@ from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.animate.content import FRAMES, frames, picture_of
 from tmm_cli.animate.page import FEWEST, MOST, page
 from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
 COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4", "excavator", "summing-lever"]
@@ -75,6 +76,13 @@ def test_plans_end_in_the_velocities_and_accelerations_of_the_points():
             x, y = plan["points"][found[point.lower()]]
             values = getattr(motion.named(point), quantity)
             assert np.asarray(x) + 1j * np.asarray(y) == pytest.approx(values, rel=1e-3, abs=1e-3)
+
+
+def test_a_single_position_of_a_mechanism_that_does_not_turn_is_no_motion():
+    text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
+    text = re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M)
+    with pytest.raises(ProblemError, match="nothing moves"):
+        page(solve(build(read_text(text, "x.yaml"))))
 
 
 def test_names_from_files_are_data():

@@ -79,16 +79,21 @@ def test_packed_boxes_are_in_the_field_beside_the_title_block_and_do_not_overlap
 
 @pytest.mark.parametrize("name", COURSES)
 def test_sheets_are_full_and_nothing_on_them_overlaps(name):
-    low, high = inner(PAPERS["A1"])
-    block = complex(high.real - SIZES["gost"][0], low.imag), complex(high.real, low.imag + SIZES["gost"][1])
-    free = (high - low).real * (high - low).imag - SIZES["gost"][0] * SIZES["gost"][1]
     for stem, sheet in drawn(name).items():
+        low, high = inner(sheet.paper)
+        block = complex(high.real - SIZES["gost"][0], low.imag), complex(high.real, low.imag + SIZES["gost"][1])
+        free = (high - low).real * (high - low).imag - SIZES["gost"][0] * SIZES["gost"][1]
         found = boxes(sheet)
         assert all(apart(one, other) for one, other in combinations([*found, block], 2)), stem
         assert all(a.real >= low.real and a.imag >= low.imag for a, __ in found), stem
         assert all(b.real <= high.real and b.imag <= high.imag for __, b in found), stem
         used = sum((b - a).real * (b - a).imag for a, b in found)
         assert used >= 0.6 * free, (stem, used / free)
+
+
+def test_what_has_no_scale_is_on_the_smallest_format_that_holds_it():
+    papers = {stem: sheet.paper for stem, sheet in drawn("shaper").items()}
+    assert papers == {"sheet-0": PAPERS["A3"], "sheet-1": PAPERS["A1"], "sheet-2": PAPERS["A1"]}
 
 
 @pytest.mark.parametrize("name", COURSES)

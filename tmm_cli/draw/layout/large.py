@@ -34,15 +34,32 @@ class LargeSheet(Drawing):
 
 
 def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, LargeSheet]]:
-    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b."""
-    problem, size = choice.results.problem, PAPERS[paper]
-    field = field_of(size, problem.title_texts.block)
-    found = [(subject, *_sheet(number, choice, size, field)) for number, subject in enumerate(SUBJECTS)]
-    count = sum(len(pages) for __, ___, pages in found)
-    for number, (subject, pictures, pages) in enumerate(found):
+    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b.
+
+    That of the structure, which has no scale, is on the smallest format that holds it.
+    """
+    problem = choice.results.problem
+    smaller = [name for name in reversed(PAPERS) if PAPERS[name] <= PAPERS[paper]]
+    found = [
+        (subject, *_smallest(number, choice, smaller if number == 0 else [paper]))
+        for number, subject in enumerate(SUBJECTS)
+    ]
+    count = sum(len(pages) for *__, pages in found)
+    for number, (subject, size, pictures, pages) in enumerate(found):
+        field = field_of(size, problem.title_texts.block)
         for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
             titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)
             yield f"sheet-{number}{letter}", framed([pictures[k] for k in page], field, size, titles)
+
+
+def _smallest(number: int, choice: Choice, papers: Sequence[str]) -> tuple[Size, list[Picture], list[Page]]:
+    """The drawings of a sheet on the first of these formats that holds them on one page, or else on the last one."""
+    for paper in papers:
+        size = PAPERS[paper]
+        pictures, pages = _sheet(number, choice, size, field_of(size, choice.results.problem.title_texts.block))
+        if len(pages) < 2:
+            break
+    return size, pictures, pages
 
 
 def field_of(paper: Size, block: str) -> Field:
