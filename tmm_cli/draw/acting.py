@@ -56,7 +56,7 @@ class Forces:
         start = at if out else at - LOAD_MM * along
         end = start + (LOAD_MM + LONGER * sum(alike) if out else LOAD_MM) * along
         if style == "-":
-            self.sheet.arrow(start, end, colour, 1.5)
+            self.sheet.arrow(start, end, colour, 1.5, z=5 - 0.01 * sum(alike))  # a longer one under those on it
         else:
             self.sheet.line([start, end], colour, 1.0, style, 4)
             self.sheet.arrow(end - 4 * along, end, colour, 1.0)
