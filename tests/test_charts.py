@@ -11,7 +11,7 @@ from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
 from tmm_cli.draw.axes import across, decades, equal, round_up, upwards
-from tmm_cli.draw.chart import SAMPLE, Across, Curve, Plot, chart, room
+from tmm_cli.draw.chart import SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
 from tmm_cli.draw.diagrams import LINES, diagrams
 from tmm_cli.draw.drawing import POINT, Circle, Line, Text
 from tmm_cli.draw.fonts import corners
@@ -159,3 +159,10 @@ def test_values_that_there_are_not_interrupt_a_curve():
     chart(sheet, [Plot("y", [Curve(np.arange(5.0), ys)])], Across(across(0, 4, *room(sheet)), "x"))
     drawn_lines = [m for m in sheet.marks if isinstance(m, Line) and m.width == pytest.approx(1.3 * POINT)]
     assert [len(line.places) for line in drawn_lines] == [2, 2]
+
+
+def test_a_jump_without_its_values_written_has_no_line_to_a_text():
+    sheet = Sheet("T", "S", paper=LANDSCAPE)
+    panel = Panel(sheet, across(0, 1, 40, 100), upwards(0, 1, 40, 100))
+    panel.fill(Plot("F", [], [Jump(0.5, (0.2, 0.8), ("", "0.8"))]))
+    assert [label.text for label in sheet.labels] == ["0.8"]

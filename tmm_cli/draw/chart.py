@@ -191,7 +191,8 @@ class Panel:
             for value, text in zip(jump.values, jump.texts, strict=True):
                 place = complex(self.at(jump.at, value))
                 self.sheet.circle(place, DOT, "white", jump.colour, 0.7, 4.5)
-                self.sheet.label(text, place, SMALL, jump.colour)
+                if text:
+                    self.sheet.label(text, place, SMALL, jump.colour)
 
 
 def _axis(plot: Plot, bottom: float, height: float) -> Axis:

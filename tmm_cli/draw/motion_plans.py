@@ -22,7 +22,7 @@ from tmm_cli.plans.record import NamedVector, Plan
 from tmm_cli.plans.velocity import velocity_plan
 
 ABOUT = 9.0  # mm about the lines of a plan, for letters
-APART = 1.5  # mm: nearer corners are not told from a lettered end
+APART = 1.5  # mm: a corner that is nearer to a lettered end is lettered with it
 SHARES, NEAR = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8), 0.02  # of a vector: where its name may be; of a plan: too near
 SEEN = 4.0  # mm: a shorter vector has no name beside it, only in the table
 
@@ -80,11 +80,14 @@ def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def seen(plan: Plan, mu: float) -> dict[str, complex]:
-    """Corners that do not lie in a lettered end, as one sees on paper."""
+    """Corners; one that cannot be told from a lettered end on paper shares its place, and so its label."""
+    nearest = {
+        letter: min(plan.ends.values(), key=lambda end: abs(end - place)) for letter, place in plan.corners.items()
+    }
     return {
-        letter: place for letter, place in plan.corners.items()
-        if min(abs(place - end) for end in plan.ends.values()) > APART * mu
-    }  # fmt: skip
+        letter: place if abs(place - nearest[letter]) > APART * mu else nearest[letter]
+        for letter, place in plan.corners.items()
+    }
 
 
 def alone(vector: NamedVector, plan: Plan) -> complex:
