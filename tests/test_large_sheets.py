@@ -258,3 +258,8 @@ def test_a_pdf_has_a_page_for_every_sheet():
     assert len(pages) == len(drawn("crank-rocker", "A3"))
     assert [float(side) * 25.4 / 72 for side in pages[0].mediabox[2:]] == pytest.approx([420, 297], abs=1e-3)
     assert [f"Sheet {number}" in page.extract_text() for number, page in enumerate(pages[:1])] == [True]
+
+
+def test_a_drawing_that_nothing_makes_larger_ends_the_layout():
+    pages = drawn("cylinder")
+    assert all(sheet.pictures for sheet in pages.values())

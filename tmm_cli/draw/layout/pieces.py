@@ -144,7 +144,7 @@ def grown(
             rooms[number] = piece.larger(before)
             sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
             most = min(MOST * shrunk * piece.usual, piece.most)
-            if rooms[number] > most or pack(spaced(sizes, page), field) is None:
+            if not before < rooms[number] <= most or pack(spaced(sizes, page), field) is None:
                 rooms[number] = before
                 growing.discard(number)
     return rooms
