@@ -8,7 +8,7 @@ from models import PROBLEMS
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.drawing import Drawing
+from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.reader import read_file
 

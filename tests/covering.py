@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.fonts import ink
+from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.paper.fonts import ink
 
 TOUCH = 0.05  # mm: less than a thin line is wide
 

@@ -10,12 +10,12 @@ from higher import PROBLEMS
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
-from tmm_cli.draw.axes import across, decades, equal, round_up, upwards
-from tmm_cli.draw.chart import SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
-from tmm_cli.draw.diagrams import LINES, diagrams
-from tmm_cli.draw.drawing import POINT, Circle, Line, Text
-from tmm_cli.draw.fonts import corners
-from tmm_cli.draw.sheet import Sheet
+from tmm_cli.draw.paper.axes import across, decades, equal, round_up, upwards
+from tmm_cli.draw.paper.chart import SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
+from tmm_cli.draw.paper.drawing import POINT, Circle, Line, Text
+from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.sheet import Sheet
+from tmm_cli.draw.sheets.diagrams import LINES, diagrams
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text

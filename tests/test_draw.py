@@ -8,14 +8,14 @@ from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
 from tmm_cli.draw import files, remarks, sheets
-from tmm_cli.draw.diagrams import diagrams
 from tmm_cli.draw.formats import FORMATS
-from tmm_cli.draw.ground import Ground
-from tmm_cli.draw.labels import Label, extent, place
-from tmm_cli.draw.mechanism import detailed, position
-from tmm_cli.draw.motion_plans import motion_plans
-from tmm_cli.draw.positions import all_positions
-from tmm_cli.draw.sheet import Sheet
+from tmm_cli.draw.paper.ground import Ground
+from tmm_cli.draw.paper.labels import Label, extent, place
+from tmm_cli.draw.paper.sheet import Sheet
+from tmm_cli.draw.sheets.diagrams import diagrams
+from tmm_cli.draw.sheets.mechanism import detailed, position
+from tmm_cli.draw.sheets.motion_plans import motion_plans
+from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

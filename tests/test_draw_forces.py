@@ -10,16 +10,16 @@ from models import PROBLEMS
 from test_draw import plain
 
 from tmm_cli import load, solve
-from tmm_cli.draw.acting import ARM, Forces
-from tmm_cli.draw.beneath import Beneath, Table
-from tmm_cli.draw.drawing import Area, Line
-from tmm_cli.draw.equations import figure, table_of_forces, written
-from tmm_cli.draw.force_plans import forces, lanes, table
-from tmm_cli.draw.group_loads import group_loads
-from tmm_cli.draw.mechanism import detailed
-from tmm_cli.draw.script import plain as line
-from tmm_cli.draw.script import wrapped
-from tmm_cli.draw.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.draw.paper.drawing import Area, Line
+from tmm_cli.draw.paper.script import plain as line
+from tmm_cli.draw.paper.script import wrapped
+from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.draw.sheets.acting import ARM, Forces
+from tmm_cli.draw.sheets.beneath import Beneath, Table
+from tmm_cli.draw.sheets.equations import figure, table_of_forces, written
+from tmm_cli.draw.sheets.force_plans import forces, lanes, table
+from tmm_cli.draw.sheets.group_loads import group_loads
+from tmm_cli.draw.sheets.mechanism import detailed
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.moments import loaded_parts

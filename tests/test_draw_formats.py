@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 from pypdf import PdfReader
 
-from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.fonts import corners, lacking, width
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.pdf import pdf
+from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.paper.fonts import corners, lacking, width
 
 LINE = Line((20 + 30j, 120 + 30j), "#b3261e", 0.5, layer="links")
 TRIANGLE = Area((20 + 60j, 60 + 60j, 40 + 90j), "#1f4e9c", None, 0.0)

@@ -4,7 +4,7 @@ import pytest
 from bank import NAMES, drawn
 from covering import covered
 
-from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
 
 DARK = "#000000"
 A = Text(50 + 50j, "A", 4.0, DARK, "center")  # its letter is 2.7 mm wide and 2.9 mm high

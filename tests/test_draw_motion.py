@@ -8,11 +8,11 @@ import pytest
 from test_commands import ROOT
 
 from tmm_cli import load, solve
-from tmm_cli.draw.drawing import Circle, Text
-from tmm_cli.draw.fonts import corners
-from tmm_cli.draw.mechanism import detailed
-from tmm_cli.draw.motion_plans import motion_plans, sorts, table
-from tmm_cli.draw.script import plain
+from tmm_cli.draw.paper.drawing import Circle, Text
+from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.script import plain
+from tmm_cli.draw.sheets.mechanism import detailed
+from tmm_cli.draw.sheets.motion_plans import motion_plans, sorts, table
 
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 

@@ -11,11 +11,11 @@ from higher import PROBLEMS
 
 from tmm_cli import solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.actuators import BARREL, Cylinder, springs
-from tmm_cli.draw.drawing import Line
-from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.wheels import AROUND, contact, extent, outline
+from tmm_cli.draw.paper.drawing import Line
+from tmm_cli.draw.paper.sheet import Sheet
+from tmm_cli.draw.symbols.actuators import BARREL, Cylinder, springs
+from tmm_cli.draw.symbols.scene import Scene
+from tmm_cli.draw.symbols.wheels import AROUND, contact, extent, outline
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from test_commands import ROOT
 
 from tmm_cli import load, solve
-from tmm_cli.draw.drawing import Area, Line, Text
-from tmm_cli.draw.mechanism import detailed, position
-from tmm_cli.draw.positions import all_positions, ratio
-from tmm_cli.draw.ruler import TICK, spread
-from tmm_cli.draw.tracks import extreme_states, extremes, output_track
+from tmm_cli.draw.paper.drawing import Area, Line, Text
+from tmm_cli.draw.paper.ruler import TICK, spread
+from tmm_cli.draw.sheets.mechanism import detailed, position
+from tmm_cli.draw.sheets.positions import all_positions, ratio
+from tmm_cli.draw.sheets.tracks import extreme_states, extremes, output_track
 from tmm_cli.plans.record import ground_of
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -155,7 +155,7 @@ def test_numbers_that_would_touch_stand_apart_and_others_stay(pairs):
 
 @pytest.mark.parametrize("name", ["shaper", "two-strokes", "press-class-iii", "course-3"])
 def test_numbers_beside_the_way_do_not_cover_one_another(name):
-    from tmm_cli.draw.fonts import corners
+    from tmm_cli.draw.paper.fonts import corners
 
     __, sheet = sheet_of(name)
     texts = [m for m in sheet.marks if isinstance(m, Text) and re.fullmatch(r"[\dk′, ]+", m.text) and m.size < 3]

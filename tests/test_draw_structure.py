@@ -12,14 +12,14 @@ from test_commands import PROBLEMS, ROOT, SHAPER, imported, moved, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.drawing import Circle, Line, Text
-from tmm_cli.draw.fonts import corners
-from tmm_cli.draw.forms import by_pairs
-from tmm_cli.draw.groups import groups, side_by_side
-from tmm_cli.draw.scene import Scene
-from tmm_cli.draw.sheet import Sheet
-from tmm_cli.draw.structure import Legend, at_sketch, parts, scheme
-from tmm_cli.draw.symbols import STRUCTURAL
+from tmm_cli.draw.paper.drawing import Circle, Line, Text
+from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.sheet import Sheet
+from tmm_cli.draw.sheets.groups import groups, side_by_side
+from tmm_cli.draw.sheets.structure import Legend, at_sketch, parts, scheme
+from tmm_cli.draw.symbols.forms import by_pairs
+from tmm_cli.draw.symbols.parts import STRUCTURAL
+from tmm_cli.draw.symbols.scene import Scene
 from tmm_cli.groups.state import Pose
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.problem.build import build

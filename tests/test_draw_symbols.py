@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from test_commands import PROBLEMS, moved
 
-from tmm_cli.draw.drawing import Area, Circle, Line
-from tmm_cli.draw.fixed import free_runs, support_side
-from tmm_cli.draw.labels import gathered
-from tmm_cli.draw.render import render
-from tmm_cli.draw.scene import fitted, to_scale
-from tmm_cli.draw.sheet import DARK, THIN, Sheet
-from tmm_cli.draw.structure import at_sketch
-from tmm_cli.draw.symbols import MEASURED, PLATE, STRUCTURAL, WELD, mass_centre, tint
+from tmm_cli.draw.paper.drawing import Area, Circle, Line
+from tmm_cli.draw.paper.labels import gathered
+from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet
+from tmm_cli.draw.sheets.structure import at_sketch
+from tmm_cli.draw.symbols.fixed import free_runs, support_side
+from tmm_cli.draw.symbols.parts import MEASURED, PLATE, STRUCTURAL, WELD, mass_centre, tint
+from tmm_cli.draw.symbols.render import render
+from tmm_cli.draw.symbols.scene import fitted, to_scale
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import cross, dot
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, solve
-from tmm_cli.draw.construction import PAD, SMALLER, construction, granted, inside
-from tmm_cli.draw.drawing import Area, Line, Text
-from tmm_cli.draw.fonts import corners
-from tmm_cli.draw.lettering import rename
-from tmm_cli.draw.sheet import LOAD, THIN, border
-from tmm_cli.draw.synthesis import sheets
+from tmm_cli.draw.paper.drawing import Area, Line, Text
+from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.sheet import LOAD, THIN, border
+from tmm_cli.draw.sheets.construction import PAD, SMALLER, construction, granted, inside
+from tmm_cli.draw.sheets.lettering import rename
+from tmm_cli.draw.sheets.synthesis import sheets
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.synthesis.coupler_positions import solver as coupler_positions

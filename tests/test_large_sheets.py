@@ -16,8 +16,6 @@ from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
-from tmm_cli.draw.drawing import Circle, Drawing, Text
-from tmm_cli.draw.fonts import corners
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.dxf import plain
 from tmm_cli.draw.layout.contents import chosen
@@ -25,9 +23,11 @@ from tmm_cli.draw.layout.files import files_of_sheets
 from tmm_cli.draw.layout.large import PAPERS, field_of, framed, large_sheets
 from tmm_cli.draw.layout.packing import Field, pack, spread
 from tmm_cli.draw.layout.title_block import SIZES, Titles, inner
-from tmm_cli.draw.layout.writing import cut, wrap
-from tmm_cli.draw.mechanism import detailed
-from tmm_cli.draw.scene import Scene
+from tmm_cli.draw.paper.drawing import Circle, Drawing, Text
+from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.writing import cut, wrap
+from tmm_cli.draw.sheets.mechanism import detailed
+from tmm_cli.draw.symbols.scene import Scene
 from tmm_cli.plans.record import ROUND
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError

@@ -156,3 +156,13 @@ def test_structure_alone_loads_no_drawing_and_no_optimisation():
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+def test_paper_knows_no_mechanism_and_symbols_no_sheets():
+    rooms = ("draw.paper", "draw.formats", "draw.symbols", "draw.sheets", "draw.layout")
+
+    def floor(name):
+        return next((number for number, room in enumerate(rooms) if name.startswith(room)), -1)
+
+    drawn = {name: others for name, others in ours().items() if floor(name) >= 0}
+    assert not {(name, other) for name, others in drawn.items() for other in others if floor(other) > floor(name)}

@@ -8,9 +8,9 @@ import pytest
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
-from tmm_cli.draw.lever import lever
-from tmm_cli.draw.mechanism import detailed
-from tmm_cli.draw.motion_plans import motion_plans
+from tmm_cli.draw.sheets.lever import lever
+from tmm_cli.draw.sheets.mechanism import detailed
+from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns

@@ -11,7 +11,7 @@ from test_commands import ROOT, tmm
 from test_synthesis_crank_slider import LINKAGE, MET
 
 from tmm_cli import load
-from tmm_cli.draw.synthesis import diagram
+from tmm_cli.draw.sheets.synthesis import diagram
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem

@@ -13,17 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.draw.actuators import SPRING, Cylinder, coils, cylinders, gas, torsion
-from tmm_cli.draw.drawing import Area, Circle, Line, Mark
-from tmm_cli.draw.fixed import support, support_side, wall
-from tmm_cli.draw.forms import Form, by_points
-from tmm_cli.draw.rigid import rigid
-from tmm_cli.draw.scene import BEYOND, ON_LINE, Scene
-from tmm_cli.draw.sheet import DARK, Sheet
-from tmm_cli.draw.symbols import GAP, MEASURED, body, box, mass_centre
-from tmm_cli.draw.wheel_symbols import CHAIN, DASHED
-from tmm_cli.draw.wheel_symbols import draw as draw_higher
-from tmm_cli.draw.wheels import CamShape, Disc
+from tmm_cli.draw.paper.drawing import Area, Circle, Line, Mark
+from tmm_cli.draw.paper.sheet import DARK, Sheet
+from tmm_cli.draw.symbols.actuators import SPRING, Cylinder, coils, cylinders, gas, torsion
+from tmm_cli.draw.symbols.fixed import support, support_side, wall
+from tmm_cli.draw.symbols.forms import Form, by_points
+from tmm_cli.draw.symbols.parts import GAP, MEASURED, body, box, mass_centre
+from tmm_cli.draw.symbols.rigid import rigid
+from tmm_cli.draw.symbols.scene import BEYOND, ON_LINE, Scene
+from tmm_cli.draw.symbols.wheel_symbols import CHAIN, DASHED
+from tmm_cli.draw.symbols.wheel_symbols import draw as draw_higher
+from tmm_cli.draw.symbols.wheels import CamShape, Disc
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Slide
 from tmm_cli.structure.assur import Pair

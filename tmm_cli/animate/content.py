@@ -11,10 +11,10 @@ from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.animate.bodies import Body, Picture
 from tmm_cli.animate.courses import chart_data, charts, plan_data, position_marks, rounded
 from tmm_cli.animate.labels import labels, pair
-from tmm_cli.draw.drawing import Area, Circle, Line
-from tmm_cli.draw.motion_plans import sorts
-from tmm_cli.draw.scene import Scene, fit, fixed_pivots, to_scale
-from tmm_cli.draw.sheet import Sheet
+from tmm_cli.draw.paper.drawing import Area, Circle, Line
+from tmm_cli.draw.paper.sheet import Sheet
+from tmm_cli.draw.sheets.motion_plans import sorts
+from tmm_cli.draw.symbols.scene import Scene, fit, fixed_pivots, to_scale
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.problem.errors import ProblemError

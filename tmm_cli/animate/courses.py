@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.motion_plans import Sort
-from tmm_cli.draw.over_cycle import Quantities, balances, output
-from tmm_cli.draw.sheet import COLOURS, THIN, with_unit
+from tmm_cli.draw.paper.sheet import COLOURS, THIN, with_unit
+from tmm_cli.draw.sheets.motion_plans import Sort
+from tmm_cli.draw.sheets.over_cycle import Quantities, balances, output
 from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.vectors import Vector

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.animate.bodies import Picture
-from tmm_cli.draw.actuators import cylinders
-from tmm_cli.draw.scene import ON_LINE
+from tmm_cli.draw.symbols.actuators import cylinders
+from tmm_cli.draw.symbols.scene import ON_LINE
 from tmm_cli.linkage import FRAME
 
 OUT, BOX_SIDE = 4.0, 6.5  # mm from a hinge to its name; from the middle of a box to the number of its link

@@ -57,8 +57,8 @@ def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
-    from tmm_cli.draw.assemblies import sheets
     from tmm_cli.draw.formats import files
+    from tmm_cli.draw.sheets.assemblies import sheets
 
     results = assemblies(opened(file, settings), positions)
     code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)

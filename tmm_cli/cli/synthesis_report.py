@@ -41,7 +41,7 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
             say(_("the file has no linkage: nothing was measured"))
     if out is not None:
         from tmm_cli.draw.formats import files as drawings
-        from tmm_cli.draw.synthesis import sheets
+        from tmm_cli.draw.sheets.synthesis import sheets
 
         folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:

@@ -9,17 +9,17 @@ from itertools import chain
 
 from tmm_cli.analysis.in_detail import balancing, chosen_here, in_detail
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.diagrams import diagrams
-from tmm_cli.draw.force_plans import forces
 from tmm_cli.draw.formats import Drawn, Way, here, in_parts
-from tmm_cli.draw.group_loads import group_loads
-from tmm_cli.draw.groups import groups
-from tmm_cli.draw.lever import lever
-from tmm_cli.draw.mechanism import Position, position
-from tmm_cli.draw.motion_plans import motion_plans
-from tmm_cli.draw.positions import all_positions
-from tmm_cli.draw.structure import at_sketch, scheme
-from tmm_cli.draw.synthesis import synthesised
+from tmm_cli.draw.sheets.diagrams import diagrams
+from tmm_cli.draw.sheets.force_plans import forces
+from tmm_cli.draw.sheets.group_loads import group_loads
+from tmm_cli.draw.sheets.groups import groups
+from tmm_cli.draw.sheets.lever import lever
+from tmm_cli.draw.sheets.mechanism import Position, position
+from tmm_cli.draw.sheets.motion_plans import motion_plans
+from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.structure import at_sketch, scheme
+from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.errors import _
 from tmm_cli.quantities import FORCE, MOMENT
 

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.draw.axes import filling
-from tmm_cli.draw.chart import FINE, Panel
-from tmm_cli.draw.drawing import POINT, Drawing
-from tmm_cli.draw.fonts import width
-from tmm_cli.draw.sheet import DARK, Sheet
+from tmm_cli.draw.paper.axes import filling
+from tmm_cli.draw.paper.chart import FINE, Panel
+from tmm_cli.draw.paper.drawing import POINT, Drawing
+from tmm_cli.draw.paper.fonts import width
+from tmm_cli.draw.paper.sheet import DARK, Sheet
 from tmm_cli.errors import _
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents

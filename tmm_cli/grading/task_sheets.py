@@ -12,7 +12,7 @@ from itertools import groupby
 import yaml
 
 from tmm_cli.draw.formats.png import png
-from tmm_cli.draw.task import task_picture
+from tmm_cli.draw.sheets.task import task_picture
 from tmm_cli.errors import LinkageError, _
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.shown import shown

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
-from tmm_cli.draw.drawing import Drawing
-from tmm_cli.draw.fonts import lacking
 from tmm_cli.draw.formats.dxf import dxf
 from tmm_cli.draw.formats.pdf import pdf
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.fonts import lacking
 from tmm_cli.errors import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}

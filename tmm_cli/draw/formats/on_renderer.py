@@ -13,8 +13,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from tmm_cli.draw.drawing import POINT, Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.draw.fonts import HALF, start
+from tmm_cli.draw.paper.drawing import POINT, Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.draw.paper.fonts import HALF, start
 
 Write = Callable[[RendererBase, GraphicsContextBase, Sequence[Text], Affine2D], None]
 

@@ -11,9 +11,9 @@ from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.font_manager import FontProperties
 from matplotlib.transforms import Affine2D
 
-from tmm_cli.draw.drawing import POINT, Drawing, Text
-from tmm_cli.draw.fonts import FAMILY, drawable
 from tmm_cli.draw.formats.on_renderer import draw, foot
+from tmm_cli.draw.paper.drawing import POINT, Drawing, Text
+from tmm_cli.draw.paper.fonts import FAMILY, drawable
 
 DPI = 72  # PDF counts in points
 

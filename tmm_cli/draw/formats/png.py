@@ -16,9 +16,9 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.draw.drawing import Drawing, Text
-from tmm_cli.draw.fonts import outline
 from tmm_cli.draw.formats.on_renderer import draw, foot
+from tmm_cli.draw.paper.drawing import Drawing, Text
+from tmm_cli.draw.paper.fonts import outline
 
 DPI = 110
 PACKED = 3  # of 9: drawings get hardly smaller beyond

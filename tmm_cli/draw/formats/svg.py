@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from tmm_cli.draw.drawing import Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.draw.fonts import FAMILY, HALF
+from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.draw.paper.fonts import FAMILY, HALF
 
 ANCHOR = {"left": "start", "center": "middle", "right": "end"}
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")

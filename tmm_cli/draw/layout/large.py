@@ -7,12 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, chain, repeat
 
-from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
-from tmm_cli.draw.layout.picture import LEAST_PAPER, Picture, Space, within
 from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
 from tmm_cli.errors import _
 from tmm_cli.problem.errors import ProblemError
 

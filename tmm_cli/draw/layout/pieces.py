@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
-from tmm_cli.draw.layout.picture import Picture
+from tmm_cli.draw.paper.picture import Picture
 from tmm_cli.errors import _
 from tmm_cli.plans.record import round_scale
 from tmm_cli.problem.errors import ProblemError

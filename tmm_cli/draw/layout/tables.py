@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from tmm_cli.draw.drawing import Line, Mark, Text
-from tmm_cli.draw.layout.picture import Picture, longest_for, picture
-from tmm_cli.draw.layout.writing import DARK, cut
-from tmm_cli.draw.script import Words, pieces, width
+from tmm_cli.draw.paper.drawing import Line, Mark, Text
+from tmm_cli.draw.paper.picture import Picture, longest_for, picture
+from tmm_cli.draw.paper.script import Words, pieces, width
+from tmm_cli.draw.paper.writing import DARK, cut
 
 SIZE = 3.2  # mm: letters of a table as it comes
 BOLD, FINE = 0.5, 0.2  # mm: lines

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from tmm_cli.draw.drawing import Line, Mark
-from tmm_cli.draw.layout.writing import DARK, written
+from tmm_cli.draw.paper.drawing import Line, Mark
+from tmm_cli.draw.paper.writing import DARK, written
 from tmm_cli.errors import _
 from tmm_cli.problem.record import TitleTexts
 

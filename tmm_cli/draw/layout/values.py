@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.drawing import Drawing
 from tmm_cli.draw.layout.tables import table
-from tmm_cli.draw.mechanism import Position, place_of_driver
-from tmm_cli.draw.script import Words
-from tmm_cli.draw.sheet import on_paper
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.script import Words
+from tmm_cli.draw.paper.sheet import on_paper
+from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
 from tmm_cli.errors import _
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol

@@ -1,0 +1,202 @@
+"""Diagrams over the cycle, each quantity at a round scale over the driver's turn and the numbers of positions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results, at_places
+from tmm_cli.draw.paper.axes import Axis, across
+from tmm_cli.draw.paper.chart import Across, Curve, Jump, Plot, chart, room
+from tmm_cli.draw.paper.drawing import Drawing, Style
+from tmm_cli.draw.paper.script import Words
+from tmm_cli.draw.paper.sheet import (
+    DARK,
+    INERTIA,
+    LOAD,
+    NAMES,
+    REACTION,
+    THIN,
+    Sheet,
+    on_paper,
+    safe,
+    scale_words,
+    with_unit,
+)
+from tmm_cli.draw.sheets import over_cycle
+from tmm_cli.draw.sheets.over_cycle import Quantities
+from tmm_cli.errors import _
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MASS,
+    MOMENT,
+    SPEED,
+)
+from tmm_cli.quantities import (
+    INERTIA as MOMENT_OF_INERTIA,
+)
+from tmm_cli.structure.cycle import DENSE
+from tmm_cli.vectors import Real
+
+MOST_POINTS = 1440  # of a curve over a cycle
+MARKS = 90  # computed positions that are marked on a curve; more of them would hide it
+MOST_PANELS = 5  # of a sheet
+BESIDE = 1e-6  # rad: so far before and after the border of a stroke a curve is computed
+LEAP = 1e-3  # of all a curve runs through: what it does there in one step is a jump
+WRITTEN = 2  # curves in a panel up to which the values of jumps are written
+LINES = (DARK, LOAD, INERTIA, REACTION, NAMES, "#c77700", "#00757d", THIN)
+STYLES: tuple[Style, ...] = ("-", "--", "-.", ":")
+SYMBOLS = {
+    LENGTH: "s", SPEED: "v", ACCELERATION: "a", ANGLE: "φ", ANGULAR_SPEED: "ω", ANGULAR_ACCELERATION: "ε",
+    FORCE: "F", MOMENT: "M", MOMENT_OF_INERTIA: "J", MASS: "m",
+}  # fmt: skip
+
+
+def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
+    places, borders = _closely(results)
+    whole = at_places(results, places)
+    motion = whole.motion
+    assert motion is not None
+    outputs = results.mechanism.outputs
+    stems = [f"diagrams-link-{x}" if x in results.linkage.links else f"diagrams-{x}" for x in outputs]
+    of_outputs = {stem: over_cycle.output(results, motion, x) for stem, x in zip(stems, outputs, strict=True)}
+    first = of_outputs.pop(stems[0]) if stems else []
+    cycle = _("Diagrams over the cycle; dots: computed positions")
+    reactions = _("Reactions over the cycle; dots: computed positions")
+    energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
+    pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
+    for caption, stem, every in (
+        (cycle, "diagrams", [*first, *over_cycle.balances(whole, results)]),
+        *((cycle, stem, every) for stem, every in of_outputs.items()),
+        (reactions, "reactions", over_cycle.reactions(whole, results)),
+        (energy, "energy", over_cycle.energy(whole, results)),
+        (pressure, "pressure", over_cycle.pressure(results, motion)),
+    ):
+        for start in range(0, len(every), MOST_PANELS):
+            name = safe(stem) + (f"-{start // MOST_PANELS + 1}" if start else "")
+            yield name, _sheet(results, caption, motion, borders, every[start : start + MOST_PANELS])
+
+
+def _closely(results: Results) -> tuple[Real, list[int]]:
+    """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
+    turns, sense = _turns(results), results.linkage.driver.sense
+    places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
+    if not turns:
+        return places, []
+    gone, end = sense * (places - results.start), 2 * np.pi * turns
+    borders = sorted({stop for start, length, __ in _strokes(results) for stop in (start, start + length)} - {0.0})
+    for border in borders:
+        gone = gone[np.abs(gone - border) > 2 * BESIDE]
+        gone = np.append(gone, [border - BESIDE, min(border + BESIDE, end)])
+    gone = np.sort(gone)
+    before = np.searchsorted(gone, np.array(borders) - 1.5 * BESIDE)
+    return results.start + sense * gone, before.tolist()
+
+
+def _strokes(results: Results) -> list[tuple[float, float, bool]]:
+    """Strokes in what is drawn, from position 0 on: start, length (rad), whether it is a working one."""
+    turns, strokes = _turns(results), results.strokes
+    if not turns or strokes is None:
+        return []
+    end, found = 2 * np.pi * turns, []
+    for stroke in strokes.strokes:
+        start = float(np.mod(results.linkage.driver.sense * (stroke.start - results.start), strokes.cycle))
+        start = 0.0 if strokes.cycle - start < BESIDE or start < BESIDE else start
+        for begin in (start - strokes.cycle, start):
+            low, high = max(begin, 0.0), min(begin + stroke.length, end)
+            if high - low > BESIDE:
+                found.append((low, end - low if end - high < BESIDE else high - low, stroke.working))
+    return found
+
+
+def _turns(results: Results) -> int:
+    """Of a crank, after which all comes again; 0 where there are none."""
+    reach = results.driver_range
+    return reach.turns if reach is not None and reach.full and results.linkage.driver.kind == "turn" else 0
+
+
+def _turned(results: Results, q: Real) -> Any:
+    """The driver's turn from position 0, deg; a slider's run in the file's unit."""
+    if results.linkage.driver.kind == "slide":
+        return np.asarray(q) / results.problem.units.factor(LENGTH)
+    return np.degrees(results.linkage.driver.sense * (q - results.start))
+
+
+def _sheet(
+    results: Results, caption: str, motion: Motion, borders: Sequence[int], every: Sequence[Quantities]
+) -> Drawing:
+    assert results.motion is not None
+    sheet = Sheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
+    xs, marks, end = _turned(results, motion.q), _turned(results, results.motion.q), 360 * _turns(results)
+    numbers = list(zip(marks.tolist(), map(str, results.numbers), strict=True))
+    if end:
+        marks = np.mod(marks + BESIDE, end) - BESIDE
+        numbers = [(mark, text) for mark, (__, text) in zip(marks.tolist(), numbers, strict=True)]
+        if not results.inputs.request.places:
+            numbers.append((end, str(len(results.asked))))
+    axis, words = _across(results, (0.0, end) if end else (min(xs), max(xs)), *room(sheet))
+    spans = [
+        (math.degrees(start), math.degrees(start + length), _("working stroke") if working else _("idle stroke"))
+        for start, length, working in _strokes(results)
+    ]
+    over = Across(axis, words, sorted(numbers), spans)
+    chart(sheet, [_plot(one, results.problem.units, xs, marks, borders) for one in every], over)
+    return sheet.finish()
+
+
+def _across(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[Axis, Words]:
+    """The axis of the driver's turn (deg) or of its run, and what is written below it."""
+    if results.linkage.driver.kind == "turn":
+        axis = across(*ends, start, most, degrees=True)
+        return axis, (f"{_('turn of the crank from position 0, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
+    axis, units = across(*ends, start, most), results.problem.units
+    scale = scale_words("s", axis.mu * units.factor(LENGTH), "m/mm")
+    return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
+
+
+def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+    factor, unit = units.factor(found.dimension), on_paper(units.symbol(found.dimension))
+    curves, jumps = [], []
+    for k, course in enumerate(found.courses):
+        values, points = (np.asarray(v) / factor for v in (course.values, course.points))
+        if course.limit:
+            curves.append(Curve(xs, values, course.name, THIN, "--", 1.0))
+            continue
+        colour, style = LINES[k % len(LINES)], STYLES[(k // len(LINES) + k) % len(STYLES)]
+        values = np.broadcast_to(values, np.shape(xs))
+        leaps = [i for i in borders if abs(values[i + 1] - values[i]) > LEAP * np.ptp(values)]
+        after = np.array(leaps, dtype=int) + 1
+        whole = np.insert(values, after, np.nan)
+        curves.append(Curve(np.insert(xs, after, np.nan), whole, course.name, colour, style))
+        every = slice(None, None, math.ceil(len(marks) / MARKS))
+        curves.append(Curve(marks[every], np.broadcast_to(points, np.shape(marks))[every], "", colour, dots=True))
+        for i in leaps:
+            told = [f"{v:.4g}" if len(found.courses) <= WRITTEN else "" for v in (values[i], values[i + 1])]
+            jumps.append(Jump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
+    return Plot(
+        with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),
+        degrees=found.dimension == ANGLE and unit == "deg",
+    )  # fmt: skip
+
+
+def _scale(found: Quantities, units: UnitSystem, unit: str) -> Any:
+    """How the scale of the axis is written: that of lengths in metres, as on the other sheets."""
+    symbol, factor = found.symbol or SYMBOLS.get(found.dimension, ""), 1.0
+    if found.dimension == LENGTH:
+        unit, factor = "m", units.factor(LENGTH)
+    elif not unit:
+        unit = {"T": "J", "P": "W"}.get(found.symbol, "1")
+    per = f"({unit})/mm" if "/" in unit else f"{unit}/mm"
+    return lambda mu: scale_words(symbol, mu * factor, per)

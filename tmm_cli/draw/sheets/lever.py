@@ -1,0 +1,110 @@
+"""The Zhukovsky lever as a sheet: the turned velocity plan with all forces, their arms and the equation of moments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.labels import gathered
+from tmm_cli.draw.paper.script import Words, filled
+from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet, scale_words
+from tmm_cli.draw.sheets.acting import Forces, arms, extent
+from tmm_cli.draw.sheets.beneath import Beneath, above
+from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
+from tmm_cli.draw.sheets.mechanism import Position
+from tmm_cli.errors import _
+from tmm_cli.plans.lever import POLE, Pair, lever_plan
+from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
+from tmm_cli.tolerances import NO_DIFFERENCE
+
+
+def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
+    """The lettered points; those that coincide share a place and a label."""
+    for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
+        sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
+        sheet.label(", ".join(names), at, 11 if pole in names else 10)
+
+
+def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
+    """Arms are lines from the pole to the feet on the lines of forces."""
+    results = here.results
+    if results.lever is None or results.reactions is None:
+        return
+    crank = results.linkage.driver.kind == "turn"
+    plan = lever_plan(here.motion, results.reactions, results.lever, here.k)
+    places = [*plan.ends.values(), *(term.foot for term in plan.equation.terms)]
+    title = (
+        _("Zhukovsky lever: velocity plan for 1 rad/s, turned by 90° clockwise. {caption}")
+        if crank
+        else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90° clockwise. {caption}")
+    )
+    unit = "N·m" if crank else "N"
+    pairs = [word for pair in plan.pairs for word in _pair(pair)]
+    lines = [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)]
+    units = results.problem.units if crank else None
+
+    def beneath(mu: float) -> Beneath:
+        return Beneath(lines, (table_of_forces(plan.acting, unit), table_of_arms([plan.equation], units, mu)))
+
+    sheet, text = above(here, title, [*((place, 0j) for place in places), *extent(plan.acting)], beneath)
+    for bar in plan.bars:
+        sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
+    bars = sheet.ground.crowd
+    Forces(sheet).draw(plan.acting)
+    arms(sheet, [plan.equation], bars)
+    letter_points(sheet, plan.ends, POLE)
+    sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
+    sheet.note(_("forces without scale"))
+    sheet.note(_("moments positive counterclockwise"))
+    if any(a.couple and not a.pair for a in plan.acting):
+        sheet.note(_("M′: M times the ratio of the link's speed to the driver's"))
+    for line in _several(here):
+        sheet.note(line)
+    yield here.stem("lever"), sheet.finish()
+    if text is not None:
+        yield here.stem("lever") + "-sheet-2", text.finish()
+
+
+def _pair(pair: Pair) -> tuple[str | Symbol, ...]:
+    """P = M / AB: the forces that stand for a couple."""
+    numbers = f"{figure(abs(pair.moment))} / {figure(pair.distance)} = {figure(abs(pair.moment) / pair.distance)} N"
+    return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
+
+
+def _checked(here: Position) -> Iterable[Words]:
+    """What the force plan has found for the one driver, and the difference."""
+    results, reactions = here.results, here.results.reactions
+    assert reactions is not None and results.lever is not None
+    if len(reactions.balances) > 1:
+        return
+    balance, difference = reactions.balance, 100 * float(results.lever.difference[here.k])
+    turns = balance.kind == "moment"
+    value = float((balance.generalized if turns else balance.force)[here.k])
+    yield filled(
+        _("force plan: {name} = {value} {unit}, difference {percent} %"),
+        name=balance_symbol(balance.driver.link, several=False, turns=turns), value=figure(abs(value)),
+        unit="N·m" if turns else "N", percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
+    )  # fmt: skip
+
+
+def _several(here: Position) -> Iterable[str]:
+    """What the lever gives with several drivers: the sum of what they do at their speeds."""
+    motion, results, k = here.motion, here.results, here.k
+    reactions = results.reactions
+    assert reactions is not None and results.lever is not None
+    if len(reactions.balances) == 1:
+        return
+    crank, names = results.linkage.driver.kind == "turn", []
+    for balance in reactions.balances:
+        ratio = float(np.broadcast_to(motion.drives[balance.driver.link].first, motion.q.shape)[k])
+        turns = balance.moment is not None
+        name = balance_name(balance.driver.link, True, turns=turns)
+        names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
+        yield _("{name} = {value} {unit} (force plan)").format(
+            name=name, value=f"{float(balance.generalized[k]):.6g}", unit="N·m" if turns else "N"
+        )
+    yield _("lever: {names} = {value} {unit}").format(
+        names=" ".join(names), value=f"{float(results.lever.balancing[k]):.6g}", unit="N·m" if crank else "N"
+    )

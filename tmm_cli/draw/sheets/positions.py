@@ -1,0 +1,241 @@
+"""The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.paper.annotations import angle_mark, dimension
+from tmm_cli.draw.paper.blocks import Block
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.labels import gathered as in_place
+from tmm_cli.draw.paper.room import Figure, room
+from tmm_cli.draw.paper.ruler import Number, Ruler, draw_ruler, gathered, reach, roomiest, ruler_of
+from tmm_cli.draw.paper.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
+from tmm_cli.draw.sheets.lengths import lengths
+from tmm_cli.draw.sheets.mechanism import detailed, measured, paths, skeleton, trace
+from tmm_cli.draw.sheets.tracks import Extreme, Track, driver_track, extreme_states, extremes, output_track, travel
+from tmm_cli.draw.symbols.parts import MEASURED
+from tmm_cli.draw.symbols.render import arrows
+from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.errors import _
+from tmm_cli.groups.sequence import LinkStates
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.plans.record import sheet_scale
+from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.vectors import Vector
+
+SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
+OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
+STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
+DIMENSION = 13.0  # mm beside a ruler for the stroke
+BEYOND, SHORT = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
+EXTREME = "#6a6a6a"
+BOLD = 4  # how much more a link in full is in the way than a thin one
+BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
+NEAR, FULL, PIVOT, GUIDE = 3.0, 8.0, 11.0, 13.0  # mm about thin lines, what is drawn in full, pivots, sliders
+
+
+@dataclass(frozen=True)
+class PositionMark:
+    """Where a position is on a track (m), and what it is called; end: of the output's way; working: its stroke."""
+
+    place: complex
+    text: str
+    end: bool
+    working: bool
+
+
+@dataclass(frozen=True)
+class View:
+    """What is on the sheet: the motion with one position in full, the ends of the output's way."""
+
+    results: Results
+    motion: Motion
+    scene: Scene
+    ends: list[Extreme]
+    states: LinkStates | None
+
+    def lines(self, k: int) -> Vector:
+        """Points (m) that stand for the links in a position."""
+        scene, found = replace(self.scene, k=k), []
+        for link in self.results.linkage.moving:
+            places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
+            found += [place + (places[n - 1] - place) * BETWEEN for n, place in enumerate(places)]
+        lines: Vector = np.concatenate(found)
+        return lines
+
+    @property
+    def shown(self) -> list[int]:
+        """Positions drawn thin."""
+        step = max(1, len(self.results.numbers) // SHOWN)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    @property
+    def numbered(self) -> list[int]:
+        """Positions with numbers."""
+        step = math.ceil(len(self.results.numbers) / NUMBERED)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    def marks(self, track: Track) -> list[PositionMark]:
+        """Numbers and letters of positions along a track, ends of the output's way among them."""
+        named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
+        working = np.ones(len(places), bool)
+        if strokes is not None and strokes.strokes:
+            working = strokes.share(self.motion.q, self.results.linkage.driver.sense)
+        found = [
+            PositionMark(complex(places[k]), text, text in named, bool(working[k]))
+            for k in self.numbered
+            for text in [str(self.results.numbers[k])]
+        ]
+        if self.states is not None:
+            there = [mark.text for mark in found]
+            ends = zip(track.places(self.states), named, strict=True)
+            found += [PositionMark(complex(place), mark, True, True) for place, mark in ends if mark not in there]
+        return found
+
+
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers, stroke, lengths."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    chosen = detailed(results)
+    k = chosen[0].k if chosen else int(np.argmax(motion.placed))
+    ends = extremes(results)
+    states = extreme_states(results, ends) if ends else None
+    view = View(results, motion, Scene(linkage, results.structure, motion.poses, k), ends, states)
+    whole, track = paths(results), output_track(results)
+    marks = view.marks(track) if track is not None else []
+    ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
+    notes, rows = list(_notes(view, track, marks)), lengths(results)
+    figure = _figure(view, whole)
+    off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
+    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
+    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    sheet = Sheet(results.problem.title, caption, room=found)
+    trace(sheet, whole)
+    for other in view.shown:
+        if other != k:
+            skeleton(sheet, replace(view.scene, k=other))
+    if states is not None:
+        for other in range(len(ends)):
+            skeleton(sheet, replace(view.scene, poses=states.poses, k=other), EXTREME, 0.9, 1.1)
+    if motion.placed[k]:
+        arrows(sheet, view.scene, measured(sheet, view.scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
+    driver = driver_track(results)
+    if driver is not None:
+        _spots(sheet, view.marks(driver))
+    if track is not None and ruled:
+        _output(sheet, view, track, marks, off)
+    elif track is not None and track != driver:
+        _spots(sheet, marks)
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
+    for note in notes:
+        sheet.note(note)
+    sheet.table(rows, 1)
+    yield "mechanism", sheet.finish()
+
+
+def ratio(mu: float) -> str:
+    """A scale factor (m/mm) as the scale of a drawing, 1:4."""
+    return f"1:{1000 * mu:.6g}" if mu >= 1e-3 else f"{1e-3 / mu:.6g}:1"
+
+
+def _figure(view: View, whole: list[Vector]) -> Figure:
+    """Everything but the numbers of the output, with the room that it needs."""
+    figure, pivots = Figure(), fixed_pivots(view.results.linkage)
+    used = [*pivots, *(place for path in whole for place in path.tolist())]
+    figure.spots(pivots, PIVOT)
+    figure.spots(to_scale(view.scene, used), NEAR)
+    for k in view.shown:
+        figure.spots(view.lines(k), FULL if k == view.scene.k else NEAR)
+    sliding = [pair for pair in view.scene.structure.pairs if pair.slide is not None]
+    figure.spots([view.scene.at(pair) for pair in sliding], GUIDE)
+    crank = driver_track(view.results)
+    if crank is not None:
+        figure.spots([mark.place for mark in view.marks(crank)], FULL)
+    return figure
+
+
+def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> float:
+    """Room for the scale of the output and for its stroke beyond it; how far off the way it is, whatever the scale."""
+    mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
+    plain, numbers = _numbers(track, marks, lambda place: place / mu)
+    bold = [view.lines(view.scene.k)] * BOLD
+    lines = np.concatenate([*(view.lines(k) for k in view.shown), *bold]) / mu
+    ruler = roomiest(plain, numbers, lines)
+    low, high = min(number.run for number in numbers), max(number.run for number in numbers)
+    more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
+    for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
+        way = ruler.way(min(max(run, low), high))
+        for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
+            figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
+    return ruler.off
+
+
+def _numbers(track: Track, marks: list[PositionMark], on: Callable[[complex], complex]) -> tuple[Ruler, list[Number]]:
+    """A scale along the way of the output, and its numbers."""
+    pivot = on(track.pivot) if track.kind == "arc" else None
+    plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
+    numbers = gathered([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
+    return plain, numbers
+
+
+def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], off: float) -> None:
+    """Numbers of positions along the way of the output, so far off it, and its stroke or swing."""
+    plain, numbers = _numbers(track, marks, sheet.on)
+    ruler = replace(plain, off=off)
+    draw_ruler(sheet, ruler, numbers)
+    if view.states is None:
+        return
+    first, last = _farthest(track.places(view.states))
+    with sheet.on_layer("dimensions"):
+        if track.kind == "line":
+            ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
+            dimension(sheet, ends[0], ends[1], _size(view))
+        elif travel(view.results) < STRAIGHT:
+            angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)
+
+
+def _size(view: View) -> str:
+    """The stroke H, or the swing ψ."""
+    results, units = view.results, view.results.problem.units
+    turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
+    measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
+    return f"{letter} = {units.from_si(travel(results), measure):.4g} {units.symbol(measure)}"
+
+
+def _farthest(places: Vector) -> tuple[complex, complex]:
+    """The two ends that are farthest from one another."""
+    found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
+    return max(found, key=lambda ends: abs(ends[0] - ends[1]))
+
+
+def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
+    """Numbers of positions beside the places of a point, outside its way."""
+    finite = [mark for mark in marks if np.isfinite(mark.place)]
+    if not finite:
+        return
+    middle = sheet.on(sum(mark.place for mark in finite) / len(finite))
+    # in a cycle of several turns the crank comes back to its places
+    for at, here in in_place((sheet.on(mark.place), mark) for mark in finite):
+        out = at - middle
+        end = any(mark.end for mark in here)
+        sheet.circle(at, 0.7 if end else 0.5, DARK, DARK, 0.3, 5)
+        text = ", ".join(mark.text for mark in here)
+        sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
+
+
+def _notes(view: View, track: Track | None, marks: list[PositionMark]) -> Iterable[str]:
+    """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
+    yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
+    if view.ends:
+        yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
+        if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
+            yield _size(view)
+        if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
+            yield _("outer numbers: working stroke")
