@@ -151,7 +151,7 @@ CASES = {
         "  found:   'gear'\n"
         "  allowed: tmm, title, description, units, parameters, synthesis, variants, grading, points, guides, links, "
         "driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
-        "positions, checks\n"
+        "positions, checks, sheet\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (
