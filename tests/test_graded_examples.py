@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from test_commands import ROOT
+from test_commands import ROOT, tmm
 from write_graded_examples import MISTAKES, NAMES
 
 from tmm_cli.grading.mistakes import MISTAKES as KINDS
@@ -50,3 +50,9 @@ def test_a_copied_sheet_is_named_where_the_variants_differ_enough():
     assert {name: students["Kovac"]["copied"] for name, students in GRADED.items()} == {
         "shaper": "Borisov", "crank-slider": "Borisov", "six-bar": "",
     }  # fmt: skip
+
+
+def test_examples_are_checked_from_their_own_folder_and_from_that_of_all():
+    for folder, count in (("grading", 3), ("grading/six-bar", 1)):
+        done = tmm("check", ROOT / "problems" / folder)
+        assert done.returncode == 0 and f"{count} problems, 0 differ" in done.stderr

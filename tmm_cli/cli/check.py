@@ -12,6 +12,8 @@ from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, wr
 from tmm_cli.cli.talk import BAD_INPUT, say
 from tmm_cli.errors import _
 
+EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
+
 
 def check(
     paths: Annotated[list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)],
@@ -26,15 +28,17 @@ def check(
     relative to its largest value in the cycle; the tolerance is in the expected file. Exit code 1 when something
     differs.
     """
-    files = [f for path in paths for f in (sorted(path.glob("*.yaml")) if path.is_dir() else [path])]
+    tables = [table for path in paths if path.is_dir() for depth in EXAMPLES for table in sorted(path.glob(depth))]
+    tasks = [table.with_name("task.yaml") for table in tables if table.with_name("task.yaml").is_file()]
+    plain = [f for path in paths for f in (sorted(path.glob("*.yaml")) if path.is_dir() else [path])]
+    files = [*(f for f in plain if f not in tasks), *tasks]
     if not files:
         folders = ", ".join(map(str, paths))
         say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
         raise typer.Exit(BAD_INPUT)
-    tasks = [task for path in paths if path.is_dir() for task in sorted(path.glob("grading/*/task.yaml"))]
     outcomes = [
         compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)
-        for name in progress([str(f) for f in (*files, *tasks)])
+        for name in progress([str(f) for f in files])
     ]
     show_outcomes(outcomes)
     if junit is not None:
