@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.animate.bodies import Body, Picture
 from tmm_cli.animate.courses import chart_data, charts, plan_data, position_marks, rounded
 from tmm_cli.animate.labels import labels, pair
-from tmm_cli.draw.paper.drawing import Area, Circle, Line
+from tmm_cli.draw.paper.picture import reach
 from tmm_cli.draw.paper.sheet import Sheet
 from tmm_cli.draw.sheets.motion_plans import sorts
 from tmm_cli.draw.symbols.scene import Scene, fit, fixed_pivots, to_scale
@@ -81,22 +81,11 @@ def view(picture: Picture) -> tuple[float, float, float, float]:
     every: list[complex] = []
     step = max(1, len(picture.motion.q) // 24)
     for own in picture.bodies.values():
-        local = [z for mark in own.marks for z in _outline(mark)]
+        local = [z for mark in own.marks for z in reach(mark)]
         for k in range(0, len(picture.motion.q), step):
             every += np.atleast_1d(own.at(np.array(local, complex), k)).tolist()
     xs, ys = [z.real for z in every], [-z.imag for z in every]
     return min(xs) - EDGE, min(ys) - EDGE, np.ptp(xs) + 2 * EDGE, np.ptp(ys) + 2 * EDGE
-
-
-def _outline(mark: object) -> Sequence[complex]:
-    match mark:
-        case Line():
-            return mark.places
-        case Area():
-            return mark.corners
-        case Circle():
-            return [mark.centre + mark.radius * way for way in (1, 1j, -1, -1j)]
-    return ()
 
 
 def body_data(own: Body) -> dict[str, Any]:

@@ -116,19 +116,20 @@ def picture(
 
 def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:
     """Corners of the box about marks, mm."""
-    places = [place for mark in marks for place in _reach(mark)] or [0j]
+    places = [place for mark in marks for place in reach(mark)] or [0j]
     xs, ys = [z.real for z in places], [z.imag for z in places]
     return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
 
-def _reach(mark: Mark) -> Iterable[complex]:
+def reach(mark: Mark) -> Sequence[complex]:
+    """Places between which a mark lies, mm."""
     match mark:
         case Line():
             return mark.places
         case Area():
             return mark.corners
         case Circle():
-            return mark.centre - mark.radius * (1 + 1j), mark.centre + mark.radius * (1 + 1j)
+            return [mark.centre + mark.radius * way for way in (1, 1j, -1, -1j)]
         case Text():
             return corners(mark)
 
