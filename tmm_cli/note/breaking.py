@@ -1,4 +1,4 @@
-"""Formulas in lines: no format of the note breaks a wide formula well by itself, so it is broken before it is written."""
+"""Formulas in lines: no format breaks a wide formula well by itself, so it is broken before it is written."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OPENING = (Sign("="), Sign("("), Sign("·"))  # after which a sign is the number
 
 
 def chain(sides: Sequence[Node], most: float = LINE) -> Node:
-    """Sides that are equal, joined by signs of equality; broken before these, or before a term, where it is too wide."""
+    """Equal sides with their signs; broken before a sign of equality, or of a term, where it is too wide."""
     lines: list[Node] = []
     for side in sides:
         joined = row(lines[-1], "=", side) if lines else side
