@@ -1,0 +1,1 @@
+"""The explanatory note: blocks and formulas of a course project, written as DOCX or HTML."""
