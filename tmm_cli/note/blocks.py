@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from string import Formatter
 
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.note.expression import Substitution
@@ -155,6 +156,19 @@ def paragraph(*line: Inline) -> Paragraph:
 def line(*parts: Inline) -> Line:
     """Of texts and symbols one after another."""
     return tuple(parts)
+
+
+def words(text: str, /, **parts: Inline) -> Line:
+    """A sentence with symbols, formulas and references in its fields: "the velocity {v} of point {point}"."""
+    found: list[Inline] = []
+    for plain, name, *__ in Formatter().parse(text):
+        found += [part for part in (plain, parts[name] if name else "") if part != ""]
+    return tuple(found)
+
+
+def said(text: str, /, **parts: Inline) -> Paragraph:
+    """A paragraph of such a sentence, or of several."""
+    return Paragraph(words(text, **parts))
 
 
 def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
