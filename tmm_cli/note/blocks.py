@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import string
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -155,6 +156,22 @@ def paragraph(*line: Inline) -> Paragraph:
 def line(*parts: Inline) -> Line:
     """Of texts and symbols one after another."""
     return tuple(parts)
+
+
+def filled(sentence: str, **parts: Inline | Line) -> Line:
+    """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
+    found: list[Inline] = []
+    for before, name, *_ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        if name:
+            part = parts[name]
+            found += part if isinstance(part, tuple) else (part,)
+    return tuple(found)
+
+
+def said(sentence: str, **parts: Inline | Line) -> Paragraph:
+    """A paragraph of such a sentence."""
+    return Paragraph(filled(sentence, **parts))
 
 
 def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
