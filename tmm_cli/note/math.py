@@ -74,7 +74,14 @@ class Brackets:
     inside: Node
 
 
-Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets
+@dataclass(frozen=True)
+class Lines:
+    """A formula that is too wide for one line, broken before a sign."""
+
+    lines: tuple[Node, ...]
+
+
+Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets | Lines
 
 
 def row(*parts: Node | str) -> Node:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from tmm_cli.note.math import Brackets, Fraction, Letter, Node, Number, Power, Root, Row, Sign, Words
+from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
 from tmm_cli.plans.record import Symbol
 
 
@@ -33,6 +33,9 @@ def _of(node: Node) -> str:
             return f"<msqrt>{_of(of)}</msqrt>"
         case Brackets(inside):
             return f"<mrow><mo>(</mo>{_of(inside)}<mo>)</mo></mrow>"
+        case Lines(lines):
+            rows = "".join(f"<mtr><mtd>{_of(line)}</mtd></mtr>" for line in lines)
+            return f'<mtable columnalign="left" displaystyle="true">{rows}</mtable>'
 
 
 def _symbol(symbol: Symbol, vector: bool) -> str:
