@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import string
 from collections.abc import Iterable
 from dataclasses import dataclass
-from string import Formatter
 
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.note.expression import Substitution
@@ -158,17 +158,20 @@ def line(*parts: Inline) -> Line:
     return tuple(parts)
 
 
-def words(text: str, /, **parts: Inline) -> Line:
-    """A sentence with symbols, formulas and references in its fields: "the velocity {v} of point {point}"."""
+def filled(sentence: str, **parts: Inline | Line) -> Line:
+    """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
     found: list[Inline] = []
-    for plain, name, *__ in Formatter().parse(text):
-        found += [part for part in (plain, parts[name] if name else "") if part != ""]
+    for before, name, *_ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        if name:
+            part = parts[name]
+            found += part if isinstance(part, tuple) else (part,)
     return tuple(found)
 
 
-def said(text: str, /, **parts: Inline) -> Paragraph:
-    """A paragraph of such a sentence, or of several."""
-    return Paragraph(words(text, **parts))
+def said(sentence: str, **parts: Inline | Line) -> Paragraph:
+    """A paragraph of such a sentence."""
+    return Paragraph(filled(sentence, **parts))
 
 
 def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
