@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -9,6 +10,7 @@ import typer
 
 from tmm_cli import solve
 from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say
@@ -38,7 +40,8 @@ def sheets(
         results = solve(problem, "forces")
         for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
             say(text)
-        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, every=positions == "all"))
+        way = partial(by_all_cores, quiet=len(files) > 1)
+        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, way, every=positions == "all"))
         return OK
 
     each(files, work, out=out, headed=False)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate, chain, repeat
 
+from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, pack, spread
 from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, spaced
@@ -33,19 +35,17 @@ class LargeSheet(Drawing):
     pictures: tuple[tuple[complex, Picture], ...] = ()
 
 
-def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, LargeSheet]]:
-    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b.
+def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[str, LargeSheet]]:
+    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b. way: who draws.
 
     That of the structure, which has no scale, is on the smallest format that holds it.
     """
     problem = choice.results.problem
     smaller = [name for name in reversed(PAPERS) if PAPERS[name] <= PAPERS[paper]]
-    found = [
-        (subject, *_smallest(number, choice, smaller if number == 0 else [paper]))
-        for number, subject in enumerate(SUBJECTS)
-    ]
+    jobs = [partial(_smallest, number, choice, [paper] if number else smaller) for number in range(len(SUBJECTS))]
+    found = list(way(jobs))
     count = sum(len(pages) for *__, pages in found)
-    for number, (subject, size, pictures, pages) in enumerate(found):
+    for number, (subject, (size, pictures, pages)) in enumerate(zip(SUBJECTS, found, strict=True)):
         field = field_of(size, problem.title_texts.block)
         for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
             titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)

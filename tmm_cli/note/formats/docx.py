@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 from docx import Document
@@ -32,6 +33,7 @@ from tmm_cli.note.blocks import (
     Title,
 )  # fmt: skip
 from tmm_cli.note.breaking import formula
+from tmm_cli.note.context import figures
 from tmm_cli.note.formats.docx_parts import TEXT, Parts, field, plain, prepared, title_page, unbroken
 from tmm_cli.note.formats.omml import display, omath
 from tmm_cli.note.math import Letter
@@ -54,6 +56,7 @@ class _Writer:
     def __init__(self, note: Note) -> None:
         self.note = note
         self.numbers = note.numbers()
+        self.figures = partial(figures, language=note.language)
         self.document: Any = Document()
         prepared(self.document, note.title, note.language)
         self.parts = Parts(self.document)
@@ -72,7 +75,7 @@ class _Writer:
             case Equation(node, key):
                 self._formula(display(node), key)
             case Found(substitution, key):
-                self._formula(display(formula(substitution)), key)
+                self._formula(display(formula(substitution, self.figures)), key)
             case Rows():
                 self._rows(block)
             case Figure():
@@ -134,15 +137,16 @@ class _Writer:
             else:
                 paragraph._p.append(parse_xml(line))
 
-    def _caption(self, label: str, text: str, key: str, kind: str) -> Any:
-        """Figure 3 - text, its number a field that Word counts."""
+    def _caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
+        """Its number is a field that Word counts; sentence: with {number} and {text}."""
+        before, after = sentence.split("{number}")
         paragraph = self._paragraph("Caption")
-        paragraph.add_run(f"{label} ")
+        paragraph.add_run(before)
         first = len(paragraph._p)
         field(paragraph, f"SEQ {kind} \\* ARABIC", str(self._next(kind)))
         if key:
             self.parts.marked(paragraph, self._mark(key), first)
-        paragraph.add_run(f" – {plain(text)}")
+        paragraph.add_run(after.format(text=plain(text)))
         return paragraph
 
     def _next(self, kind: str) -> int:
@@ -150,19 +154,18 @@ class _Writer:
         return self.counted[kind]
 
     def _rows(self, block: Rows) -> None:
-        caption = self._caption(_("Table"), block.caption, block.key, "Table")
+        caption = self._caption(_("Table {number}. {text}"), block.caption, block.key, "Table")
         caption.paragraph_format.keep_with_next = True
         caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
         size = 10.0 if len(block.head) <= 6 else 8.5
-        right = [all(_numeric(row[k]) for row in block.rows) for k in range(len(block.head))]
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
             unbroken(row, head=number == 0)
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
-                if number and right[k]:
+                if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
                 self._line(paragraph, line, size=size, bold=number == 0)
         self._paragraph("TableText")
@@ -172,27 +175,8 @@ class _Writer:
         width, height = block.drawing.paper
         share = min(1.0, TEXT / width, HIGH / height)
         self.parts.picture(paragraph, block.drawing, share, block.caption)
-        self._caption(_("Figure"), block.caption, block.key, "Figure")
+        self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
 
     def _contents(self) -> None:
         self._paragraph("ContentsHeading").add_run(_("Contents"))
-        headings = [block for block in self.note.blocks if isinstance(block, Heading)]
-        self.parts.contents(
-            [(h.level, number, plain(h.text)) for h, number in zip(headings, numbered(headings), strict=True)]
-        )
-
-
-def numbered(headings: Iterable[Heading]) -> list[str]:
-    """Decimal numbers of headings: 2, 2.1, 2.2."""
-    count: list[int] = []
-    found = []
-    for heading in headings:
-        count = [*count[: heading.level], *[0] * (heading.level - len(count))]
-        count[heading.level - 1] += 1
-        found.append(".".join(map(str, count)))
-    return found
-
-
-def _numeric(line: Line) -> bool:
-    text = line[0] if len(line) == 1 else None
-    return isinstance(text, str) and text.lstrip("-−").replace(",", "").replace(".", "").replace("e", "").isdigit()
+        self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in self.note.headings())
