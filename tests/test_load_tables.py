@@ -1,10 +1,14 @@
 """A table of a load goes no farther than what it is against: rows beyond the cycle are refused, not cut."""
 
 import blocks
+import numpy as np
 import pytest
+from fuzz import beyond
 from test_commands import ROOT, tmm
 
-from tmm_cli import load
+from tmm_cli import load, solve
+from tmm_cli.library import problem_of
+from tmm_cli.problem.reader import read_text
 from tmm_cli.results.explain import given
 
 CRANK_SLIDER = """tmm: 1
@@ -74,3 +78,18 @@ def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
     assert told.title == "press against the stroke" and told.notes == ("Its direction is 90 deg.",)
+
+
+@pytest.mark.parametrize("against", ["crank angle", "crank turn"])
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+@pytest.mark.parametrize(
+    "positions", ["{count: 12, from: 30}", "{count: 7, from: 360/7}", "{at: [360, -720, 1e5*360]}"]
+)
+def test_where_a_table_jumps_from_its_end_to_its_beginning_rounding_does_not_choose_the_side(against, turns, positions):
+    table = "[[0, 260 N], [180, 100 N], [360, 0]]"
+    text = CRANK_SLIDER.format(against=against, table=table).replace("turns: cw", f"turns: {turns}")
+    results = solve(problem_of(read_text(f"{text}positions: {positions}\n", "x.yaml")))
+    assert beyond(results) is None
+    if against == "crank angle":
+        at_zero = np.abs(np.sin(results.motion.q / 2)) < 1e-6
+        assert results.reactions.of("B").force[at_zero].real == pytest.approx(260)

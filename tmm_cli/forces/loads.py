@@ -52,19 +52,26 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
     driver = motion.linkage.driver
     if against == "crank angle":
-        turned: Real = np.mod(motion.q, 2 * pi(motion.q))
-        return turned
+        return _turned(motion.q, 2 * pi(motion.q))
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi
-        return np.mod(driver.sense * (motion.q - start) + SEAM, cycle) - SEAM
+        return _turned(driver.sense * (motion.q - start), cycle)
     assert strokes is not None and first is not None
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
     worked: Real = run * np.sign(first.run)
     return worked
+
+
+def _turned(angle: Real, cycle: Real | float) -> Real:
+    """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
+    to the other side."""
+    seam = SEAM * (1 + np.abs(angle))
+    within: Real = np.mod(angle + seam, cycle) - seam
+    return within
 
 
 KINDS = (weights_and_inertia, given_loads, spring_loads)  # what acts on links, each from a motion and its strokes

@@ -1,0 +1,200 @@
+"""What a note is made of: blocks one after another, which each format writes in its own way. All texts are data."""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.note.expression import Substitution
+from tmm_cli.note.math import Node
+from tmm_cli.plans.record import Symbol
+
+
+@dataclass(frozen=True)
+class Ref:
+    """The number of a figure, a table or a formula, by its key."""
+
+    key: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """A place of the literature list, by its key: [2]."""
+
+    key: str
+
+
+Inline = str | Symbol | Node | Ref | Link
+Line = tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Heading:
+    """Of a chapter (level 1) or a section (2); formats number them: 3.2."""
+
+    text: str
+    level: int = 1
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Sentences with symbols and small formulas in them."""
+
+    line: Line
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list with dots."""
+
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A formula on a line of its own. key: of one that is numbered and referred to."""
+
+    node: Node
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A quantity found, on a line of its own: letters = numbers = result. key: as of an equation."""
+
+    substitution: Substitution
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table of texts. head: of its columns; numeric columns stand at the right."""
+
+    caption: str
+    head: tuple[Line, ...]
+    rows: tuple[tuple[Line, ...], ...]
+    key: str = ""
+
+    @property
+    def numeric(self) -> list[bool]:
+        """Of each column, whether its cells have figures only or are empty."""
+        return [all(_is_number(row[k]) for row in self.rows) for k in range(len(self.head))]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawing with its caption; it is as wide as the text, or smaller if it is."""
+
+    caption: str
+    drawing: Drawing
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """The table of contents stands here."""
+
+
+@dataclass(frozen=True)
+class NewPage:
+    """What follows begins a page."""
+
+
+@dataclass(frozen=True)
+class Title:
+    """The title page: lines from its top to its bottom, by their weight."""
+
+    institution: str
+    heading: str
+    title: str
+    people: tuple[tuple[str, str], ...]
+    foot: str
+
+
+@dataclass(frozen=True)
+class Source:
+    """A place of the literature list."""
+
+    key: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The literature list."""
+
+    sources: tuple[Source, ...]
+
+
+Block = Heading | Paragraph | Items | Equation | Found | Rows | Figure | Contents | NewPage | Title | Sources
+
+
+@dataclass(frozen=True)
+class Note:
+    """A note: its blocks in order, the language it is in, and its title as the properties of a file have it."""
+
+    title: str
+    language: str
+    blocks: tuple[Block, ...]
+
+    def headings(self) -> list[tuple[str, Heading]]:
+        """With their decimal numbers: 2, 2.1, 2.2."""
+        count: list[int] = []
+        found = []
+        for block in self.blocks:
+            if isinstance(block, Heading):
+                count = [*count, *[0] * block.level][: block.level]
+                count[-1] += 1
+                found.append((".".join(map(str, count)), block))
+        return found
+
+    def numbers(self) -> dict[str, str]:
+        """Of headings, formulas, tables and figures by their keys: each kind is counted through the note."""
+        counted: dict[type, int] = {}
+        found: dict[str, str] = {}
+        for block in self.blocks:
+            if isinstance(block, Figure | Rows) or (isinstance(block, Equation | Found) and block.key):
+                kind = Equation if isinstance(block, Found) else type(block)
+                counted[kind] = counted.get(kind, 0) + 1
+                if block.key:
+                    found[block.key] = str(counted[kind])
+        sources = [s for block in self.blocks if isinstance(block, Sources) for s in block.sources]
+        return found | {source.key: str(number) for number, source in enumerate(sources, 1)}
+
+
+def paragraph(*line: Inline) -> Paragraph:
+    """Of texts and symbols one after another."""
+    return Paragraph(tuple(line))
+
+
+def line(*parts: Inline) -> Line:
+    """Of texts and symbols one after another."""
+    return tuple(parts)
+
+
+def filled(sentence: str, **parts: Inline | Line) -> Line:
+    """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
+    found: list[Inline] = []
+    for before, name, *_ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        if name:
+            part = parts[name]
+            found += part if isinstance(part, tuple) else (part,)
+    return tuple(found)
+
+
+def said(sentence: str, **parts: Inline | Line) -> Paragraph:
+    """A paragraph of such a sentence."""
+    return Paragraph(filled(sentence, **parts))
+
+
+def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
+    """All blocks of all chapters."""
+    return tuple(block for part in parts for block in part)
+
+
+def _is_number(cell: Line) -> bool:
+    text = "".join(part if isinstance(part, str) else "x" for part in cell)
+    return not text.strip("0123456789.,−-–— ")

@@ -1,0 +1,104 @@
+"""Formulas in lines: no format breaks a wide formula well by itself, so it is broken before it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tmm_cli.note.expression import Substitution, letters, numbers, result_node
+from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
+
+LINE = 78.0  # of the text of an A4 page, in widths of a figure
+SMALL = 0.65  # size of indices and exponents
+TERMS = ("+", "−")
+OPEN, CLOSE = Sign("("), Sign(")")
+OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
+
+
+def chain(sides: Sequence[Node], most: float = LINE) -> Node:
+    """Equal sides with their signs; broken before a sign of equality, or of a term, where it is too wide."""
+    lines: list[Node] = []
+    for side in sides:
+        joined = row(lines[-1], "=", side) if lines else side
+        if not lines or width(joined) <= most:
+            lines[-1:] = [joined]
+        else:
+            lines += _in_terms(row("=", side), most)
+    return lines[0] if len(lines) == 1 else Lines(tuple(lines))
+
+
+def formula(found: Substitution, say: Callable[[str], str] = str) -> Node:
+    """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
+
+    Raises:
+        ValueError: The formula does not give the result.
+    """
+    figures, text = found.printed()
+    own = found.expression
+    sides = (letters(own), numbers(own, figures, say), result_node(text, found.unit, say))
+    return chain((Letter(found.name), *sides))
+
+
+def width(node: Node) -> float:
+    """Of a formula, in widths of a figure."""
+    match node:
+        case Number(text) | Words(text):
+            return float(len(text))
+        case Letter(symbol):
+            return 1.3 + SMALL * max(len(symbol.below), len(symbol.above))
+        case Sign(text):
+            return len(text) if text[0].isalpha() else 0.6 if text in "·|()" else 2.0
+        case Row(nodes):
+            return sum(width(n) for n in nodes)
+        case Fraction(over, under):
+            return max(width(over), width(under)) + 0.5
+        case Power(base, exponent):
+            return width(base) + SMALL * width(exponent)
+        case Root(of):
+            return width(of) + 1.5
+        case Brackets(inside):
+            return width(inside) + 1.4
+        case Lines(lines):
+            return max(width(n) for n in lines)
+
+
+def _in_terms(node: Node, most: float) -> list[Node]:
+    """A row in lines, each but the first of which begins with the sign of a term."""
+    if width(node) <= most or not isinstance(node, Row):
+        return [node]
+    lines: list[list[Node]] = [[]]
+    for term in _terms(_opened(node.nodes, most)):
+        if lines[-1] and width(Row((*lines[-1], *term))) > most:
+            lines.append([])
+        lines[-1] += term
+    return [_bracketed(line) for line in lines]
+
+
+def _bracketed(line: Sequence[Node]) -> Node:
+    """A line with what stands within brackets that open, or close, on it."""
+    first = line.index(OPEN) + 1 if OPEN in line else None
+    last = line.index(CLOSE) if CLOSE in line else None
+    if first is None and last is None:
+        return row(*line)
+    before, after = line[: first - 1] if first else (), line[last + 1 :] if last is not None else ()
+    return row(*before, Brackets(row(*line[first:last]), first is not None, last is not None), *after)
+
+
+def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
+    """Parts of a row, each with its sign before it."""
+    terms: list[list[Node]] = [[]]
+    for node in nodes:
+        if isinstance(node, Sign) and node.text in TERMS and terms[-1] and terms[-1][-1] not in OPENING:
+            terms.append([])
+        terms[-1].append(node)
+    return terms
+
+
+def _opened(nodes: Sequence[Node], most: float) -> list[Node]:
+    """The nodes, with a fraction that is too wide as one over what is under it, times what is over it."""
+    found: list[Node] = []
+    for node in nodes:
+        if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:
+            found += [Fraction(Number("1"), node.under), Sign("·"), OPEN, *node.over.nodes, CLOSE]
+        else:
+            found.append(node)
+    return found

@@ -1,0 +1,267 @@
+"""Expressions whose leaves know both their letter and their value: letters, numbers put in, and result are one thing.
+
+So a substitution cannot say another formula than the letters before it, and its rounded numbers can be put to the test
+before they are printed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from tmm_cli.note import math as paper
+from tmm_cli.plans.record import Symbol
+
+FIGURES = 4  # of a result, and of what is put in if that does
+MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
+NOTHING = 1e-9  # of the largest term: a sum that is less is zero
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A quantity with its value, SI. angle: in radians, printed in degrees."""
+
+    symbol: Symbol
+    value: float
+    angle: bool = False
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number of the formula itself: the 2 of a Coriolis acceleration. text: where it is not the number, as π."""
+
+    value: float
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Sum:
+    """Terms with their signs, +1 or -1."""
+
+    terms: tuple[tuple[int, Expression], ...]
+
+
+@dataclass(frozen=True)
+class Product:
+    """Factors one after another."""
+
+    factors: tuple[Expression, ...]
+
+
+@dataclass(frozen=True)
+class Quotient:
+    """One expression over another."""
+
+    over: Expression
+    under: Expression
+
+
+@dataclass(frozen=True)
+class Square:
+    """A square."""
+
+    of: Expression
+
+
+@dataclass(frozen=True)
+class SquareRoot:
+    """A root of what is not negative."""
+
+    of: Expression
+
+
+@dataclass(frozen=True)
+class Function:
+    """cos, sin, tan of an angle; arccos, arcsin, arctan give one; abs."""
+
+    name: str
+    of: Expression
+
+
+Expression = Leaf | Constant | Sum | Product | Quotient | Square | SquareRoot | Function
+FUNCTIONS: dict[str, Callable[[float], float]] = {
+    "cos": math.cos, "sin": math.sin, "tan": math.tan, "abs": abs,
+    "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Substitution:
+    """A quantity found: name = letters = numbers = result with its unit.
+
+    result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
+    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only.
+    """
+
+    name: Symbol
+    expression: Expression
+    result: float
+    unit: str = ""
+    angle: bool = False
+
+    def value(self, figures: int) -> float:
+        """Of the expression with numbers of so many figures put in, in the unit of the result."""
+        found = evaluate(self.expression, figures)
+        return math.degrees(found) if self.angle else found
+
+    def printed(self) -> tuple[int, str]:
+        """How many figures what is put in has, and the result as text: what they give within its last digit.
+
+        Raises:
+            ValueError: The expression does not give the result, however many figures are put in.
+        """
+        result = math.degrees(self.result) if self.angle else self.result
+        terms = largest_term(self.expression)
+        shown = 0.0 if abs(result) <= NOTHING * terms else result
+        for own in range(FIGURES, 0, -1):
+            text = fixed(shown, own, terms)
+            unit = last_digit(text)
+            for figures in range(FIGURES, MOST_FIGURES + 1):
+                if abs(self.value(figures) - float(text)) <= unit:
+                    return figures, text
+        raise ValueError(f"{self.name.name}: {self.value(MOST_FIGURES)} is not {result}")
+
+
+def evaluate(expression: Expression, figures: int) -> float:
+    """With every leaf rounded to so many figures."""
+    of = partial(evaluate, figures=figures)
+    match expression:
+        case Leaf(_, value, angle):
+            return math.radians(rounded(math.degrees(value), figures)) if angle else rounded(value, figures)
+        case Constant(value):
+            return value
+        case Sum(terms):
+            return math.fsum(sign * of(term) for sign, term in terms)
+        case Product(factors):
+            return math.prod(of(factor) for factor in factors)
+        case Quotient(over, under):
+            return of(over) / of(under)
+        case Square(base):
+            return of(base) ** 2
+        case SquareRoot(base):
+            return math.sqrt(max(of(base), 0.0))
+        case Function(name, argument):
+            found = of(argument)
+            return FUNCTIONS[name](min(1.0, max(-1.0, found)) if name in ("arccos", "arcsin") else found)
+
+
+def largest_term(expression: Expression) -> float:
+    """The largest of the terms that a sum or a fraction of one is made of; zero where nothing can cancel."""
+    match expression:
+        case Sum(terms):
+            return max((abs(evaluate(term, MOST_FIGURES)) for _, term in terms), default=0.0)
+        case Quotient(over, under):
+            size = abs(evaluate(under, MOST_FIGURES))
+            return largest_term(over) / size if size else 0.0
+        case _:
+            return 0.0
+
+
+def letters(expression: Expression) -> paper.Node:
+    """The expression in letters."""
+    return _written(expression, lambda leaf: paper.Letter(leaf.symbol))
+
+
+def numbers(expression: Expression, figures: int, text: Callable[[str], str] = str) -> paper.Node:
+    """The expression with numbers put in; text: how the language writes figures."""
+
+    def number(leaf: Leaf) -> paper.Node:
+        value = math.degrees(leaf.value) if leaf.angle else leaf.value
+        digits = plain(rounded(value, figures), figures)
+        shown = _figures(digits, text)
+        shown = paper.row(shown, paper.Words("°")) if leaf.angle else shown
+        return paper.Brackets(paper.row("−", _figures(digits[1:], text))) if digits.startswith("-") else shown
+
+    return _written(expression, number)
+
+
+def _figures(digits: str, text: Callable[[str], str]) -> paper.Node:
+    """1.2e-5 is 1.2·10^−5."""
+    mantissa, _, power = digits.partition("e")
+    if not power:
+        return paper.Number(text(mantissa))
+    exponent = int(power)
+    shown = paper.row("−", paper.Number(str(-exponent))) if exponent < 0 else paper.Number(str(exponent))
+    return paper.row(paper.Number(text(mantissa)), "·", paper.Power(paper.Number("10"), shown))
+
+
+def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> paper.Node:
+    of = partial(_written, leaf=leaf)
+    match expression:
+        case Leaf():
+            return leaf(expression)
+        case Constant(value, text):
+            return paper.Number(text or f"{value:g}")
+        case Sum(terms):
+            parts: list[paper.Node | str] = []
+            for sign, term in terms:
+                parts += ["−"] if sign < 0 else ["+"] if parts else []
+                parts.append(of(term))
+            return paper.row(*parts) if parts else paper.Number("0")
+        case Product(factors):
+            shown: list[paper.Node | str] = []
+            for factor in factors:
+                shown += ["·"] if shown else []
+                shown.append(_inside(factor, of(factor)))
+            return paper.row(*shown)
+        case Quotient(over, under):
+            return paper.Fraction(of(over), of(under))
+        case Square(base):
+            node = of(base)
+            simple = isinstance(node, paper.Number | paper.Letter | paper.Brackets)
+            return paper.Power(node if simple else paper.Brackets(node), paper.Number("2"))
+        case SquareRoot(base):
+            return paper.Root(of(base))
+        case Function(name, argument):
+            node = of(argument)
+            if name == "abs":
+                return paper.row("|", node, "|")
+            return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
+
+
+def _inside(factor: Expression, node: paper.Node) -> paper.Node:
+    return paper.Brackets(node) if isinstance(factor, Sum) and len(factor.terms) > 1 else node
+
+
+def rounded(value: float, figures: int) -> float:
+    """To so many significant figures."""
+    return float(f"{value:.{figures - 1}e}")
+
+
+def plain(value: float, figures: int) -> str:
+    """Figures without a power of ten where that is short: 1234.5, 0.00123, 1.2e-05."""
+    if value == 0:
+        return "0"
+    power = math.floor(math.log10(abs(value)))
+    if -4 <= power < 7:
+        text = f"{value:.{max(figures - 1 - power, 0)}f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
+    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
+
+
+def fixed(value: float, figures: int, terms: float = 0.0) -> str:
+    """A result with so many figures, its zeros at the end kept: they are true. terms: what a zero is the sum of."""
+    if value == 0:
+        return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
+    power = math.floor(math.log10(abs(rounded(value, figures))))
+    if -4 <= power < 7:
+        decimals = figures - 1 - power
+        return f"{value:.{decimals}f}" if decimals >= 0 else f"{round(value, decimals):.0f}"
+    mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def last_digit(text: str) -> float:
+    """What one unit in the last digit of a printed number is worth."""
+    mantissa, _, power = text.partition("e")
+    return 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
+
+
+def result_node(text: str, unit: str, say: Callable[[str], str] = str) -> paper.Node:
+    """A result as it stands at the end of its formula, with its unit."""
+    digits = text[1:] if text.startswith("-") else text
+    shown = paper.row("−", _figures(digits, say)) if text.startswith("-") else _figures(digits, say)
+    return paper.row(shown, paper.Words(f" {unit}" if unit not in ("", "°") else unit))
