@@ -23,6 +23,7 @@ from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
+from tmm_cli.note.expression import plain, rounded
 from tmm_cli.quantities import Dimension
 
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
@@ -82,7 +83,11 @@ class Subject:
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
-        return figures(f"{value + 0.0:.{digits}g}", self.language)
+        return self.figures_of(plain(rounded(value, digits), digits))
+
+    def figures_of(self, text: str) -> str:
+        """The same of figures that are there already."""
+        return figures(text, self.language)
 
     def drawings(self, name: str, k: int | None = None) -> Mapping[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
