@@ -70,8 +70,8 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     counted = _("{n} moving links, {p1} lower pairs ({turning} turning, {sliding} sliding) and {p2} higher pairs")
     yield said(
         _(
-            "The mobility of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of moving "
-            "links, {lower} that of lower pairs and {higher} that of higher pairs. There are {counted}:"
+            "The mobility of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+            "moving links, {lower} that of lower pairs and {higher} that of higher pairs. There are {counted}:"
         ),
         n=N, lower=LOWER, higher=HIGHER, source=Link("artobolevskii"),
         counted=counted.format(n=n, p1=lower, p2=higher, turning=turning, sliding=lower - turning),
@@ -80,8 +80,8 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     if structure.passive:
         yield said(
             _(
-                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "
-                "others by the special sizes of the mechanism; its true mobility is {w} = {true}."
+                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only "
+                "repeat others by the special sizes of the mechanism; its true mobility is {w} = {true}."
             ),
             count=str(structure.redundant), w=W,
             pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),

@@ -49,7 +49,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
 
 def _formulas(task: Synthesised) -> Iterable[Block]:
     """Those of the task that stand in one line each, with numbers put in."""
-    values = {value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED}
+    values = {
+        value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
+    }
     if "k" in values:
         theta = float(theta_of(values["k"]))
         yield Found(_theta(values["k"], theta))

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Paragraph, Ref, Rows, line, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.record import Symbol
@@ -17,7 +17,7 @@ from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.results.explain import given
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.results.stages import heavy, link_name
-from tmm_cli.results.understood import gravity, motion
+from tmm_cli.results.understood import motion
 
 FURTHER = ("drivers", "meshes", "cams", "springs", "friction")  # tables of `tmm explain` that are the file's own data
 SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
@@ -42,7 +42,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         )
         yield said(sentence, table=Ref("masses"))
         yield _masses(subject)
-        yield paragraph(_("Of the field of gravity is taken: {gravity}.").format(gravity=gravity(linkage.gravity)))
+        yield from _gravity(subject)
     if linkage.loads:
         yield said(_("The loads are given in table {table}."), table=Ref("loads"))
         yield _loads(subject)
@@ -52,6 +52,18 @@ def blocks(subject: Subject) -> Iterable[Block]:
             yield from (paragraph(note) for note in table.notes)
     yield paragraph(_("It is required to find:"))
     yield Items(tuple(line(text) for text in _wanted(subject)))
+
+
+def _gravity(subject: Subject) -> Iterable[Block]:
+    pull = subject.results.linkage.gravity
+    size = abs(pull)
+    if not size:
+        yield paragraph(_("The weights of the links are not taken into account."))
+        return
+    yield said(
+        _("The acceleration of gravity is {g} = {size} m/s², its direction {angle} from the x axis."),
+        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE),
+    )  # fmt: skip
 
 
 def _sizes(subject: Subject) -> Rows:
@@ -86,7 +98,7 @@ def _fixed(subject: Subject) -> Rows:
         if slide.carrier == FRAME:
             angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE, 6)
             rows.append((line(_("guide {name}").format(name=slide.name)), *_place(subject, slide.through), line(angle)))
-    unit = subject.results.problem.units.symbol(LENGTH)
+    unit = subject.unit(LENGTH)
     head = (line(_("point")), line(f"x, {unit}"), line(f"y, {unit}"), line(_("direction")))
     shown = tuple(row if any(r[3] != ("",) for r in rows) else row[:3] for row in rows)
     return Rows(_("Fixed points and guides"), head[: len(shown[0]) if shown else 3], shown, "fixed")
@@ -109,9 +121,9 @@ def _masses(subject: Subject) -> Rows:
             line(subject.text(float(units.from_si(inertia, INERTIA)), 6)), *_place(subject, link.centre),
         ))  # fmt: skip
     head = (
-        line(_("link")), line(Symbol("m"), f", {units.symbol(MASS)}"),
-        line(Symbol("J", "S"), f", {units.symbol(INERTIA)}"),
-        line(Symbol("x", "S"), f", {units.symbol(LENGTH)}"), line(Symbol("y", "S"), f", {units.symbol(LENGTH)}"),
+        line(_("link")), line(Symbol("m"), f", {subject.unit(MASS)}"),
+        line(Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
+        line(Symbol("x", "S"), f", {subject.unit(LENGTH)}"), line(Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
     )  # fmt: skip
     return Rows(
         _("Masses, moments of inertia and centres of mass (in the axes of each link)"), head, tuple(rows), "masses"
@@ -129,11 +141,11 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
     place = load.point
     if load.force and not place:
         x, y = _place(subject, load.at)
-        place = _("({x}; {y}) {unit}").format(x=x[0], y=y[0], unit=units.symbol(LENGTH))
+        place = _("({x}; {y}) {unit}").format(x=x[0], y=y[0], unit=subject.unit(LENGTH))
     size = subject.value(load.moment, MOMENT, 6)
     if load.force:
         parts = (subject.text(float(units.from_si(part, FORCE)), 6) for part in (load.force.real, load.force.imag))
-        size = "({}; {}) {}".format(*parts, units.symbol(FORCE))
+        size = "({}; {}) {}".format(*parts, subject.unit(FORCE))
     if load.table is not None:
         size = _("by a table")
     when = _("in the working stroke") if load.working_stroke_only else _("always")
