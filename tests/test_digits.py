@@ -15,10 +15,12 @@ from collections import defaultdict
 from dataclasses import replace
 from functools import cache
 
+import blocks
 import mpmath as mp
 import multibody
 import numpy as np
 import pytest
+from fuzz import beyond
 from random_linkages import any_linkage, linkage
 from test_commands import ROOT, SHAPER, described, tmm
 
@@ -31,6 +33,7 @@ from tmm_cli.accuracy.wide import Wide
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.double_double import exactly, rounded
 from tmm_cli.kinematics.driver_range import find_range
+from tmm_cli.library import problem_of
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -289,6 +292,13 @@ def test_a_pressure_angle_that_is_the_same_everywhere_has_no_place_of_its_larges
 def test_half_a_unit_of_the_last_figure_is_not_below_the_bound():
     values, bound = np.array([3.14159, 3.14159, 3.14159, 9.99, 0.0, 5.0]), np.array([4e-6, 6e-6, 4.0, 1e-16, 0.0, 0.0])
     assert true_digits(values, bound).tolist() == [6, 5, 0, 15, 0, 16]
+
+
+def test_decimals_that_arithmetic_left_behind_a_number_of_teeth_are_none_in_more_digits_either():
+    text = blocks.PLANET.replace("teeth: [40, 20]", "teeth: [40.0000000004, 20]")
+    results = solve(problem_of(read_text(text, "x.yaml")))
+    assert beyond(results) is None
+    assert results.motion.link("2").first == pytest.approx(3, abs=1e-15)
 
 
 def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():

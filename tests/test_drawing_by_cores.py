@@ -7,10 +7,11 @@ from functools import partial
 import pytest
 from test_commands import ROOT
 
-from tmm_cli import solve
+from tmm_cli import load, solve
 from tmm_cli.cli import drawing
 from tmm_cli.cli.drawing import FEW, by_all_cores
 from tmm_cli.draw import files, parts
+from tmm_cli.draw.layout.files import files_of_sheets
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 
@@ -42,8 +43,14 @@ def test_several_processes_write_the_same_files_in_the_same_order():
         (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8").replace("detail: [2]", "detail: [0, 1, 2, 3, 4]")
     )
     results = solve(build(read_text(text, "sine.yaml")), "kinematics")
-    assert len(parts(results)) > FEW
+    assert len(parts(results)) >= FEW
     assert list(files(results, way=by_all_cores)) == list(files(results))
+
+
+def test_large_sheets_are_the_same_whoever_draws_and_writes_them():
+    results = solve(load(str(ROOT / "problems" / "sine.yaml")), "kinematics")
+    asked = (results, "A3", ["pdf", "svg"], lambda note: None)
+    assert list(files_of_sheets(*asked, by_all_cores, every=False)) == list(files_of_sheets(*asked, every=False))
 
 
 def test_jobs_of_a_process_that_was_ended_are_done_here():

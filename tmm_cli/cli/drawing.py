@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+import sys
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
+from typing import TypeVar
 
 from tmm_cli.cli.common import bars
-from tmm_cli.draw.formats import Job, Written, here
+from tmm_cli.draw.formats import here
 from tmm_cli.errors import _
 from tmm_cli.grading.workers import begin
 
-FEW = 4  # jobs that are done before other processes have started
+FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
+FEW = 2 if FORKS else 4  # jobs that are done before other processes have started
+
+Found = TypeVar("Found")
 
 
-def by_all_cores(jobs: Sequence[Job], *, quiet: bool = False) -> Iterable[tuple[Written, set[str]]]:
+def by_all_cores(jobs: Sequence[Callable[[], Found]], *, quiet: bool = False) -> Iterable[Found]:
     """What the jobs give, in their order; a few are done in this process. quiet: without a bar.
 
     Other processes begin at the end; this one does from the beginning what they have not come to.
@@ -25,18 +30,19 @@ def by_all_cores(jobs: Sequence[Job], *, quiet: bool = False) -> Iterable[tuple[
     if others < 1 or len(jobs) < FEW:
         yield from here(jobs)
         return
-    with bars(quiet) as shown, ProcessPoolExecutor(others, get_context("spawn"), begin) as pool:
-        task = shown.add_task(_("drawn"), total=len(jobs))
-        futures = [pool.submit(job) for job in reversed(jobs)]
+    with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), begin) as pool:
+        futures = [pool.submit(job) for job in reversed(jobs)]  # before the bar has its thread: threads are not copied
         try:
-            for job, future in zip(jobs, reversed(futures), strict=True):
-                yield job() if future.cancel() else _result(future, job)
-                shown.advance(task)
+            with bars(quiet) as shown:
+                task = shown.add_task(_("drawn"), total=len(jobs))
+                for job, future in zip(jobs, reversed(futures), strict=True):
+                    yield job() if future.cancel() else _result(future, job)
+                    shown.advance(task)
         finally:  # stopped: what is in work comes to its end
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _result(future: Future[tuple[Written, set[str]]], job: Job) -> tuple[Written, set[str]]:
+def _result(future: Future[Found], job: Callable[[], Found]) -> Found:
     """What another process found; if that was ended, perhaps for want of memory, it is found here."""
     try:
         return future.result()

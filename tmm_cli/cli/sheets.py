@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -9,6 +10,7 @@ import typer
 
 from tmm_cli import solve
 from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say
@@ -21,7 +23,9 @@ from tmm_cli.results.warnings import warnings
 def sheets(
     files: Files,
     paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Of the paper.")] = "A1",
-    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png: with commas.")] = "pdf",
+    formats: Annotated[
+        str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png, emf: with commas.")
+    ] = "pdf",
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
     positions: Annotated[
         Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")
@@ -38,7 +42,8 @@ def sheets(
         results = solve(problem, "forces")
         for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
             say(text)
-        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, every=positions == "all"))
+        way = partial(by_all_cores, quiet=len(files) > 1)
+        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, way, every=positions == "all"))
         return OK
 
     each(files, work, out=out, headed=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.cam_law import CamLaw, Piece
@@ -135,12 +137,12 @@ def _ratio(part: Part, given: schema.Gear, distance: float) -> float:
 
 
 def _teeth(values: ValueReader, value: object, path: Path) -> float:
-    """A number of teeth, which is whole."""
+    """A number of teeth, which is whole, whatever decimals arithmetic has left behind."""
     teeth = values.positive(value, NUMBER, path)
-    whole = round(float(teeth))
-    if abs(float(teeth) - whole) > WHOLE_TEETH:
+    whole: float = np.floor(teeth + 0.5)
+    if abs(float(teeth) - float(whole)) > WHOLE_TEETH:
         raise ProblemError(_("a number of teeth is whole"), path=path, found=quote(value))
-    return float(whole) if isinstance(teeth, float) else teeth
+    return whole
 
 
 def _rack(name: str, part: Part, members: Members) -> Mesh:

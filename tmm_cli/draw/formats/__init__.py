@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from typing import Protocol, TypeVar
 
 from tmm_cli.draw.formats.dxf import dxf
+from tmm_cli.draw.formats.emf import emf
 from tmm_cli.draw.formats.pdf import pdf
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
@@ -13,16 +15,21 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.fonts import lacking
 from tmm_cli.errors import _
 
-FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
+FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf, "emf": emf}
 WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
 Written = list[tuple[str, bytes]]
-Job = Callable[[], tuple[Written, set[str]]]  # may be pickled: files by name, and characters that the font lacks
-Way = Callable[[Sequence[Job]], Iterable[tuple[Written, set[str]]]]  # what jobs give, in their order
+Found = TypeVar("Found")
 
 
-def here(jobs: Sequence[Job]) -> Iterable[tuple[Written, set[str]]]:
+class Way(Protocol):
+    """Who does jobs, which may be pickled: what they give, in their order."""
+
+    def __call__(self, jobs: Sequence[Callable[[], Found]], /) -> Iterable[Found]: ...
+
+
+def here(jobs: Sequence[Callable[[], Found]], /) -> Iterable[Found]:
     """One after the other, in this process."""
     return (job() for job in jobs)
 
@@ -45,6 +52,7 @@ def in_parts(
 
 
 def _written(part: Callable[[], Drawn]) -> tuple[Written, set[str]]:
+    """Files by name, and characters that the font lacks."""
     every = list(part())
     lost = lacking("".join(text for __, sheet in every for text in sheet.texts()))
     return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in every for kind in OF_A_RUN], lost

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from importlib.util import find_spec
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.formats import FORMATS, WITH_PAGES, lacking_in
+from tmm_cli.draw.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
 from tmm_cli.draw.layout.contents import chosen
 from tmm_cli.draw.layout.large import large_sheets
 from tmm_cli.errors import _
@@ -30,11 +31,11 @@ def formats_of(text: str) -> list[str]:
 
 
 def files_of_sheets(
-    results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], *, every: bool
+    results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], way: Way = here, *, every: bool
 ) -> Iterator[tuple[str, bytes]]:
     """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
 
-    every: whether motion plans are drawn of all positions.
+    way: who draws and who writes. every: whether motion plans are drawn of all positions.
     """
     choice = chosen(results, every=every)
     if len(choice.plans) > MOST:
@@ -42,11 +43,13 @@ def files_of_sheets(
             _("plans of so many positions fill no sheet that is read"), found=str(len(choice.plans)),
             allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
         )  # fmt: skip
-    sheets = dict(large_sheets(choice, paper))
+    sheets = dict(large_sheets(choice, paper, way))
+    jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:
         if name in WITH_PAGES:
-            yield f"sheets.{name}", WITH_PAGES[name](*sheets.values())
+            jobs.append((f"sheets.{name}", partial(WITH_PAGES[name], *sheets.values())))
         else:
-            yield from ((f"{stem}.{name}", FORMATS[name](sheet)) for stem, sheet in sheets.items())
+            jobs += [(f"{stem}.{name}", partial(FORMATS[name], sheet)) for stem, sheet in sheets.items()]
+    yield from zip((file for file, __ in jobs), way([job for __, job in jobs]), strict=True)
     for note in lacking_in(text for sheet in sheets.values() for text in sheet.texts()):
         say(note)

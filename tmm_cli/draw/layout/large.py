@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate, chain, repeat
 
+from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
-from tmm_cli.draw.layout.packing import Field, Size, pack, spread
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, spaced
+from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, leads, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
@@ -33,19 +35,17 @@ class LargeSheet(Drawing):
     pictures: tuple[tuple[complex, Picture], ...] = ()
 
 
-def large_sheets(choice: Choice, paper: str) -> Iterator[tuple[str, LargeSheet]]:
-    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b.
+def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[str, LargeSheet]]:
+    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b. way: who draws.
 
     That of the structure, which has no scale, is on the smallest format that holds it.
     """
     problem = choice.results.problem
     smaller = [name for name in reversed(PAPERS) if PAPERS[name] <= PAPERS[paper]]
-    found = [
-        (subject, *_smallest(number, choice, smaller if number == 0 else [paper]))
-        for number, subject in enumerate(SUBJECTS)
-    ]
+    jobs = [partial(_smallest, number, choice, [paper] if number else smaller) for number in range(len(SUBJECTS))]
+    found = list(way(jobs))
     count = sum(len(pages) for *__, pages in found)
-    for number, (subject, size, pictures, pages) in enumerate(found):
+    for number, (subject, (size, pictures, pages)) in enumerate(zip(SUBJECTS, found, strict=True)):
         field = field_of(size, problem.title_texts.block)
         for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
             titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)
@@ -108,9 +108,10 @@ def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Pag
     """Those of the larger pieces for which there really is room, one after the other."""
     found = list(pieces)
     for page in pages:
+        led = leads(_sizes(found), page, field)
         for number in page:
             tried = [*found[:number], larger[number], *found[number + 1 :]]
-            if pack(spaced(_sizes(tried), page), field) is not None:
+            if pack(spaced(_sizes(tried), page), field, led=led) is not None:
                 found = tried
     return found
 
@@ -162,7 +163,7 @@ def _drawn(source: Source, choice: Choice, field: Field, rooms: Iterable[float |
 def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> LargeSheet:
     """A sheet with these pictures on its field."""
     sizes = [(picture.paper[0] + GAP, picture.paper[1] + GAP) for picture in pictures]
-    places = spread(pack(sizes, field) or [], sizes, field)
+    places = spread(arranged(sizes, field) or [], sizes, field)
     low, high = inner(paper)
     corner = complex(low.real + EDGE, high.imag - EDGE)
     placed = [(corner + complex(x, -y - one.paper[1]), one) for (x, y), one in zip(places, pictures, strict=True)]
