@@ -60,7 +60,8 @@ def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
     assert set(parts) >= {("n", "AO"), ("n", "DC"), ("τ", "DC"), ("n", "ED"), ("τ", "ED"), ("k", "AA3"), ("r", "AA3")}
     assert parts["k", "AA3"].name == "a3k" and parts["r", "AA3"].name == "ka"
     assert parts["n", "AO"].name == "πa" and parts["τ", "AO"].name == ""  # the crank turns evenly
-    assert parts["n", "DC"].name == "πn₁" and parts["τ", "DC"].name == "n₁d"
+    assert parts["n", "A3C"].name == "πn₁" and parts["τ", "A3C"].name == "n₁a3"  # as they are found: A3 before D
+    assert parts["n", "DC"].name == "πn₂" and parts["τ", "DC"].name == "n₂d"
     coriolis = parts["k", "AA3"]
     omega = results.motion.link("3").omega[3]
     sliding = results.motion.slide(results.linkage.slides[0]).v[3]

@@ -9,18 +9,18 @@ import numpy as np
 from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.errors import _
 from tmm_cli.note.blocks import Inline, Line
-from tmm_cli.note.context import Subject, figures
+from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import FIGURES, fixed
 
 
 def shown(subject: Subject, value: float) -> str:
     """With as many figures as a result has."""
-    return figures(fixed(value, FIGURES), subject.language)
+    return subject.figures_of(fixed(value, FIGURES))
 
 
 def angle(subject: Subject, radians: float) -> str:
     """Of a force from x, 0 to 360, in degrees."""
-    return figures(f"{round(float(np.degrees(radians)), 1) % 360:.1f}", subject.language)
+    return subject.figures_of(f"{round(float(np.degrees(radians)), 1) % 360:.1f}")
 
 
 def direction(subject: Subject, force: complex) -> str:
