@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -55,9 +56,8 @@ class Curve:
     @property
     def total(self) -> float:
         """Its integral over all of its length."""
-        return float(
-            np.sum(np.diff(self.edges) / 2 * chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1)))
-        )
+        own = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
+        return float(np.sum(np.diff(self.edges) / 2 * own))
 
     def places(self) -> Real:
         """Places close together: both ends of each panel, just inside it, and its nodes."""
@@ -72,7 +72,7 @@ def nodes(edges: Real, *, ends: bool = False) -> Real:
     return found
 
 
-def fitted(function: Callable[[Real], Sequence[Real]], edges: Sequence[float]) -> tuple[Curve, ...]:
+def fitted(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[Curve, ...]:
     """Functions, computed together at many places x, on common panels; edges: where they may jump, both ends too.
 
     A value that is not finite stays so in its panel, which is not halved.
@@ -97,8 +97,7 @@ def fitted(function: Callable[[Real], Sequence[Real]], edges: Sequence[float]) -
 def _widths(edges: Real) -> Real:
     """The same with panels that are not too wide."""
     parts = [
-        np.linspace(low, high, int(np.ceil((high - low) / WIDEST - 1e-9)) + 1)[:-1]
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
+        np.linspace(low, high, int(np.ceil((high - low) / WIDEST - 1e-9)) + 1)[:-1] for low, high in pairwise(edges)
     ]
     return np.concatenate([*parts, edges[-1:]])
 

@@ -87,7 +87,7 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
             (lowest(of, places)[1], -lowest(partial(_minus, of), places)[1])
             for of in (partial(_square, machine, work, flywheel, float(e)) for e in np.ravel(energy))
         ]
-        return np.sqrt(np.maximum(np.array(square), 0.0))
+        return np.asarray(np.sqrt(np.maximum(np.array(square), 0.0)))
 
     low = -float(np.min(work(places)))
     high = low + np.ptp(work(places)) + mean**2 * (float(np.max(machine.inertia(places))) + flywheel)

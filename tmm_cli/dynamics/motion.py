@@ -104,7 +104,7 @@ def with_motor(machine: Reduced, flywheel: float, motor: Motor, guess: float) ->
 def _periodic(cycle: _Cycle, begin: float) -> tuple[float, Real]:
     """The energy that comes back after a cycle, and the energies at the nodes of its panels."""
     for _ in range(STEPS):
-        end, slope, values = cycle.run(begin)
+        end, slope, __ = cycle.run(begin)
         step = (begin - end) / (1 - slope) if slope < 1 else begin - end
         begin = max(begin - step, begin / 4)
         if abs(step) <= LAST_STEP * begin:
