@@ -30,6 +30,7 @@ COMMANDS = {
     "variants": "Draw variants of a task for a group of students.",
     "grade": "Mark what the students of a group handed in.",
     "sheets": "Draw sheets to hand in, framed and to scale, as PDF or DXF.",
+    "note": "Write the explanatory note, formulas with numbers put in.",
     "animate": "Let the mechanism turn on a page for the browser.",
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }

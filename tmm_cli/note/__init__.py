@@ -1,1 +1,19 @@
-"""The explanatory note: blocks and formulas of a course project, written as DOCX or HTML."""
+"""The explanatory note: blocks and formulas of a course project, written as DOCX or HTML.
+
+A chapter is a file in `chapters` with a function `blocks(subject)`, and a line here.
+"""
+
+from __future__ import annotations
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.note import blocks
+from tmm_cli.note.chapters import checks, literature, structure, synthesis, task, title
+from tmm_cli.note.context import Subject
+
+CHAPTERS = (title, task, synthesis, structure, checks, literature)
+
+
+def note(results: Results, language: str = "en", *, drawn: bool = True) -> blocks.Note:
+    """The note of a problem that was computed; drawn: with drawings."""
+    subject = Subject(results, language, drawn)
+    return blocks.Note(results.problem.title, language, blocks.chapters(*(c.blocks(subject) for c in CHAPTERS)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import string
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -76,6 +77,11 @@ class Rows:
     rows: tuple[tuple[Line, ...], ...]
     key: str = ""
 
+    @property
+    def numeric(self) -> list[bool]:
+        """Of each column, whether its cells have figures only or are empty."""
+        return [all(_is_number(row[k]) for row in self.rows) for k in range(len(self.head))]
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -133,6 +139,17 @@ class Note:
     language: str
     blocks: tuple[Block, ...]
 
+    def headings(self) -> list[tuple[str, Heading]]:
+        """With their decimal numbers: 2, 2.1, 2.2."""
+        count: list[int] = []
+        found = []
+        for block in self.blocks:
+            if isinstance(block, Heading):
+                count = [*count, *[0] * block.level][: block.level]
+                count[-1] += 1
+                found.append((".".join(map(str, count)), block))
+        return found
+
     def numbers(self) -> dict[str, str]:
         """Of headings, formulas, tables and figures by their keys: each kind is counted through the note."""
         counted: dict[type, int] = {}
@@ -157,6 +174,27 @@ def line(*parts: Inline) -> Line:
     return tuple(parts)
 
 
+def filled(sentence: str, **parts: Inline | Line) -> Line:
+    """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
+    found: list[Inline] = []
+    for before, name, *_ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        if name:
+            part = parts[name]
+            found += part if isinstance(part, tuple) else (part,)
+    return tuple(found)
+
+
+def said(sentence: str, **parts: Inline | Line) -> Paragraph:
+    """A paragraph of such a sentence."""
+    return Paragraph(filled(sentence, **parts))
+
+
 def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
     """All blocks of all chapters."""
     return tuple(block for part in parts for block in part)
+
+
+def _is_number(cell: Line) -> bool:
+    text = "".join(part if isinstance(part, str) else "x" for part in cell)
+    return not text.strip("0123456789.,−-–— ")

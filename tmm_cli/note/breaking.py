@@ -10,7 +10,8 @@ from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, P
 LINE = 78.0  # of the text of an A4 page, in widths of a figure
 SMALL = 0.65  # size of indices and exponents
 TERMS = ("+", "−")
-OPENING = (Sign("="), Sign("("), Sign("·"))  # after which a sign is the number's own
+OPEN, CLOSE = Sign("("), Sign(")")
+OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
 
 
 def chain(sides: Sequence[Node], most: float = LINE) -> Node:
@@ -69,7 +70,17 @@ def _in_terms(node: Node, most: float) -> list[Node]:
         if lines[-1] and width(Row((*lines[-1], *term))) > most:
             lines.append([])
         lines[-1] += term
-    return [row(*line) for line in lines]
+    return [_bracketed(line) for line in lines]
+
+
+def _bracketed(line: Sequence[Node]) -> Node:
+    """A line with what stands within brackets that open, or close, on it."""
+    first = line.index(OPEN) + 1 if OPEN in line else None
+    last = line.index(CLOSE) if CLOSE in line else None
+    if first is None and last is None:
+        return row(*line)
+    before, after = line[: first - 1] if first else (), line[last + 1 :] if last is not None else ()
+    return row(*before, Brackets(row(*line[first:last]), first is not None, last is not None), *after)
 
 
 def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
@@ -87,7 +98,7 @@ def _opened(nodes: Sequence[Node], most: float) -> list[Node]:
     found: list[Node] = []
     for node in nodes:
         if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:
-            found += [Fraction(Number("1"), node.under), Sign("·"), Sign("("), *node.over.nodes, Sign(")")]
+            found += [Fraction(Number("1"), node.under), Sign("·"), OPEN, *node.over.nodes, CLOSE]
         else:
             found.append(node)
     return found

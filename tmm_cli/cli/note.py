@@ -1,0 +1,44 @@
+"""`tmm note`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli import solve
+from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.talk import OK, say
+from tmm_cli.draw import remarks
+from tmm_cli.errors import _
+from tmm_cli.note import note as note_of
+from tmm_cli.note.formats import FORMATS, formats_of
+from tmm_cli.results.files import folder_name, write_whole
+from tmm_cli.results.warnings import warnings
+
+
+def note(
+    files: Files,
+    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="html, docx: with commas.")] = "html",
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+) -> None:
+    """Write the explanatory note of a course project, DIR/<problem>/note.html: formulas, numbers put in, results."""
+
+    def work(file: str) -> int:
+        wanted = formats_of(formats)
+        results = solve(opened(file, variant_settings(file, variants, variant, settings)))
+        for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
+            say(text)
+        written = note_of(results)
+        for name in wanted:
+            target = out / folder_name(results.problem.name) / f"note.{name}"
+            write_whole(target, FORMATS[name](written))
+            say(_("written: {folder}").format(folder=target))
+        return OK
+
+    each(files, work, out=out, headed=False)

@@ -1,0 +1,122 @@
+"""What a chapter writes about: the results, the positions in detail, and drawings by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from tmm_cli.analysis.in_detail import in_detail
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.draw.formats import Drawn
+from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.picture import Space, within
+from tmm_cli.draw.sheets.diagrams import diagrams
+from tmm_cli.draw.sheets.force_plans import forces
+from tmm_cli.draw.sheets.group_loads import group_loads
+from tmm_cli.draw.sheets.groups import groups
+from tmm_cli.draw.sheets.lever import lever
+from tmm_cli.draw.sheets.mechanism import Position, position
+from tmm_cli.draw.sheets.motion_plans import motion_plans
+from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.structure import at_sketch, scheme
+from tmm_cli.draw.sheets.synthesis import synthesised
+from tmm_cli.note.blocks import Block, Figure, Ref, said
+from tmm_cli.note.expression import plain, rounded
+from tmm_cli.quantities import Dimension
+
+WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
+
+
+def _scheme(results: Results) -> Drawn:
+    found = at_sketch(results)
+    if found is not None:
+        yield "structure", scheme(results.problem.title, *found).finish()
+
+
+def _groups(results: Results) -> Drawn:
+    found = at_sketch(results)
+    if found is not None:
+        yield from groups(results.problem.title, *found, results.roles)
+
+
+# names that chapters use: what draws them, and the longest side (mm) of what is to scale
+OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
+    "structure": (_scheme, 110), "groups": (_groups, 70), "synthesis": (synthesised, 140),
+    "positions": (all_positions, 130), "diagrams": (diagrams, 170),
+}  # fmt: skip
+OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
+    "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
+    "group-loads": (group_loads, 110), "forces": (forces, 110), "lever": (lever, 120),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What a note is about. drawn: whether it has drawings; without them a note is there in no time."""
+
+    results: Results
+    language: str = "en"
+    drawn: bool = True
+    _drawings: dict[Any, dict[str, Drawing]] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def detail(self) -> tuple[int, ...]:
+        """Indices of the positions that are shown in full."""
+        return in_detail(self.results) if self.results.motion is not None else ()
+
+    def position(self, k: int) -> Position:
+        """One of them, as drawings take it."""
+        assert self.results.motion is not None
+        return Position(self.results, self.results.motion, k)
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything acts on the links; else there are no forces to write of."""
+        return self.results.reactions is not None and bool(self.results.reactions.applied)
+
+    def value(self, si: float, dimension: Dimension, digits: int = 4) -> str:
+        """A number of the file with its unit there."""
+        units = self.results.problem.units
+        return f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip()
+
+    def unit(self, dimension: Dimension) -> str:
+        """The file's unit as it is printed."""
+        return printed_unit(self.results.problem.units.symbol(dimension))
+
+    def text(self, value: float, digits: int = 4) -> str:
+        """A number as the language writes it."""
+        return self.figures_of(plain(rounded(value, digits), digits))
+
+    def figures_of(self, text: str) -> str:
+        """The same of figures that are there already."""
+        return figures(text, self.language)
+
+    def drawings(self, name: str, k: int | None = None) -> Mapping[str, Drawing]:
+        """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
+        if not self.drawn:
+            return {}
+        draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
+        if (draw, k) not in self._drawings:
+            with within(Space(longest, (WIDTH, HEIGHT))):
+                subject: Any = self.results if k is None else self.position(k)
+                self._drawings[draw, k] = dict(draw(subject))
+        several = draw is motion_plans
+        return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
+
+    def figures(self, name: str, sentence: str, caption: str, k: int | None = None) -> Iterable[Block]:
+        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}." """
+        for stem, drawing in self.drawings(name, k).items():
+            yield said(sentence, figure=Ref(stem))
+            yield Figure(caption, drawing, stem)
+
+
+def figures(text: str, language: str) -> str:
+    """Figures with the decimal mark and the minus of a language."""
+    return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
+
+
+def printed_unit(text: str) -> str:
+    """kg*m^2 is kg·m², also in a heading."""
+    return text.replace("*", "·").replace("^2", "²").replace("^3", "³")

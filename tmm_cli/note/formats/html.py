@@ -1,0 +1,167 @@
+"""The note as one HTML page that opens without a network and prints on A4. All texts are data: no script runs."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from dataclasses import dataclass
+from functools import partial
+from html import escape
+from importlib.resources import files
+
+from tmm_cli.draw.formats.svg import NOT_XML, svg
+from tmm_cli.errors import _
+from tmm_cli.note.blocks import (
+    Block,
+    Contents,
+    Equation,
+    Figure,
+    Found,
+    Heading,
+    Inline,
+    Items,
+    Line,
+    Link,
+    NewPage,
+    Note,
+    Paragraph,
+    Ref,
+    Rows,
+    Sources,
+    Title,
+)  # fmt: skip
+from tmm_cli.note.breaking import formula
+from tmm_cli.note.context import figures
+from tmm_cli.note.math import Letter, Node
+from tmm_cli.note.mathml import mathml
+from tmm_cli.plans.record import Symbol
+
+
+def html(note: Note) -> bytes:
+    """The page in UTF-8."""
+    style = files("tmm_cli.note.formats").joinpath("note.css").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    policy = f"default-src 'none';style-src 'sha256-{digest}'"
+    writer = Writer(note)
+    head = (
+        f'<!doctype html>\n<html lang="{data(note.language)}"><head><meta charset="utf-8">\n'
+        f'<meta name="viewport" content="width=device-width,initial-scale=1">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        f"<title>{data(note.title)}</title><style>{style}</style></head>\n<body>\n"
+    )
+    body = "\n".join(writer.block(block) for block in note.blocks)
+    return f"{head}{body}\n</body></html>\n".encode("utf-8", "replace")
+
+
+def data(text: str) -> str:
+    """A text that comes from anywhere."""
+    return escape(text.translate(NOT_XML))
+
+
+@dataclass
+class Writer:
+    """Blocks as elements; headings come in their order."""
+
+    note: Note
+
+    def __post_init__(self) -> None:
+        self.numbers, self.headings = self.note.numbers(), iter(self.note.headings())
+        self.places = {key: f"n{place}" for place, key in enumerate(self.numbers)}
+        self.tables = self.figures = 0
+
+    def block(self, block: Block) -> str:
+        """One of them."""
+        match block:
+            case Heading():
+                number, __ = next(self.headings)
+                return f'<h{block.level} id="h{number}">{number} {data(block.text)}</h{block.level}>'
+            case Paragraph(line):
+                return f"<p>{self.line(line)}</p>"
+            case Items(lines):
+                return f"<ul>{''.join(f'<li>{self.line(line)}</li>' for line in lines)}</ul>"
+            case Equation(node, key):
+                return self.equation(node, key, "equation")
+            case Found(substitution, key):
+                shown = formula(substitution, partial(figures, language=self.note.language))
+                return self.equation(shown, key, "equation found")
+            case Rows():
+                return self.table(block)
+            case Figure():
+                return self.figure(block)
+            case Contents():
+                return self.contents()
+            case NewPage():
+                return '<div class="page"></div>'
+            case Title():
+                return title(block)
+            case Sources(sources):
+                listed = "".join(f"<li{self.place(s.key)}>{data(s.text)}</li>" for s in sources)
+                return f'<ol class="sources">{listed}</ol>'
+
+    def line(self, line: Line) -> str:
+        """Texts and formulas."""
+        return "".join(self.inline(part) for part in line)
+
+    def inline(self, part: Inline) -> str:
+        """One of these."""
+        match part:
+            case str():
+                return data(part)
+            case Ref(key):
+                return f'<a href="#{self.places[key]}">{self.numbers[key]}</a>'
+            case Link(key):
+                return f'[<a href="#{self.places[key]}">{self.numbers[key]}</a>]'
+            case Symbol():
+                return mathml(Letter(part))
+        return mathml(part)
+
+    def equation(self, node: Node, key: str, kind: str) -> str:
+        """A formula on its line, its number at the right."""
+        number = f"<span>({self.numbers[key]})</span>" if key else ""
+        return f'<div class="{kind}"{self.place(key)}>{mathml(node, display=True)}{number}</div>'
+
+    def table(self, rows: Rows) -> str:
+        """With its caption above."""
+        self.tables += 1
+        caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
+        head = "".join(f"<th>{self.line(cell)}</th>" for cell in rows.head)
+        body = "".join(
+            "<tr>" + "".join(
+                f"<td{' class=' + chr(34) + 'number' + chr(34) if number else ''}>{self.line(cell)}</td>"
+                for cell, number in zip(row, rows.numeric, strict=True)
+            ) + "</tr>\n"
+            for row in rows.rows
+        )  # fmt: skip
+        return (
+            f"<table{self.place(rows.key)}><caption>{data(caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
+            f"<tbody>{body}</tbody></table>"
+        )
+
+    def figure(self, figure: Figure) -> str:
+        """With its caption below."""
+        self.figures += 1
+        caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
+        drawn = svg(figure.drawing).decode().partition("\n")[2]
+        return f"<figure{self.place(figure.key)}>{drawn}<figcaption>{data(caption)}</figcaption></figure>"
+
+    def contents(self) -> str:
+        """All headings, each a link to its place."""
+        lines = [
+            f'<p class="level{heading.level}"><a href="#h{number}">{number} {data(heading.text)}</a></p>'
+            for number, heading in self.note.headings()
+        ]
+        return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>'
+
+    def place(self, key: str) -> str:
+        """The name of what is referred to."""
+        return f' id="{self.places[key]}"' if key else ""
+
+
+def title(block: Title) -> str:
+    """The title page."""
+    people = "".join(f"<tr><td>{data(role)}</td><td>{data(name)}</td></tr>" for role, name in block.people)
+    return (
+        f'<header><p class="institution">{data(block.institution)}</p><div><p class="kind">{data(block.heading)}</p>'
+        f'<p class="title">{data(block.title)}</p></div><table class="people">{people}</table>'
+        f'<p class="foot">{data(block.foot)}</p></header>'
+    )
