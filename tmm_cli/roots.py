@@ -82,7 +82,7 @@ def least(function: Callable[[Real], Real], low: Real | float, high: Real | floa
     if not ends.size:
         return ends[0], ends[1]
     for _ in range(THIRDS):
-        places = np.linspace(*ends, 9)
+        places = np.linspace(ends[0], ends[1], 9)
         best = np.argmin(function(places.ravel()).reshape(places.shape), axis=0)
         ends = np.take_along_axis(places, np.clip([best - 1, best + 1], 0, 8), 0)
     middle = np.mean(ends, axis=0)

@@ -223,7 +223,8 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, nu
     def slack(q: Real) -> Real:
         return -link_states(linkage, upto, q, 0).placements[-1].residual
 
-    return least(slack, scan.q[close] - step, scan.q[close] + step)[0]
+    narrow: Real = least(slack, scan.q[close] - step, scan.q[close] + step)[0]
+    return narrow
 
 
 def _lost(motion: LinkStates, side: list[float]) -> Real:
