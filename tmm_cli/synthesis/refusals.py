@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from pydantic import BaseModel
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.errors import ProblemError, path_text, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import UnitSystem
@@ -29,16 +29,16 @@ BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
 ALONE: Final = 1e-3
-NONE: Final = _("another task: no other value of it was found to help")
+NONE: Final = N_("another task: no other value of it was found to help")
 
 
 def refusal(error: Infeasible, block: Block, units: UnitSystem, told: str = NONE) -> ProblemError:
     """The reason, and what could be met: what the room says, else what is told."""
     if error.suggestion is not None:
-        told = error.suggestion.format(**shown(error.values, units))
+        told = _(error.suggestion).format(**shown(error.values, units))
     return ProblemError(
-        error.reason.format(**shown(error.values, units)), path=error.path, found=_found(block, error.path),
-        allowed=told,
+        _(error.reason).format(**shown(error.values, units)), path=error.path, found=_found(block, error.path),
+        allowed=_(told),
     )  # fmt: skip
 
 
@@ -110,7 +110,7 @@ def shown(values: Mapping[str, Shown], units: UnitSystem) -> dict[str, str]:
 
 def _text(units: UnitSystem, value: Any, kind: str, side: str = "") -> str:
     if kind == "word":
-        return str(value)
+        return translated(value) if isinstance(value, str) else str(value)
     dimension = KINDS[kind].dimension
     number = float(units.from_si(float(value), dimension))
     if side in (*LOW, *HIGH):

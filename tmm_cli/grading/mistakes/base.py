@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from tmm_cli.language import _
+
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
     from tmm_cli.grading.quantities.base import Quantity
@@ -36,12 +38,12 @@ class Mistake:
     @property
     def told(self) -> str:
         """The sentence with the fields of this case."""
-        return self.sentence.format(**vars(self))
+        return _(self.sentence).format(**vars(self))
 
     @property
     def called(self) -> str:
         """The name with the fields of this case."""
-        return self.name.format(**vars(self))
+        return _(self.name).format(**vars(self))
 
     def family(self, family: Family) -> Family:
         """The variants as the student took them."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.grading.quantities.base import Quantity
@@ -24,8 +24,10 @@ class Degrees(Mistake):
 
     factor: float = 1.0
 
-    name = _("degrees for radians")
-    sentence = _("This is the right value in the other unit of angles: degrees were taken for radians, or the reverse.")
+    name = N_("degrees for radians")
+    sentence = N_(
+        "This is the right value in the other unit of angles: degrees were taken for radians, or the reverse."
+    )
     solves = False
 
     @classmethod

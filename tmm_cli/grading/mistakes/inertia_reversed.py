@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
@@ -21,8 +21,8 @@ class InertiaReversed(Mistake):
 
     parts: tuple[str, ...] = ()
 
-    name = _("inertia not reversed")
-    sentence = _("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+    name = N_("inertia not reversed")
+    sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.grading.quantities.base import Quantity
@@ -22,8 +22,8 @@ class Millimetres(Mistake):
 
     factor: float = 1.0
 
-    name = _("mm for m")
-    sentence = _("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
+    name = N_("mm for m")
+    sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
     solves = False
 
     @classmethod

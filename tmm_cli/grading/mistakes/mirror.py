@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Closed
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.groups.base import Kernel
@@ -21,8 +21,8 @@ class Mirror(Mistake):
 
     links: str = ""
 
-    name = _("mirror assembly")
-    sentence = _("This belongs to another assembly: links {links} were drawn on the other side.")
+    name = N_("mirror assembly")
+    sentence = N_("This belongs to another assembly: links {links} were drawn on the other side.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.grading.quantities.base import Quantity
@@ -24,8 +24,8 @@ class Neighbour(Mistake):
 
     step: int = 1
 
-    name = _("neighbouring position")
-    sentence = _("This is the value of a neighbouring position.")
+    name = N_("neighbouring position")
+    sentence = N_("This is the value of a neighbouring position.")
     solves = False
 
     @classmethod

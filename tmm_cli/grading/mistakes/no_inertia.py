@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
@@ -23,8 +23,8 @@ class NoInertia(Mistake):
 
     link: str = ""
 
-    name = _("inertia force left out")
-    sentence = _("The inertia force m a_S was left out.")
+    name = N_("inertia force left out")
+    sentence = N_("The inertia force m a_S was left out.")
     part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
 
     @classmethod

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
@@ -24,8 +24,8 @@ class NoWeight(Mistake):
     link: str = ""
     mass: bool = False
 
-    name = _("weight forgotten")
-    sentence = _("A weight G = m g was left out, or the mass was put in for it.")
+    name = N_("weight forgotten")
+    sentence = N_("A weight G = m g was left out, or the mass was put in for it.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

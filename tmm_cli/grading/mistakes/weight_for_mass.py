@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 
 if TYPE_CHECKING:
     from tmm_cli.forces.applied import Applied
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 class WeightForMass(Mistake):
     """Inertia forces are g times too large."""
 
-    name = _("weight for mass")
-    sentence = _("The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large.")
+    name = N_("weight for mass")
+    sentence = N_(
+        "The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large."
+    )
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.choices import Choices
@@ -118,11 +118,13 @@ def _none(candidates: Candidates, quantity: Goal) -> tuple[str, str]:
     """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
     if quantity.forces and candidates.variant.accelerated:
         return (
-            _("the driver does not come to all places of its way with this acceleration: it stops before, or they lie "
+            N_("the driver does not come to all places of its way with this acceleration: it stops before, or they lie "
               "before position 0"),
-            _("less to brake it, a higher speed, or a way from position 0 on in its sense"),
+            N_("less to brake it, a higher speed, or a way from position 0 on in its sense"),
         )  # fmt: skip
-    return _("no mechanism within the bounds was found that has this quantity"), _("other bounds, or another quantity")
+    return N_("no mechanism within the bounds was found that has this quantity"), N_(
+        "other bounds, or another quantity"
+    )
 
 
 def _missed(candidates: Candidates, found: Best) -> Infeasible:
