@@ -112,7 +112,7 @@ def test_every_point_of_a_moving_link_is_named(name):
 
 def test_every_sheet_is_written_in_every_format():
     results = solve(load(str(ROOT / "problems" / "tangent.yaml")))
-    begins = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF-", "dxf": b"  0\nSECTION"}
+    begins = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF-", "dxf": b"  0\nSECTION", "emf": b"\x01\x00\x00\x00"}
     assert set(begins) == set(FORMATS)
     every = dict(sheets(results))
     assert {"structure", "mechanism", "diagrams", "reactions", "energy"} <= set(every)

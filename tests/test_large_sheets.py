@@ -91,6 +91,16 @@ def test_sheets_are_full_and_nothing_on_them_overlaps(name):
         assert used >= 0.6 * free, (stem, used / free)
 
 
+@pytest.mark.parametrize("name", COURSES)
+def test_each_large_sheet_begins_in_its_upper_left_corner_with_what_a_course_begins_with(name):
+    for stem, first in (("sheet-0", "structure"), ("sheet-1", "mechanism"), ("sheet-2", "position")):
+        sheet = drawn(name)[stem]
+        low, high = inner(sheet.paper)
+        at, picture = sheet.pictures[0]
+        assert picture.stem.startswith(first)
+        assert abs(at + 1j * picture.paper[1] - complex(low.real, high.imag)) < 10
+
+
 def test_what_has_no_scale_is_on_the_smallest_format_that_holds_it():
     papers = {stem: sheet.paper for stem, sheet in drawn("shaper").items()}
     assert papers == {"sheet-0": PAPERS["A3"], "sheet-1": PAPERS["A1"], "sheet-2": PAPERS["A1"]}

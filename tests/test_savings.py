@@ -7,6 +7,7 @@ import io
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,13 +15,16 @@ from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
 from tmm_cli import load, solve
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
 from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
 from tmm_cli.kinematics.motion import move
-from tmm_cli.library import structure_of
+from tmm_cli.library import count, structure_of
+from tmm_cli.problem.build_chain import build_chain
+from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
@@ -65,10 +69,6 @@ def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
 
 
 def test_the_structure_of_a_chain_in_space_builds_no_arrays():
-    from tmm_cli.library import count
-    from tmm_cli.problem.build_chain import build_chain
-    from tmm_cli.problem.reader import read_file
-
     problem = build_chain(read_file(str(ROOT / "problems" / "spatial-six-bar.yaml")))
     assert into_numpy(lambda: count(problem)) == []
 
@@ -196,8 +196,6 @@ def test_every_group_with_a_closed_form_is_solved_by_it():
 def test_closed_form_and_newton_give_the_same_places():
     results = solve(load(str(ROOT / "problems" / "six-bar.yaml")), "kinematics")
     with no_closed_form():
-        from tmm_cli.assembly.choose import assemble
-
         iterated = assemble(results.linkage, results.structure)
     motion = move(results.linkage, iterated, results.motion.q, DriverMotion(0.0, 1.0, 0.0, 1), 0)
     assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
@@ -325,8 +323,6 @@ def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):
 
 
 def test_a_diagram_of_many_positions_marks_no_more_than_can_be_told_apart():
-    from dataclasses import replace
-
     problem = load(str(SHAPER))
     many = replace(problem, request=replace(problem.request, count=3600, detail=()))
     drawn = drawings(solve(many, "kinematics"))

@@ -23,7 +23,9 @@ from tmm_cli.results.warnings import warnings
 def sheets(
     files: Files,
     paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Of the paper.")] = "A1",
-    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png: with commas.")] = "pdf",
+    formats: Annotated[
+        str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png, emf: with commas.")
+    ] = "pdf",
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
     positions: Annotated[
         Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")

@@ -77,6 +77,11 @@ class Rows:
     rows: tuple[tuple[Line, ...], ...]
     key: str = ""
 
+    @property
+    def numeric(self) -> list[bool]:
+        """Of each column, whether its cells have figures only or are empty."""
+        return [all(_is_number(row[k]) for row in self.rows) for k in range(len(self.head))]
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -134,6 +139,17 @@ class Note:
     language: str
     blocks: tuple[Block, ...]
 
+    def headings(self) -> list[tuple[str, Heading]]:
+        """With their decimal numbers: 2, 2.1, 2.2."""
+        count: list[int] = []
+        found = []
+        for block in self.blocks:
+            if isinstance(block, Heading):
+                count = [*count, *[0] * block.level][: block.level]
+                count[-1] += 1
+                found.append((".".join(map(str, count)), block))
+        return found
+
     def numbers(self) -> dict[str, str]:
         """Of headings, formulas, tables and figures by their keys: each kind is counted through the note."""
         counted: dict[type, int] = {}
@@ -177,3 +193,8 @@ def said(sentence: str, **parts: Inline | Line) -> Paragraph:
 def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
     """All blocks of all chapters."""
     return tuple(block for part in parts for block in part)
+
+
+def _is_number(cell: Line) -> bool:
+    text = "".join(part if isinstance(part, str) else "x" for part in cell)
+    return not text.strip("0123456789.,−-–— ")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tmm_cli.note.expression import Substitution, letters, numbers, result_node
+from tmm_cli.note.expression import Leaf, Substitution, letters, numbers, result_node
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
 
 LINE = 78.0  # of the text of an A4 page, in widths of a figure
 SMALL = 0.65  # size of indices and exponents
 TERMS = ("+", "−")
-OPENING = (Sign("="), Sign("("), Sign("·"))  # after which a sign is the number's own
+OPEN, CLOSE = Sign("("), Sign(")")
+OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
 
 
 def chain(sides: Sequence[Node], most: float = LINE) -> Node:
@@ -33,8 +34,9 @@ def formula(found: Substitution, say: Callable[[str], str] = str) -> Node:
     """
     figures, text = found.printed()
     own = found.expression
-    sides = (letters(own), numbers(own, figures, say), result_node(text, found.unit, say))
-    return chain((Letter(found.name), *sides))
+    plain = isinstance(own, Leaf)  # read off: what would be put in is the result
+    put_in = () if plain else (letters(own), numbers(own, figures, say))
+    return chain((Letter(found.name), *put_in, result_node(text, found.unit, say)))
 
 
 def width(node: Node) -> float:
@@ -69,7 +71,17 @@ def _in_terms(node: Node, most: float) -> list[Node]:
         if lines[-1] and width(Row((*lines[-1], *term))) > most:
             lines.append([])
         lines[-1] += term
-    return [row(*line) for line in lines]
+    return [_bracketed(line) for line in lines]
+
+
+def _bracketed(line: Sequence[Node]) -> Node:
+    """A line with what stands within brackets that open, or close, on it."""
+    first = line.index(OPEN) + 1 if OPEN in line else None
+    last = line.index(CLOSE) if CLOSE in line else None
+    if first is None and last is None:
+        return row(*line)
+    before, after = line[: first - 1] if first else (), line[last + 1 :] if last is not None else ()
+    return row(*before, Brackets(row(*line[first:last]), first is not None, last is not None), *after)
 
 
 def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
@@ -87,7 +99,7 @@ def _opened(nodes: Sequence[Node], most: float) -> list[Node]:
     found: list[Node] = []
     for node in nodes:
         if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:
-            found += [Fraction(Number("1"), node.under), Sign("·"), Sign("("), *node.over.nodes, Sign(")")]
+            found += [Fraction(Number("1"), node.under), Sign("·"), OPEN, *node.over.nodes, CLOSE]
         else:
             found.append(node)
     return found

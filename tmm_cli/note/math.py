@@ -69,9 +69,11 @@ class Root:
 
 @dataclass(frozen=True)
 class Brackets:
-    """Round brackets as high as what is in them."""
+    """Round brackets as high as what is in them; in a broken formula the other one may stand on another line."""
 
     inside: Node
+    opens: bool = True
+    closes: bool = True
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Protocol, TypeVar
 
 from tmm_cli.draw.formats.dxf import dxf
+from tmm_cli.draw.formats.emf import emf
 from tmm_cli.draw.formats.pdf import pdf
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
@@ -14,7 +15,7 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.fonts import lacking
 from tmm_cli.language import _
 
-FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf}
+FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf, "emf": emf}
 WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]

@@ -86,7 +86,7 @@ CONTENTS = (
     Source(0, _groups, 150),
     Source(0, synthesised, 200),
     Source(0, structure_tables),
-    Source(1, all_positions, 200),
+    Source(1, all_positions, 240),
     Source(1, motion_plans, 300, over="plans"),
     Source(1, motion_tables),
     Source(1, diagrams, 240),

@@ -10,8 +10,8 @@ from itertools import accumulate, chain, repeat
 
 from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
-from tmm_cli.draw.layout.packing import Field, Size, pack, spread
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, spaced
+from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
+from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, leads, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
@@ -108,9 +108,10 @@ def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Pag
     """Those of the larger pieces for which there really is room, one after the other."""
     found = list(pieces)
     for page in pages:
+        led = leads(_sizes(found), page, field)
         for number in page:
             tried = [*found[:number], larger[number], *found[number + 1 :]]
-            if pack(spaced(_sizes(tried), page), field) is not None:
+            if pack(spaced(_sizes(tried), page), field, led=led) is not None:
                 found = tried
     return found
 
@@ -162,7 +163,7 @@ def _drawn(source: Source, choice: Choice, field: Field, rooms: Iterable[float |
 def framed(pictures: Sequence[Picture], field: Field, paper: Size, titles: Titles) -> LargeSheet:
     """A sheet with these pictures on its field."""
     sizes = [(picture.paper[0] + GAP, picture.paper[1] + GAP) for picture in pictures]
-    places = spread(pack(sizes, field) or [], sizes, field)
+    places = spread(arranged(sizes, field) or [], sizes, field)
     low, high = inner(paper)
     corner = complex(low.real + EDGE, high.imag - EDGE)
     placed = [(corner + complex(x, -y - one.paper[1]), one) for (x, y), one in zip(places, pictures, strict=True)]

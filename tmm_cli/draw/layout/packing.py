@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from random import Random
 
 Size = tuple[float, float]
 MIXED = 12  # orders by chance that are tried too, always the same ones
+MANY = 300  # where the best of all arrangements is looked for
 
 
 @dataclass(frozen=True)
@@ -33,24 +35,50 @@ class Field:
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
 
 
-def pack(sizes: Sequence[Size], field: Field) -> list[Size] | None:
-    """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted."""
-    if sum(width * height for width, height in sizes) > field.area:
-        return None
-    turned = Field(field.height, field.width, field.taken[::-1])
-    for order in _orders(sizes):
-        places = _in_order(sizes, order, field)
-        if places is not None:
-            return places
-        places = _in_order([(height, width) for width, height in sizes], order, turned)
-        if places is not None:
-            return [(x, y) for y, x in places]
+def pack(sizes: Sequence[Size], field: Field, *, led: bool = False) -> list[Size] | None:
+    """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted.
+
+    led: the first box is in the upper left corner.
+    """
+    return next(_packed(sizes, field, MIXED, led=led), None)
+
+
+def arranged(sizes: Sequence[Size], field: Field) -> list[Size] | None:
+    """The same, so that a reader who goes right and down meets the boxes about as they come."""
+    for led in (True, False):
+        found = list(_packed(sizes, field, MANY, led=led))
+        if found:
+            return min(found, key=lambda places: _disorder(places, sizes, field))
     return None
 
 
-def _orders(sizes: Sequence[Size]) -> Iterator[Sequence[int]]:
-    """Orders in which boxes are put down: as they come, then the large ones first."""
+def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool) -> Iterator[list[Size]]:
+    """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too."""
+    if sum(width * height for width, height in sizes) > field.area:
+        return
+    turned = Field(field.height, field.width, field.taken[::-1])
+    for order in _orders(sizes, mixed, 1 if led else 0):
+        places = _in_order(sizes, order, field)
+        if places is not None:
+            yield places
+        places = _in_order([(height, width) for width, height in sizes], order, turned)
+        if places is not None:
+            yield [(x, y) for y, x in places]
+
+
+def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> float:
+    """By how much later boxes stand before earlier ones, from the upper left corner to the lower right one."""
+    middles = [
+        (x + width / 2) / field.width + (y + height / 2) / field.height
+        for (x, y), (width, height) in zip(places, sizes, strict=True)
+    ]
+    return sum(max(earlier - later, 0.0) for earlier, later in combinations(middles, 2))
+
+
+def _orders(sizes: Sequence[Size], mixed: int, kept: int) -> Iterator[Sequence[int]]:
+    """Orders in which boxes are put down: as they come, then the large ones first; `kept`: that many stay first."""
     every = range(len(sizes))
+    first, rest = every[:kept], every[kept:]
     yield every
     keys = (
         lambda k: -sizes[k][1],
@@ -59,9 +87,9 @@ def _orders(sizes: Sequence[Size]) -> Iterator[Sequence[int]]:
         lambda k: -sum(sizes[k]),
     )
     for key in keys:
-        yield sorted(every, key=key)
-    mixed = Random(len(sizes))
-    yield from (mixed.sample(every, len(sizes)) for __ in range(MIXED))
+        yield [*first, *sorted(rest, key=key)]
+    chance = Random(len(sizes))
+    yield from ([*first, *chance.sample(rest, len(rest))] for __ in range(mixed))
 
 
 def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:

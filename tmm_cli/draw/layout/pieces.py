@@ -71,7 +71,7 @@ def begun(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[fl
     few, found = PAGES, None
     for share in shares():
         rooms = [piece.about(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
-        pages = filled([piece.size(room) for piece, room in zip(pieces, rooms, strict=True)], field)
+        pages = filled(sized(pieces, rooms), field)
         if pages is not None and len(pages) < few:
             few, found = len(pages), (rooms, pages)
         if found is not None and share * shrunk**0.5 < LEAST:
@@ -92,6 +92,16 @@ def eased(pieces: Sequence[Piece], rooms: Sequence[float], share: float, *, all_
 def shares() -> Iterator[float]:
     """Of the usual size, from what is more to what is hardly legible."""
     yield from (1.3 * 0.95**k for k in range(SIZES))
+
+
+def sized(pieces: Sequence[Piece], rooms: Sequence[float]) -> list[Size]:
+    """The sizes of the pieces in these rooms."""
+    return [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
+
+
+def leads(sizes: Sequence[Size], page: Page, field: Field) -> bool:
+    """Whether the first drawing of a page can stand in its upper left corner; then it stays there."""
+    return pack(spaced(sizes, page), field, led=True) is not None
 
 
 def spaced(sizes: Sequence[Size], page: Page) -> list[Size]:
@@ -137,14 +147,14 @@ def grown(
     """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size."""
     rooms = list(given)
     for page in pages:
-        growing = set(page)
+        growing, led = set(page), leads(sized(pieces, rooms), page, field)
         while growing:
             number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
             piece, before = pieces[number], rooms[number]
             rooms[number] = piece.larger(before)
-            sizes = [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
+            sizes = sized(pieces, rooms)
             most = min(MOST * shrunk * piece.usual, piece.most)
-            if not before < rooms[number] <= most or pack(spaced(sizes, page), field) is None:
+            if not before < rooms[number] <= most or pack(spaced(sizes, page), field, led=led) is None:
                 rooms[number] = before
                 growing.discard(number)
     return rooms

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.picture import written_here
 from tmm_cli.draw.paper.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
@@ -65,8 +66,8 @@ def _sheets(
         title = _("Driving link {links} under its loads. {caption}")
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
-    lines = [line for e in equations for line in written(e)]
-    lines += [line for one in sums for line in along_guide(one)]
+    lines = [line for e in equations for line in written(e)] if written_here() else []
+    lines += [line for one in sums for line in along_guide(one)] if written_here() else []
     units, shown = here.results.problem.units, [*part.acting, *further]
 
     def beneath(mu: float) -> Beneath:

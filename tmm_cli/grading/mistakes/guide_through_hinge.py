@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution
 from tmm_cli.language import N_
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.quantities.base import Quantity
-    from tmm_cli.grading.solution import Solution
-    from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.language import N_
-
-if TYPE_CHECKING:
-    from tmm_cli.variants.family import Family
+from tmm_cli.variants.family import Family
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib.util import find_spec
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.formats.html import html
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 
-FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html}
+
+def _docx(note: Note) -> bytes:
+    from tmm_cli.note.formats.docx import docx  # python-docx is an extra, and takes a quarter of a second to import
+
+    return docx(note)
+
+
+FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 
 def formats_of(text: str) -> list[str]:
@@ -21,4 +29,8 @@ def formats_of(text: str) -> list[str]:
                 _("there is no such format of notes"), found=quote(name), allowed=", ".join(FORMATS),
                 near=nearest(name, FORMATS), file="--as",
             )  # fmt: skip
+    if "docx" in wanted and find_spec("docx") is None:
+        raise ProblemError(
+            _("DOCX is written by python-docx, which is not installed"), allowed="html; or: pip install 'tmm-cli[note]'"
+        )
     return wanted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from html import escape
 from importlib.resources import files
@@ -60,13 +60,12 @@ def data(text: str) -> str:
 
 @dataclass
 class Writer:
-    """Blocks as elements; it counts headings as it goes."""
+    """Blocks as elements; headings come in their order."""
 
     note: Note
-    counted: list[int] = field(default_factory=lambda: [0, 0])
 
     def __post_init__(self) -> None:
-        self.numbers = self.note.numbers()
+        self.numbers, self.headings = self.note.numbers(), iter(self.note.headings())
         self.places = {key: f"n{place}" for place, key in enumerate(self.numbers)}
         self.tables = self.figures = 0
 
@@ -74,8 +73,8 @@ class Writer:
         """One of them."""
         match block:
             case Heading():
-                number, place = self.number(block)
-                return f'<h{block.level} id="{place}">{number} {data(block.text)}</h{block.level}>'
+                number, __ = next(self.headings)
+                return f'<h{block.level} id="h{number}">{number} {data(block.text)}</h{block.level}>'
             case Paragraph(line):
                 return f"<p>{self.line(line)}</p>"
             case Items(lines):
@@ -125,12 +124,11 @@ class Writer:
         """With its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
-        numeric = [all(_is_number(row[k]) for row in rows.rows) for k in range(len(rows.head))]
         head = "".join(f"<th>{self.line(cell)}</th>" for cell in rows.head)
         body = "".join(
             "<tr>" + "".join(
                 f"<td{' class=' + chr(34) + 'number' + chr(34) if number else ''}>{self.line(cell)}</td>"
-                for cell, number in zip(row, numeric, strict=True)
+                for cell, number in zip(row, rows.numeric, strict=True)
             ) + "</tr>\n"
             for row in rows.rows
         )  # fmt: skip
@@ -148,20 +146,11 @@ class Writer:
 
     def contents(self) -> str:
         """All headings, each a link to its place."""
-        counter = Writer(self.note)
-        lines = []
-        for block in self.note.blocks:
-            if isinstance(block, Heading):
-                number, place = counter.number(block)
-                lines.append(f'<p class="level{block.level}"><a href="#{place}">{number} {data(block.text)}</a></p>')
+        lines = [
+            f'<p class="level{heading.level}"><a href="#h{number}">{number} {data(heading.text)}</a></p>'
+            for number, heading in self.note.headings()
+        ]
         return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>'
-
-    def number(self, heading: Heading) -> tuple[str, str]:
-        """3.2, and the name of the place."""
-        chapter, section = self.counted
-        self.counted = [chapter + 1, 0] if heading.level == 1 else [chapter, section + 1]
-        number = ".".join(str(n) for n in self.counted[: heading.level])
-        return number, f"h{number}"
 
     def place(self, key: str) -> str:
         """The name of what is referred to."""
@@ -176,9 +165,3 @@ def title(block: Title) -> str:
         f'<p class="title">{data(block.title)}</p></div><table class="people">{people}</table>'
         f'<p class="foot">{data(block.foot)}</p></header>'
     )
-
-
-def _is_number(cell: Line) -> bool:
-    """Whether a cell has figures only, or is empty."""
-    text = "".join(part if isinstance(part, str) else "x" for part in cell)
-    return not text.strip("0123456789.,−-–— ")

@@ -102,13 +102,13 @@ def take(task: Task) -> tuple[Bars, int]:
     defects = quality(found, task).defect
     fair = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
     if not fair and task.approximate:
-        raise Infeasible("output" if task.function else "pairs", NONE_NEAR, _("other angles, or phi0 and psi0"))
+        raise Infeasible("output" if task.function else "pairs", NONE_NEAR, search=False)
     if not fair:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
         raise Infeasible(key, NO_FOUR_BAR if not found.size else EVERY_ONE_HAS[" and ".join(sorted(set(defects)))])
     if task.choose.isdigit() and task.choose not in fair:
         reason = _("there is no solution of this number, or it has a defect")
-        raise Infeasible("choose", reason, _("{numbers}; or choose: transmission").format(numbers=" or ".join(fair)))
+        raise Infeasible("choose", reason, " or ".join(fair))
     return found, chosen(task, found)
 
 

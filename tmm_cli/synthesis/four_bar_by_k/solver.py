@@ -128,8 +128,9 @@ def choose(task: Task) -> Found:
     else:
         found = [(w, side) for side in arcs(centred) for w in _crossings(centred, side, EQUATIONS[task.choose])]
     if not found:
-        words = N_("best transmission") if task.choose == "level" else None
-        raise Infeasible("choose" if task.choose == "level" else task.choose, NOT_THERE[task.choose], words)
+        if task.choose == "level":
+            raise Infeasible("choose", NOT_THERE["level"], "best transmission")
+        raise Infeasible(task.choose, NOT_THERE[task.choose])
     goal = LEAST.get(task.choose, _pressure)
     w, side = min(found, key=lambda one: float(goal(at(centred, *one), centred)))
     if task.choose == "near" and w in places(centred, side)[[0, -1]]:
@@ -161,7 +162,7 @@ def _refuse_numbers(task: Task) -> None:
             "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is")
         )
     if theta == 0 and task.choose == "l1":
-        raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"), _("half of C1C2; or another choice of A"))
+        raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"))
 
 
 def solve(task: Task) -> Outcome:

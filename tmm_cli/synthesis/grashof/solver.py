@@ -101,7 +101,7 @@ def refuse(task: Task) -> None:
     if isinstance(task, FourBar) and turning(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _("the links do not close: {link} is as long as the others together, or longer")
-        raise Infeasible(longest, reason, values={"link": (longest, "word")})
+        raise Infeasible(longest, reason.format(link=longest))
 
 
 def solve(task: Task) -> Outcome:

@@ -108,11 +108,9 @@ def refuse(task: Task) -> None:
     if not np.pi - task.theta > DEAD_SWING:
         raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
     if task.length is None and abs(task.b2 - task.b1) == 0:
-        raise Infeasible("B2", _("B1 and B2 are the same place"), _("any place other than B1"))
+        raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
-        raise Infeasible(
-            "within", _("these are no bounds of a distance"), _("two lengths above zero, the smaller one first")
-        )
+        raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
     if task.within is not None and task.within[0] > find(task).longest:
         raise Infeasible(("within", 0), _("within these bounds the stone always passes B"))
 

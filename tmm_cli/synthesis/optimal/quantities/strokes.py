@@ -29,17 +29,11 @@ class OfStrokes(Goal):
 
     of_a_cycle: ClassVar[bool] = False
 
-    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if self.output(linkage, groups) is None:
-            return (
-                N_("no link is the output, whose stroke this is"),
-                N_("output: a link that slides or swings on the frame; or another quantity"),
-            )
+            return N_("no link is the output, whose stroke this is: it slides or swings on the frame")
         if self.of_a_cycle and not closed:
-            return (
-                N_("this belongs to a driver that turns on and on, and this one goes between two ends"),
-                N_("another quantity, or a crank over its cycle"),
-            )
+            return N_("this belongs to a driver that turns on and on, and this one goes between two ends")
         return None
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -130,12 +124,9 @@ class Speed(OfStrokes):
 
     of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output"), "speed", True
 
-    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if not self.slides(linkage, groups) and self.output(linkage, groups) is not None:
-            return (
-                N_("the output swings: it has no mean speed in metres a second"),
-                N_("an output that slides on the frame, or another quantity"),
-            )
+            return N_("the output swings: it has no mean speed in metres a second")
         return super().unfit(linkage, groups, closed=closed)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

@@ -1,0 +1,182 @@
+"""The note as DOCX: styles, captions, fields and formulas are Word's own, so that a student goes on writing in it."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from functools import partial
+from typing import Any
+
+from docx import Document
+from docx.enum.text import WD_ALIGN_PARAGRAPH
+from docx.oxml import parse_xml
+from docx.shared import Pt
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import (
+    Block,
+    Contents,
+    Equation,
+    Figure,
+    Found,
+    Heading,
+    Inline,
+    Items,
+    Line,
+    Link,
+    NewPage,
+    Note,
+    Paragraph,
+    Ref,
+    Rows,
+    Sources,
+    Title,
+)  # fmt: skip
+from tmm_cli.note.breaking import formula
+from tmm_cli.note.context import figures
+from tmm_cli.note.formats.docx_parts import TEXT, Parts, field, plain, prepared, title_page, unbroken
+from tmm_cli.note.formats.omml import display, omath
+from tmm_cli.note.math import Letter
+from tmm_cli.plans.record import Symbol
+
+HIGH = 225.0  # mm, of a picture at most
+
+
+def docx(note: Note) -> bytes:
+    """A file of Word."""
+    writer = _Writer(note)
+    for block in note.blocks:
+        writer.write(block)
+    file = io.BytesIO()
+    writer.document.save(file)
+    return file.getvalue()
+
+
+class _Writer:
+    def __init__(self, note: Note) -> None:
+        self.note = note
+        self.numbers = note.numbers()
+        self.figures = partial(figures, language=note.language)
+        self.document: Any = Document()
+        prepared(self.document, note.title, note.language)
+        self.parts = Parts(self.document)
+        self.counted: dict[str, int] = {}
+
+    def write(self, block: Block) -> None:
+        match block:
+            case Heading(text, level):
+                heading = self.document.add_heading(plain(text), level)
+                self.parts.marked(heading, f"_Toc{self._next('heading')}", 1)
+            case Paragraph(line):
+                self._line(self._paragraph(), line)
+            case Items(lines):
+                for line in lines:
+                    self._line(self._paragraph("ListBullet"), line)
+            case Equation(node, key):
+                self._formula(display(node), key)
+            case Found(substitution, key):
+                self._formula(display(formula(substitution, self.figures)), key)
+            case Rows():
+                self._rows(block)
+            case Figure():
+                self._figure(block)
+            case Contents():
+                self._contents()
+            case NewPage():
+                self.document.add_page_break()
+            case Title():
+                title_page(self.document, block)
+            case Sources(sources):
+                for source in sources:
+                    paragraph = self._paragraph("ListNumber")
+                    self._line(paragraph, (source.text,))
+
+    def _paragraph(self, style: str = "") -> Any:
+        """style: its identifier; to find it by its name takes longer than all the rest."""
+        paragraph = self.document.add_paragraph()
+        paragraph._p.style = style or None
+        return paragraph
+
+    def _line(self, paragraph: Any, line: Line, **format: Any) -> None:
+        for part in line:
+            self._inline(paragraph, part, **format)
+
+    def _inline(self, paragraph: Any, part: Inline, size: float = 0.0, bold: bool = False) -> None:
+        match part:
+            case str():
+                run = paragraph.add_run(plain(part))
+                run.bold = bold or None
+                if size:
+                    run.font.size = Pt(size)
+            case Ref(key):
+                field(paragraph, f"REF {self._mark(key)} \\h", self.numbers[key])
+            case Link(key):
+                paragraph.add_run(f"[{self.numbers[key]}]")
+            case Symbol():
+                paragraph._p.append(parse_xml(omath(Letter(part))))
+            case _:
+                paragraph._p.append(parse_xml(omath(part)))
+
+    def _mark(self, key: str) -> str:
+        """The bookmark of a number that is referred to."""
+        return f"_Ref{list(self.numbers).index(key) + 1}"
+
+    def _formula(self, lines: Iterable[str], key: str) -> None:
+        every = list(lines)
+        for k, line in enumerate(every):
+            paragraph = self._paragraph("Formula")
+            paragraph.paragraph_format.keep_with_next = k < len(every) - 1
+            last = k == len(every) - 1
+            if key and last:  # a formula beside its number stands in the line
+                paragraph._p.append(parse_xml(line).find("{*}oMath"))
+                paragraph.add_run("\t(")
+                first = len(paragraph._p)
+                paragraph.add_run(self.numbers[key])
+                self.parts.marked(paragraph, self._mark(key), first)
+                paragraph.add_run(")")
+            else:
+                paragraph._p.append(parse_xml(line))
+
+    def _caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
+        """Its number is a field that Word counts; sentence: with {number} and {text}."""
+        before, after = sentence.split("{number}")
+        paragraph = self._paragraph("Caption")
+        paragraph.add_run(before)
+        first = len(paragraph._p)
+        field(paragraph, f"SEQ {kind} \\* ARABIC", str(self._next(kind)))
+        if key:
+            self.parts.marked(paragraph, self._mark(key), first)
+        paragraph.add_run(after.format(text=plain(text)))
+        return paragraph
+
+    def _next(self, kind: str) -> int:
+        self.counted[kind] = self.counted.get(kind, 0) + 1
+        return self.counted[kind]
+
+    def _rows(self, block: Rows) -> None:
+        caption = self._caption(_("Table {number}. {text}"), block.caption, block.key, "Table")
+        caption.paragraph_format.keep_with_next = True
+        caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
+        table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
+        size = 10.0 if len(block.head) <= 6 else 8.5
+        for number, cells in enumerate((block.head, *block.rows)):
+            row = table.add_row()
+            unbroken(row, head=number == 0)
+            for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
+                paragraph = cell.paragraphs[0]
+                paragraph._p.style = "TableText"
+                if number and block.numeric[k]:
+                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+                self._line(paragraph, line, size=size, bold=number == 0)
+        self._paragraph("TableText")
+
+    def _figure(self, block: Figure) -> None:
+        paragraph = self._paragraph("Picture")
+        width, height = block.drawing.paper
+        share = min(1.0, TEXT / width, HIGH / height)
+        self.parts.picture(paragraph, block.drawing, share, block.caption)
+        self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+
+    def _contents(self) -> None:
+        self._paragraph("ContentsHeading").add_run(_("Contents"))
+        self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in self.note.headings())

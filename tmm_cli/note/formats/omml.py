@@ -1,0 +1,84 @@
+"""Formulas as OMML, Word's own: they are edited there as formulas."""
+
+from __future__ import annotations
+
+from html import escape
+
+from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
+from tmm_cli.plans.record import Symbol
+
+SPACES = (
+    'xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main" '
+    'xmlns:m="http://schemas.openxmlformats.org/officeDocument/2006/math" '
+    'xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"'
+)
+FONT = '<w:rPr><w:rFonts w:ascii="Cambria Math" w:hAnsi="Cambria Math"/></w:rPr>'
+NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE000), 65534, 65535), "�")
+
+
+def data(text: str) -> str:
+    """A text in XML; what XML forbids is replaced."""
+    return escape(text.translate(NOT_XML))
+
+
+def omath(node: Node) -> str:
+    """A formula in a line of text."""
+    return f"<m:oMath {SPACES}>{_of(node)}</m:oMath>"
+
+
+def display(node: Node) -> list[str]:
+    """A formula apart: a paragraph for each of its lines."""
+    lines = node.lines if isinstance(node, Lines) else (node,)
+    jc = '<m:oMathParaPr><m:jc m:val="left"/></m:oMathParaPr>'
+    return [f"<m:oMathPara {SPACES}>{jc}{omath(_begun(line))}</m:oMathPara>" for line in lines]
+
+
+def _begun(line: Node) -> Node:
+    """A line that begins with a sign of equality, with nothing before it: some programs want two sides."""
+    equals = isinstance(line, Row) and line.nodes[0] == Sign("=")
+    return Row((Words("\u200b"), *line.nodes)) if equals and isinstance(line, Row) else line
+
+
+def _of(node: Node) -> str:
+    match node:
+        case Number(text) | Sign(text) | Words(text):
+            return _run(text)
+        case Letter(symbol, vector, lines):
+            shown = _symbol(symbol, vector)
+            for _ in range(lines):
+                shown = _bar(shown, "bot")
+            return shown
+        case Row(nodes) | Lines(nodes):
+            return "".join(_of(n) for n in nodes)
+        case Fraction(over, under):
+            return f"<m:f><m:num>{_of(over)}</m:num><m:den>{_of(under)}</m:den></m:f>"
+        case Power(base, exponent):
+            return f"<m:sSup><m:e>{_of(base)}</m:e><m:sup>{_of(exponent)}</m:sup></m:sSup>"
+        case Root(of):
+            return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_of(of)}</m:e></m:rad>'
+        case Brackets(inside, opens, closes):
+            marks = ("" if opens else '<m:begChr m:val=""/>') + ("" if closes else '<m:endChr m:val=""/>')
+            return f"<m:d>{f'<m:dPr>{marks}</m:dPr>' if marks else ''}<m:e>{_of(inside)}</m:e></m:d>"
+
+
+def _symbol(symbol: Symbol, vector: bool) -> str:
+    letter = _run(symbol.letter, upright=False)
+    if vector:
+        letter = _bar(letter, "top")
+    base = f"<m:e>{letter}</m:e>"
+    below = f"<m:sub>{_run(symbol.below)}</m:sub>" if symbol.below else ""
+    above = f"<m:sup>{_run(symbol.above, upright=False)}</m:sup>" if symbol.above else ""
+    if below and above:
+        return f"<m:sSubSup>{base}{below}{above}</m:sSubSup>"
+    if below:
+        return f"<m:sSub>{base}{below}</m:sSub>"
+    return f"<m:sSup>{base}{above}</m:sSup>" if above else letter
+
+
+def _bar(inside: str, place: str) -> str:
+    return f'<m:bar><m:barPr><m:pos m:val="{place}"/></m:barPr><m:e>{inside}</m:e></m:bar>'
+
+
+def _run(text: str, *, upright: bool = True) -> str:
+    style = '<m:rPr><m:sty m:val="p"/></m:rPr>' if upright else ""
+    return f'<m:r>{style}{FONT}<m:t xml:space="preserve">{data(text)}</m:t></m:r>'
