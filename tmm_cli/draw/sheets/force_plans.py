@@ -15,7 +15,7 @@ from tmm_cli.draw.paper.script import Words, wrapped
 from tmm_cli.draw.paper.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.equations import figure
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.record import NamedVector, extent
 from tmm_cli.tolerances import NO_FORCE

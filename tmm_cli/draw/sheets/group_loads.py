@@ -13,7 +13,7 @@ from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import along_guide, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position, measured
 from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.moments import LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import extent as extent_of

@@ -15,7 +15,7 @@ from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.lever import POLE, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.breaking import chain
 from tmm_cli.note.expression import Expression, Leaf, Product, Quotient, Substitution, Sum, letters
 from tmm_cli.note.math import Letter, Node, Number, row

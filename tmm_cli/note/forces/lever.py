@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Found, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Expression, Function, Leaf, Product, Quotient, Substitution, Sum

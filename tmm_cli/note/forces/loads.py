@@ -7,9 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.springs import twisted
+from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
 from tmm_cli.note.blocks import Block, Found, Line, Rows, line, said
 from tmm_cli.note.context import Subject

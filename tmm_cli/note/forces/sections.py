@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reaction
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Found, Heading, Items, Line, filled, said
 from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, polygon, value, vector_sum

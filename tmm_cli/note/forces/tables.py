@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Line, Rows, filled, line, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces.words import angle, shown

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.draw.sheets.mechanism import place_of_driver
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Inline, Line
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import FIGURES, fixed
