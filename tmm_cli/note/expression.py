@@ -92,7 +92,8 @@ class Substitution:
     """A quantity found: name = letters = numbers = result with its unit.
 
     result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
-    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only.
+    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only. whole: a
+    number that is counted.
     """
 
     name: Symbol
@@ -100,6 +101,7 @@ class Substitution:
     result: float
     unit: str = ""
     angle: bool = False
+    whole: bool = False
 
     def value(self, figures: int) -> float:
         """Of the expression with numbers of so many figures put in, in the unit of the result."""
@@ -115,6 +117,8 @@ class Substitution:
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
         shown = 0.0 if abs(result) <= NOTHING * terms else result
+        if self.whole and self.value(MOST_FIGURES) == result:
+            return MOST_FIGURES, str(round(result))
         for own in range(FIGURES, 0, -1):
             text = fixed(shown, own, terms)
             unit = last_digit(text)

@@ -9,7 +9,7 @@ from typing import TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
@@ -22,6 +22,7 @@ from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.record import Problem, TitleTexts
+from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
@@ -64,8 +65,6 @@ def validated(model: type[Model], tree: Tree) -> Model:
     try:
         return model.model_validate(tree.data)
     except ValidationError as error:
-        from tmm_cli.problem.shape_errors import shape_error  # only a bad file needs its words
-
         raise shape_error(error, tree, model) from None
 
 

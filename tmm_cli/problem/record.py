@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Literal
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.structure.spatial import SpatialChain
 
 if TYPE_CHECKING:
-    from tmm_cli.structure.spatial import SpatialChain
     from tmm_cli.synthesis.record import Outcome
 
 

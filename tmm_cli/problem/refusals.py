@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 from tmm_cli.errors import (
     AmbiguousSketchError,
@@ -19,14 +18,12 @@ from tmm_cli.errors import (
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
-    _,
 )
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, LENGTH
-
-if TYPE_CHECKING:
-    from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.results.as_json import sections
+from tmm_cli.results.digits import AccuracyReport
 from tmm_cli.results.files import Staged, folder_of
 from tmm_cli.results.reports import walk
 from tmm_cli.results.text import csv_text, json_text
-
-if TYPE_CHECKING:  # a structure alone has no digits, and does not wait for what finds them
-    from tmm_cli.results.digits import AccuracyReport
-
 
 NAMED = 6  # positions that stand in the name of a folder; of more of them the first and the last
 
