@@ -24,6 +24,7 @@ TOP = {
     "vectors",
     "roots",
     "errors",
+    "language",
     "tolerances",
     "quantities",
 }

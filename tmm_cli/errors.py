@@ -1,4 +1,4 @@
-"""What a stage may refuse, and the mark of sentences for people.
+"""What a stage may refuse.
 
 A stage says what is wrong in numbers and names; the words are put where files are known.
 """
@@ -6,14 +6,10 @@ A stage says what is wrong in numbers and names; the words are put where files a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from gettext import NullTranslations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tmm_cli.structure.assur import Group, Structure
-
-# Sentences are marked for gettext. There are no catalogues yet; gettext() would look for them on the disk every time.
-_ = NullTranslations().gettext
 
 
 class LinkageError(Exception):

@@ -14,7 +14,7 @@ import typer
 from tmm_cli import __version__
 from tmm_cli.cli.commands import add_commands
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 COMMANDS = {
     "run": "Compute a problem whole; write tables, drawings, result.json.",

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import Progress, track
 
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import folder_name
 

@@ -12,8 +12,8 @@ from typing import TypeVar
 
 from tmm_cli.cli.common import bars
 from tmm_cli.draw.formats import here
-from tmm_cli.errors import _
 from tmm_cli.grading.workers import begin
+from tmm_cli.language import _
 
 FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
 FEW = 2 if FORKS else 4  # jobs that are done before other processes have started

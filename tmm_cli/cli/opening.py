@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
 from tmm_cli.problem.errors import ProblemError

@@ -11,7 +11,7 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, introduce
 from tmm_cli.cli.talk import CHECK_FAILED, OK, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.library import count, problem_of, redrive, solve, structure_of
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.build_chain import build_chain

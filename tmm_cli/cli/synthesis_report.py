@@ -9,7 +9,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.opening import introduce
 from tmm_cli.cli.talk import CHECK_FAILED, OK, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file

@@ -99,15 +99,20 @@ class Subject:
             return {}
         draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
         if (draw, k) not in self._drawings:
-            with within(Space(longest, (WIDTH, HEIGHT))):
+            with within(Space(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
                 self._drawings[draw, k] = dict(draw(subject))
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
-    def figures(self, name: str, sentence: str, caption: str, k: int | None = None) -> Iterable[Block]:
-        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}." """
+    def figures(self, name: str, sentence: str, caption: str, k: int | None = None, only: str = "") -> Iterable[Block]:
+        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
+
+        only: those of this stem, and what is continued of it.
+        """
         for stem, drawing in self.drawings(name, k).items():
+            if only and stem != only and not stem.startswith(f"{only}-sheet-"):
+                continue
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption, drawing, stem)
 

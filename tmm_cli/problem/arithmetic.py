@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.scalars import comma_error
 from tmm_cli.problem.units import PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit

@@ -9,7 +9,7 @@ from typing import TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work

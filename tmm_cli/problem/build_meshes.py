@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 from tmm_cli.problem import schema

@@ -18,8 +18,8 @@ from tmm_cli.errors import (
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
-    _,
 )
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, LENGTH

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine

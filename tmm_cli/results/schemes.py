@@ -7,14 +7,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column, Table
 from tmm_cli.schemes.chains import KinematicChain
 from tmm_cli.schemes.schemes import Scheme
 from tmm_cli.structure.assur import ROMAN
 
-DEGREES = (_("binary"), _("ternary"), _("quaternary"))
+DEGREES = (N_("binary"), N_("ternary"), N_("quaternary"))
 
 Written = Sequence[tuple[Path, bool] | None]
 """The file of each scheme and whether it was solved with its forces; None where no pose could be assembled."""
@@ -45,7 +45,7 @@ def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> 
     """How many chains there are of each assortment of links."""
     counts = _assortments(found)
     most = max((len(assortment) for assortment in counts), default=0)
-    names = [DEGREES[k] if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
+    names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
     columns = [Column(name, [a[k] if k < len(a) else 0 for a in counts], NUMBER) for k, name in enumerate(names)]
     columns.append(Column(_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
     columns.append(Column(_("of them fractionated"), [parts for __, parts in counts.values()], NUMBER))

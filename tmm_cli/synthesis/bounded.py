@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem

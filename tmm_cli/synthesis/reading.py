@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser, UnknownParameterError
 from tmm_cli.problem.build import build as build_linkage

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, Heading, paragraph
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Substitution, Sum

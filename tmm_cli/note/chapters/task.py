@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject

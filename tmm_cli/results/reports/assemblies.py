@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import Assemblies, GroupAssemblies, listed
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table

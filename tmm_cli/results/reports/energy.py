@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.quantities import ENERGY, LENGTH, NUMBER, columns
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
@@ -22,7 +22,7 @@ def tables(results: Results) -> Iterable[Table]:
     table = [
         *driver_columns(results),
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
-        Column(_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
+        Column(N_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
     ]
     note = _(
         "Powers are positive that speed the mechanism up. What is reduced to the driver is by its place, which grows "

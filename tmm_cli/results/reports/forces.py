@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.quantities import FORCE, LOAD, MOMENT, REACTION, columns
 from tmm_cli.results.reports.cycle import driver_columns, signs

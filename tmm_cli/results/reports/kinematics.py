@@ -10,8 +10,8 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links as chosen_links
 from tmm_cli.analysis.selection import moving_centres, moving_points
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Turning
+from tmm_cli.language import _
 from tmm_cli.quantities import LINK, POINT, SLIDE, columns
 from tmm_cli.results.reports.cycle import signs
 from tmm_cli.results.reports.long import long_table
@@ -44,7 +44,7 @@ def tables(results: Results) -> Iterable[Table]:
 
 def _with_turns(table: Table) -> Table:
     """With angular speeds in turns a minute beside them, as speeds of wheels are given."""
-    k = next(k for k, column in enumerate(table.columns) if column.header == _("omega"))
+    k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
     turns = replace(table.columns[k], header=_("n"), unit="rpm")
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 

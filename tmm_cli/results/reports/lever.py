@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.lever import Item
+from tmm_cli.language import _
 from tmm_cli.quantities import LEVER_COUPLE, LEVER_FORCE, LEVER_MOMENT, NamedValues, columns
 from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Table

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.quantities import ANGLE, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.tolerances import NO_PRESSURE

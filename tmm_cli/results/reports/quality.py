@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.strokes import OutputCurve, Strokes, Travel
+from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
@@ -94,5 +94,5 @@ def _mixed(rows: list[Row], results: Results) -> tuple[Column, ...]:
     return (
         Column(_("what"), [name for name, __, __ in rows]),
         Column(_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
-        Column(_("unit"), [units.symbol(dim) for __, __, dim in rows]),
+        Column(N_("unit"), [units.symbol(dim) for __, __, dim in rows]),
     )

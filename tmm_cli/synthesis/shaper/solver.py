@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.mean_ratio import theta_of
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
@@ -24,9 +24,9 @@ from tmm_cli.tolerances import DEAD_SWING
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "stroke": ("length", _("stroke H of the ram")), "k": ("number", _("k")), "frame": ("length", _("frame OC")),
-    "frame_ratio": ("number", _("OC/CD")), "crank": ("length", _("crank OA")), "rod": ("length", _("rod DE")),
-    "rod_ratio": ("number", _("DE/CD")), "pressure": ("angle", _("largest pressure angle of the ram")),
+    "stroke": ("length", N_("stroke H of the ram")), "k": ("number", N_("k")), "frame": ("length", N_("frame OC")),
+    "frame_ratio": ("number", N_("OC/CD")), "crank": ("length", N_("crank OA")), "rod": ("length", N_("rod DE")),
+    "rod_ratio": ("number", N_("DE/CD")), "pressure": ("angle", N_("largest pressure angle of the ram")),
 }  # fmt: skip
 FRAMES: Final = {"frame": "OC", "frame_ratio": "frame_ratio", "crank": "OA"}  # and their keys in the block
 RODS: Final = {"rod": "DE", "rod_ratio": "rod_ratio", "pressure": "pressure"}
@@ -103,21 +103,21 @@ def solve(task: Task) -> Outcome:
     f = find(task)
     kind, text = QUANTITIES["pressure"]
     found = (
-        Value("OA", f.crank, "length", _("crank OA")),
-        Value("OC", f.frame, "length", _("frame OC, C below O")),
-        Value("CD", f.lever, "length", _("slotted lever CD")),
-        Value("DE", f.rod, "length", _("rod DE")),
-        Value("y", f.level, "length", _("guide of the ram above O, y")),
-        Value("", f.theta, "angle", _("theta = D1CD2")),
+        Value("OA", f.crank, "length", N_("crank OA")),
+        Value("OC", f.frame, "length", N_("frame OC, C below O")),
+        Value("CD", f.lever, "length", N_("slotted lever CD")),
+        Value("DE", f.rod, "length", N_("rod DE")),
+        Value("y", f.level, "length", N_("guide of the ram above O, y")),
+        Value("", f.theta, "angle", N_("theta = D1CD2")),
         *((Value("", f.pressure, kind, text),) if task.pressure is None else ()),
-        Value("", f.lever / (1 + np.sin(f.theta / 2)), "length", _("longest OC that leaves the stone on CD")),
+        Value("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
     )
     demands = (
-        Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(_("stroke H of the ram"), float(task.stroke), "length", stroke),
-        Demand(_("k"), float(task.k), "number", ratio),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(N_("stroke H of the ram"), float(task.stroke), "length", stroke),
+        Demand(N_("k"), float(task.k), "number", ratio),
         Demand(text, float(f.pressure), kind, pressure, task.pressure is not None, of="pressure"),
     )
-    source = _("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
+    source = N_("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
                "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
     return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")
