@@ -52,6 +52,7 @@ MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
 IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "door": "the whole library, when one of its names is asked for",
     "__main__": "the commands: stopping while they load ends without a traceback",
+    "language": "gettext, for other languages than English",
     "library": "synthesis, for files with a task; all assemblies, for --assemblies",
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
