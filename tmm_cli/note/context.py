@@ -93,7 +93,7 @@ class Subject:
         """The same of figures that are there already."""
         return figures(text, self.language)
 
-    def drawings(self, name: str, k: int | None = None) -> Mapping[str, Drawing]:
+    def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
         if not self.drawn:
             return {}
