@@ -267,4 +267,4 @@ def result_node(text: str, unit: str, say: Callable[[str], str] = str) -> paper.
     """A result as it stands at the end of its formula, with its unit."""
     digits = text[1:] if text.startswith("-") else text
     shown = paper.row("−", _figures(digits, say)) if text.startswith("-") else _figures(digits, say)
-    return paper.row(shown, paper.Words(f" {unit}" if unit not in ("", "°") else unit))
+    return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
