@@ -1,18 +1,33 @@
 """Steady running of a machine that is given by its reduced inertia and moment, against sums and equations of motion."""
 
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
+from tmm_cli import load, solve
+from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.analysis.running import reduced_machine, steady_running
 from tmm_cli.dynamics.curves import fitted
 from tmm_cli.dynamics.motion import StandstillError, with_motor
 from tmm_cli.dynamics.motors import Constant, Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
 from tmm_cli.dynamics.steady import NoFlywheelError, SteadyTask, fluctuation, steady
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import react
 
+PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
+
+
+@cache
+def solved(name):
+    return solve(load(PROBLEMS / f"{name}.yaml"))
 
 
 def machine(load=-100.0, swing=20.0, ripple=0.5, until=np.pi):
@@ -140,3 +155,34 @@ def test_ways_of_a_course_are_near_to_the_exact_one():
     found = steady(machine(), SteadyTask(10.0, 1 / 30))
     assert found.wittenbauer == pytest.approx(found.law.flywheel, rel=1e-3)  # w^2 (1 + delta) for w^2 (1 + delta/2)^2
     assert found.mertsalov == pytest.approx(found.law.flywheel, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "name", ["shaper", "engine-four", "press-class-iii", "course-3", "six-bar", "planetary-dwell-press"]
+)
+def test_a_mechanism_with_its_flywheel_keeps_the_energy_of_the_cycle(name):
+    results = solved(name)
+    found = steady_running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30))
+    assert found.delta == pytest.approx(1 / 30, rel=1e-10)
+    gone = found.law.energy(np.array([0.0, found.machine.length]))
+    assert gone[1] - gone[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(found.law.energy.coefficients[0])))
+
+
+def test_a_constant_force_on_a_stroke_works_its_length():
+    results = solved("shaper")
+    machine = reduced_machine(results.mechanism, results.start)
+    assert machine.work_of_cycle == pytest.approx(-1500 * results.strokes.travel, rel=1e-12)
+
+
+def test_powers_balance_in_every_position_of_the_law_of_motion():
+    """Balancing moment at omega, epsilon of the law: that of the driver less what speeds the flywheel up."""
+    results = solved("shaper")
+    found = steady_running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30))
+    x = np.linspace(0.1, 6.2, 37)
+    law, sense = found.law, results.linkage.driver.sense
+    q = results.start + sense * x
+    motion = at_positions(results, q)
+    motion = replace(motion, rate=sense * law.speed(x), acceleration=sense * law.acceleration(x))
+    loads = applied(motion, results.strokes)
+    balance = react(motion, results.structure, loads).balance.moment
+    assert sense * balance == pytest.approx(found.moment - law.flywheel * law.acceleration(x), rel=1e-10, abs=1e-9)
