@@ -247,13 +247,12 @@ def plain(value: float, figures: int) -> str:
 
 
 def fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """A result with so many figures, its zeros at the end kept: they are true. terms: what a zero is the sum of."""
+    """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
     power = math.floor(math.log10(abs(rounded(value, figures))))
     if -4 <= power < 7:
-        decimals = figures - 1 - power
-        return f"{value:.{decimals}f}" if decimals >= 0 else f"{round(value, decimals):.0f}"
+        return f"{value:.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
 
