@@ -48,7 +48,7 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
-    "group-loads": (group_loads, 110), "forces": (forces, 110), "lever": (lever, 120),
+    "group-loads": (group_loads, 90), "forces": (forces, 100), "lever": (lever, 110),
 }  # fmt: skip
 
 

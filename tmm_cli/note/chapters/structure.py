@@ -126,7 +126,7 @@ def _apart(subject: Subject) -> Iterable[Block]:
         if len(drawn) == 1:
             sentence = _("The primary mechanism is shown in figure {first}.")
         yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
-    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=True):
+    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
         yield Figure(text.format(title=part.title), drawing, stem)
 
