@@ -270,6 +270,6 @@ def test_a_pdf_has_a_page_for_every_sheet():
     assert [f"Sheet {number}" in page.extract_text() for number, page in enumerate(pages[:1])] == [True]
 
 
-def test_a_drawing_that_nothing_makes_larger_ends_the_layout():
-    pages = drawn("cylinder")
-    assert all(sheet.pictures for sheet in pages.values())
+@pytest.mark.parametrize(("name", "paper"), [("cylinder", "A1"), ("hanger", "A3")])
+def test_drawings_that_nothing_makes_larger_end_the_layout(name, paper):
+    assert all(sheet.pictures for sheet in drawn(name, paper).values())
