@@ -12,6 +12,8 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME
 
 DIGITS = 60
@@ -200,9 +202,6 @@ class Multibody:
 
     def _sketched(self):
         """Where the sketch was understood to show the links, angles within half a turn but for drivers'."""
-        from tmm_cli.groups.sequence import DriverMotion
-        from tmm_cli.kinematics.motion import move
-
         law = DriverMotion(self.it.sketch.at, 1.0, 0.0, 1)
         motion = move(self.it, self.motion.kernels, np.array([self.it.sketch.at]), law)
         X = np.zeros(self.size)

@@ -13,6 +13,7 @@ import pytest
 from test_commands import tmm
 from write_bench_references import BANK, DATA, answers, solved
 
+from tmm_cli.bench import rivals
 from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure, places
 from tmm_cli.bench.chart_accuracy import chart
 from tmm_cli.bench.methods import board
@@ -199,8 +200,6 @@ def test_the_chart_has_a_panel_for_every_quantity_and_every_family_in_its_legend
 
 
 def test_rivals_are_measured_only_where_they_are_installed(monkeypatch):
-    from tmm_cli.bench import rivals
-
     monkeypatch.setattr(rivals, "RIVALS", ("no_such_program",))
     assert rivals.installed() == ((), ("no_such_program",))
 

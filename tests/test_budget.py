@@ -3,6 +3,9 @@
 import pytest
 from test_commands import ROOT, tmm
 
+from tmm_cli import load
+from tmm_cli.problem.budget import refuse_options
+
 SHAPER = (ROOT / "problems" / "shaper.yaml").read_text(encoding="utf-8")
 LOAD = "F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}"
 
@@ -69,9 +72,6 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
 
 def test_every_problem_of_the_bank_may_be_drawn_in_twelve_positions_and_judged():
     """And none is near the budget: a course project never meets it."""
-    from tmm_cli import load
-    from tmm_cli.problem.budget import refuse_options
-
     for name in ("shaper", "press-class-iii", "engine-four", "positioner", "excavator"):
         linkage = load(str(ROOT / "problems" / f"{name}.yaml")).linkage
         refuse_options(linkage, 12, digits=True, detail=12)

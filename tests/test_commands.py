@@ -25,6 +25,7 @@ from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.compare import Difference, difference_table
+from tmm_cli.results.reports import tables
 from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
 
 ROOT = Path(__file__).parent.parent
@@ -339,8 +340,6 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
 
 
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
-    from tmm_cli.results.reports import tables
-
     results = solve(load(str(SHAPER)))
     for width in (60, 80, 120, 300):
         console = Console(width=width, record=True, file=io.StringIO(), highlight=False)

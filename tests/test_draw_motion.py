@@ -107,4 +107,4 @@ def test_a_stone_on_the_frame_s_pivot_is_measured_to_the_pole():
 def test_every_letter_of_a_segment_stands_on_the_plan():
     here, (__, (sort, sheet)) = plans("shaper")
     lettered = {letter for text in sheet.texts() for letter in text.split(", ")}
-    assert {*sort.plan(here.motion, here.k).corners} <= lettered and "d, n₂" in sheet.texts()
+    assert {*sort.plan(here.motion, here.k).corners} <= lettered and "d, n₃" in sheet.texts()

@@ -12,6 +12,7 @@ from test_commands import ROOT
 
 from tmm_cli import load, solve
 from tmm_cli.draw.paper.drawing import Area, Line, Text
+from tmm_cli.draw.paper.fonts import corners
 from tmm_cli.draw.paper.ruler import TICK, spread
 from tmm_cli.draw.sheets.mechanism import detailed, position
 from tmm_cli.draw.sheets.positions import all_positions, ratio
@@ -19,6 +20,7 @@ from tmm_cli.draw.sheets.tracks import extreme_states, extremes, output_track
 from tmm_cli.plans.record import ground_of
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
+from tmm_cli.quantities import LENGTH
 
 
 def sheet_of(name):
@@ -51,16 +53,10 @@ def test_each_position_is_numbered_at_the_crank_and_at_the_output(name):
 def test_the_dimension_of_the_stroke_measures_it(name):
     results, sheet = sheet_of(name)
     stroke = results.strokes.travel
-    assert f"H = {results.problem.units.from_si(stroke, dimension_of(results)):.4g} mm" in sheet.texts()
+    assert f"H = {results.problem.units.from_si(stroke, LENGTH):.4g} mm" in sheet.texts()
     heads = [max(mark.corners, key=lambda z, m=mark: abs(z - sum(m.corners) / 3)) for mark in dimensions(sheet, Area)]
     assert len(heads) == 2
     assert abs(heads[1] - heads[0]) * scale(sheet) == pytest.approx(stroke, rel=1e-9)
-
-
-def dimension_of(results):
-    from tmm_cli.quantities import LENGTH
-
-    return LENGTH
 
 
 def dimensions(sheet, kind):
@@ -155,8 +151,6 @@ def test_numbers_that_would_touch_stand_apart_and_others_stay(pairs):
 
 @pytest.mark.parametrize("name", ["shaper", "two-strokes", "press-class-iii", "course-3"])
 def test_numbers_beside_the_way_do_not_cover_one_another(name):
-    from tmm_cli.draw.paper.fonts import corners
-
     __, sheet = sheet_of(name)
     texts = [m for m in sheet.marks if isinstance(m, Text) and re.fullmatch(r"[\dk′, ]+", m.text) and m.size < 3]
     boxes = [(corners(m)[0], corners(m)[2]) for m in texts]

@@ -24,6 +24,7 @@ TOP = {
     "vectors",
     "roots",
     "errors",
+    "language",
     "tolerances",
     "quantities",
 }
@@ -45,9 +46,34 @@ READS_A_TASK = (
     "synthesis.refusals",
     "synthesis.*.block*",
 )
-PROBLEM_LEANS_ON = ("structure", "pairs.cam_law")  # names of pairs, and the law that a cam has among its numbers
+PROBLEM_LEANS_ON = (  # names of pairs, and what stands among the numbers of a file: a cam's law, motors, flywheels
+    "structure", "pairs.cam_law", "dynamics.task", "dynamics.motors", "dynamics.sizes",
+)  # fmt: skip
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
 MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
+IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
+    "door": "the whole library, when one of its names is asked for",
+    "__main__": "the commands: stopping while they load ends without a traceback",
+    "language": "gettext, for other languages than English",
+    "library": "synthesis, for files with a task; all assemblies, for --assemblies",
+    "analysis.pipeline": "the law of motion, for files that ask for it",
+    "problem.build": "the law of motion, for files that ask for it",
+    "assembly.choose": "the search, for groups without a closed form",
+    "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
+    "cli.opening": "grading, for variants of a table",
+    "cli.kinematics": "drawing",
+    "cli.run": "drawing",
+    "cli.structure": "drawing",
+    "cli.synthesis_report": "drawing",
+    "grading.exports.group": "drawing",
+    "note.formats": "an extra: python-docx",
+    "draw.formats.pdf": "matplotlib's PDF",
+    "draw.formats.dxf": "an extra: ezdxf",
+    "grading.cells": "an extra: python-calamine",
+    "grading.tables": "an extra: xlsxwriter",
+    "grading.exports.xlsx": "an extra: xlsxwriter",
+    "grading.submissions.template": "an extra: xlsxwriter",
+}
 
 
 def modules() -> dict[str, Path]:
@@ -140,6 +166,16 @@ def test_what_computes_knows_nothing_of_files_and_screens():
         if other.partition(".")[0] in FILES_AND_SCREENS and not any(fnmatch(name, r) for r in READS_A_TASK)
     ]  # fmt: skip
     assert not talking
+
+
+def test_imports_stand_at_the_top_except_where_most_runs_do_without():
+    late = {
+        name for name, path in MODULES.items() for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and any(statements(node))
+    }  # fmt: skip
+    unnamed = {name for name in late if not any(fnmatch(name, known) for known in IMPORT_WHEN_CALLED)}
+    idle = {known for known in IMPORT_WHEN_CALLED if not any(fnmatch(name, known) for name in late)}
+    assert not unnamed and not idle
 
 
 def test_scipy_is_for_optimisation_and_integration_alone():

@@ -7,6 +7,7 @@ import io
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,13 +15,16 @@ from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
 from test_commands import problem as read
 
 from tmm_cli import load, solve
+from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
 from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
 from tmm_cli.kinematics.motion import move
-from tmm_cli.library import structure_of
+from tmm_cli.library import count, problem_of, structure_of
+from tmm_cli.problem.build_chain import build_chain
+from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
@@ -65,10 +69,6 @@ def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
 
 
 def test_the_structure_of_a_chain_in_space_builds_no_arrays():
-    from tmm_cli.library import count
-    from tmm_cli.problem.build_chain import build_chain
-    from tmm_cli.problem.reader import read_file
-
     problem = build_chain(read_file(str(ROOT / "problems" / "spatial-six-bar.yaml")))
     assert into_numpy(lambda: count(problem)) == []
 
@@ -196,13 +196,20 @@ def test_every_group_with_a_closed_form_is_solved_by_it():
 def test_closed_form_and_newton_give_the_same_places():
     results = solve(load(str(ROOT / "problems" / "six-bar.yaml")), "kinematics")
     with no_closed_form():
-        from tmm_cli.assembly.choose import assemble
-
         iterated = assemble(results.linkage, results.structure)
     motion = move(results.linkage, iterated, results.motion.q, DriverMotion(0.0, 1.0, 0.0, 1), 0)
     assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
     for link, pose in motion.poses.items():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
+
+
+def test_a_group_that_is_equally_far_from_dead_everywhere_is_not_searched_for_dead_positions():
+    """Its margin has hundreds of least values, all of them rounding."""
+    text = (ROOT / "problems" / "crossed-slots.yaml").read_text(encoding="utf-8").replace("L: [0, 220]", "L: [0, 440]")
+    results = solve(problem_of(read_text(text, "x.yaml")))
+    with counted() as count:
+        assert results.dead == ()
+    assert count.all < 15_000
 
 
 def test_what_shows_tables_imports_no_drawing():
@@ -325,8 +332,6 @@ def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):
 
 
 def test_a_diagram_of_many_positions_marks_no_more_than_can_be_told_apart():
-    from dataclasses import replace
-
     problem = load(str(SHAPER))
     many = replace(problem, request=replace(problem.request, count=3600, detail=()))
     drawn = drawings(solve(many, "kinematics"))

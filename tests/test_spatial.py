@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 import random_linkages
-from test_commands import PROBLEMS, ROOT, moved, problem, tmm
+from test_commands import PROBLEMS, ROOT, described, moved, problem, tmm
 
 from tmm_cli import load
 from tmm_cli.library import count
@@ -594,8 +594,6 @@ def test_run_writes_the_structure_of_a_chain_and_check_compares_it(tmp_path):
 
 
 def test_results_of_chains_and_of_space_follow_the_schema():
-    from test_commands import described
-
     schema = json.loads(tmm("schema", "--result").stdout)
     for name in ("swashplate", "manipulator-open", "six-bar"):
         result = json.loads(tmm("structure", f"problems/{name}.yaml", "--json").stdout)

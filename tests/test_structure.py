@@ -13,6 +13,7 @@ from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_places
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
+from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.assur import analyse
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
@@ -193,8 +194,6 @@ def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
 
 def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_wrong_way_of_a_load():
     """At the end of a stroke both balancing moments may be nothing but rounding."""
-    from tmm_cli.results.warnings import warnings
-
     for file in PROBLEMS[1::4]:
         alone = solve(problem(file), positions=[0])
         assert alone.lever_holds, file.stem
@@ -202,8 +201,6 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
 
 
 def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
-    from tmm_cli.results.warnings import warnings
-
     text = SHAPER.read_text(encoding="utf-8").replace(
         "force: [1500, 0], when: working stroke",
         "force: {angle: 0, against: stroke, table: [[0, 100], [150, 300]]}, when: working stroke",

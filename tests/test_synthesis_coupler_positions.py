@@ -273,7 +273,7 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
 REFUSED = {
     f"positions: [{ON_CIRCLE}], AB_turn: 31":
         "synthesis.AB_turn: the coupler does not turn: both links turn as its places do on their circle\n"
-        "  found:   31\n  allowed: 30 deg",
+        "  found:   31\n  allowed: the nearest is AB_turn: 30 deg",
     "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]":
         "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long",
     f"positions: {FOUR}, AB_turn: 15":
@@ -288,7 +288,7 @@ REFUSED = {
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
         "  found:   [0, 0]\n  allowed: the nearest is B[1]: 1 mm",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
-        "synthesis: these keys do not determine AB with 3 positions\n  found:   AB, B\n  allowed: B; or A",
+        "synthesis: these keys do not determine AB with 3 positions\n  found:   B, AB\n  allowed: B; or A",
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
@@ -374,6 +374,6 @@ def test_free_pivots_lie_in_the_box_and_the_best_of_it_is_no_better_than_the_bes
 def test_a_box_without_a_pivot_is_refused():
     with pytest.raises(ProblemError) as caught:
         problem(f"positions: {FOUR}, AB_turn: 10, pivots_within: [[210, 290], [250, 240]]")
-    assert caught.value.allowed == "another box, or other positions"
+    assert "no two pivots of links, frame and coupler of sensible length have room" in caught.value.message
     with pytest.raises(ProblemError, match="a box is for pivots that are free"):
         problem(f"positions: {FOUR}, pivots_within: [[0, 0], [9, 9]], AB_turn: 10, DC_turn: 5")

@@ -358,17 +358,17 @@ REFUSED = {
         "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2":
         "synthesis.choose: there is no solution of this number, or it has a defect\n"
-        "  found:   2\n  allowed: 1; or choose: transmission",
+        "  found:   2\n  allowed: 1",
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2":
         "synthesis.choose: there is no solution of this number, or it has a defect\n"
-        "  found:   2\n  allowed: 1; or choose: transmission",
+        "  found:   2\n  allowed: 1",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
         "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100":
         "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, "
-        "or as the input locks on the way\n  found:   a list of 6\n  allowed: other angles, or phi0 and psi0",
+        "or as the input locks on the way\n  found:   a list of 6",
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5":
         "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0",
     "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80":

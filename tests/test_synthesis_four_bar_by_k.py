@@ -297,7 +297,7 @@ REFUSED = [
     (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
      "95", "the nearest is "),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
-     "70", "half of C1C2; or another choice of A"),
+     "70", "another task: no other value of it was found to help"),
     (", l2: 60", {}, ".l2: no pivot of the admissible arcs gives such a coupler",
      "60", "the nearest is "),
     (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs gives such a coupler",

@@ -100,11 +100,10 @@ def test_the_longest_of_many_strokes_may_lie_between_neither_of_the_extremes():
 
 
 FREE = "n2: [60 rpm, 180 rpm]"
-OTHER = "allowed: another parameter; or over: [from, to]"
 MESSAGES = {
-    "any ratio": (FREE, "after how many turns all comes round again rests on this parameter", OTHER),
+    "any ratio": (FREE, "after how many turns all comes round again rests on this parameter"),
     "some ratios": (  # over two turns, three and one
-        "n2: {among: [90 rpm, 80 rpm, 120 rpm]}", "after how many turns all comes round again rests on this", OTHER,
+        "n2: {among: [90 rpm, 80 rpm, 120 rpm]}", "after how many turns all comes round again rests on this",
     ),
     "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: from, to and step are wanted, or among alone"),
     "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "from, to and step are wanted, or among alone"),
@@ -167,7 +166,7 @@ def refusal_of(text):
 
 @pytest.mark.parametrize("limit, key, value", [
     ("equal: 131", "equal", "132 mm"), ("least: 103, most: 107", "most", "108.001 mm"),
-    ("least: 101, most: 107", "least", "99.999 mm"),
+    ("least: 101, most: 107", "least", "100 mm"),
 ])  # fmt: skip
 def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key, value):
     """Twice the crank, which is 50, 54, 58, 62, 66 or 70 mm long."""
@@ -176,7 +175,7 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
         f"vary: {{r: {{from: 50, to: 70, step: 4}}}}\n  objective: length\n  constraints: [{{of: stroke, {limit}}}]",
     )  # fmt: skip
     said = refusal_of(text)
-    assert f"constraints[0].{key}:" in said and f"the nearest found is {value}" in said
+    assert f"the nearest is constraints[0].{key}: {value}" in said
     old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
     found, _ = best_of(text.replace(old, f"{key}: {value}"))
     assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
@@ -193,11 +192,6 @@ def test_numbers_that_the_file_refuses_are_told(varies, said):
         f"vary: {{{varies}}}\n  objective: length",
     )  # fmt: skip
     assert said in refusal_of(text)
-
-
-def test_steps_are_told_as_they_are_written():
-    text = text_of("five-bar", FIVE_BAR, "vary: {n2: {from: 61, to: 62, step: 0.3}, l: [180, 200]}\n  objective: box")
-    assert "found:   '{from: 61, to: 62, step: 0.3}'" in refusal_of(text)
 
 
 @pytest.mark.parametrize("case", MESSAGES)
@@ -247,4 +241,3 @@ def test_where_steps_hold_no_mechanism_that_is_said():
     edits, task = (("r: 60, ", ""), ("l: 220, ", "")), "vary: {{r: {}, l: {}}}\n  objective: moment"
     told = refusal_of(text_of("crank-slider", edits, task.format("{from: 80, to: 90, step: 5}", "{among: [40, 50]}")))
     assert "can go the whole way of its driver" in told or "can be assembled as it is sketched" in told
-    assert "other bounds; " in told

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.errors import UnknownNameError
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import towards
+from tmm_cli.kinematics.motion import Motion, Point
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import BALANCING, LINK, POINT, REACTION, Quantity
-
-if TYPE_CHECKING:
-    from tmm_cli.forces.plan import Reactions
-    from tmm_cli.groups.base import Kernel
-    from tmm_cli.kinematics.motion import Motion, Point
 
 Place = tuple[str, complex]  # a link and a place in its axes, m
 

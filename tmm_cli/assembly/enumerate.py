@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from tmm_cli.groups.state import Drives, Pose, State
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group, Structure
 from tmm_cli.tolerances import CLOSED, DEAD, MEET, SAME_ASSEMBLY
-
-if TYPE_CHECKING:
-    from tmm_cli.groups.newton import Newton
 
 Method = Literal["closed form", "polynomial", "angles", "many starts"]
 

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.accelerations import Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.coriolis import Coriolis
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Poses, Rate, Rates, Wrench
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import Linkage
+from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real, Vector, cross, square
-
-if TYPE_CHECKING:
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.grading.quantities.base import Quantity
-    from tmm_cli.groups.base import Kernel
-    from tmm_cli.kinematics.motion import Motion
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.variants.family import Family
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution, solve
 from tmm_cli.grading.task import Asked
@@ -28,9 +28,6 @@ from tmm_cli.quantities import (
 from tmm_cli.variants.family import Family
 from tmm_cli.variants.stack import changed, numbers
 from tmm_cli.vectors import Real, Vector
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.mistakes.base import Mistake
 
 DRAWN, COMPUTED = 0.005, 0.0005  # how exactly lengths are taken off a drawing (0.5 mm of 100 mm), and computed with
 STEP = 1e-6  # by which lengths are changed to see what hangs on them

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tmm_cli.note.expression import Substitution, letters, numbers, result_node
+from tmm_cli.note.expression import Leaf, Substitution, letters, numbers, result_node
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
 
 LINE = 78.0  # of the text of an A4 page, in widths of a figure
@@ -34,8 +34,9 @@ def formula(found: Substitution, say: Callable[[str], str] = str) -> Node:
     """
     figures, text = found.printed()
     own = found.expression
-    sides = (letters(own), numbers(own, figures, say), result_node(text, found.unit, say))
-    return chain((Letter(found.name), *sides))
+    plain = isinstance(own, Leaf)  # read off: what would be put in is the result
+    put_in = () if plain else (letters(own), numbers(own, figures, say))
+    return chain((Letter(found.name), *put_in, result_node(text, found.unit, say)))
 
 
 def width(node: Node) -> float:

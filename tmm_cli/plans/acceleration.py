@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.plans.record import NamedVector, Plan, Symbol, subscript
-from tmm_cli.plans.velocity import Stone, absolute, ends_of, hinge_points, letters, massive, other_than, stones
+from tmm_cli.plans.vector_equations import About, Along, steps
+from tmm_cli.plans.velocity import Stone, absolute, ends_of, groups_of, letters, massive, other_than, stones
 from tmm_cli.tolerances import NO_VECTOR
 
 POLE = "π"
@@ -20,25 +19,22 @@ Pair = tuple[NamedVector, NamedVector]
 def acceleration_plan(motion: Motion, k: int) -> Plan:
     """Vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2 at position k. Each pair of parts leads from one end to another."""
     linkage = motion.linkage
-    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
     ends = ends_of(linkage, POLE, lambda point: motion.named(point).a[k])
-    names = {letter: point for point, letter in letter_of.items()}
-    pairs: list[Pair] = []
-
-    def parts(link: str, base: str, local: complex, name: str) -> Pair:
-        start = 0j if base in fixed else ends[letter_of[base]]
-        return _turning(motion, k, link, base, local, start, name + base)
-
-    for link in linkage.moving:
-        for base, point in pairwise(told(linkage, link)):
-            if point not in fixed:
-                pairs.append(parts(link, base, linkage.local(link, point), point))
-    for stone in stones(motion, ends, k):
-        carrier = stone.slide.carrier
-        ends[stone.under] = complex(motion.point(carrier, stone.local).a[k])
+    names = {letter: point for point, letter in letters(linkage).items()}
+    found = {stone.slide.name: stone for stone in stones(motion, ends, k)}
+    for stone in found.values():
+        ends[stone.under] = complex(motion.point(stone.slide.carrier, stone.local).a[k])
         names[stone.under] = stone.below
-        pairs += [parts(carrier, base, stone.local, stone.below) for base in told(linkage, carrier)[:1]]
-        pairs.append(_sliding(motion, k, stone, ends[stone.under]))
+    ended = {name: ends[letter] for letter, name in names.items() if letter in ends}
+    local = {stone.below: stone.local for stone in found.values()}
+    pairs: list[Pair] = []
+    for step in steps(linkage, groups_of(motion)):
+        for equation in (*step.equations, *step.after):
+            if isinstance(equation, Along):
+                stone = found[equation.slide.name]
+                pairs.append(_sliding(motion, k, stone, ends[stone.under]))
+            elif isinstance(equation, About) and not equation.idle:
+                pairs.append(_turning(motion, k, equation, local, ended.get(equation.base.name, 0j)))
     for link in massive(linkage):
         letter = other_than(ends, f"s{link}")
         ends[letter], names[letter] = complex(motion.centre(link).a[k]), f"S{link}"
@@ -49,15 +45,14 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
     return Plan((*absolute(ends, POLE, "a", names), *segments), ends, corners)
 
 
-def told(linkage: Linkage, link: str) -> list[str]:
-    """Points of a link from its pivot on the frame on, else from a hinge with another moving link."""
-    return sorted(hinge_points(linkage, link), key=lambda point: point not in linkage.links[FRAME].points)
+def _turning(motion: Motion, k: int, about: About, local: Mapping[str, complex], start: complex) -> Pair:
+    """Normal part (towards the base) and tangential part of a point's acceleration about another of its link.
 
-
-def _turning(motion: Motion, k: int, link: str, base: str, local: complex, start: complex, index: str) -> Pair:
-    """Normal part (towards the base) and tangential part of a point's acceleration about another of its link."""
-    turning = motion.link(link)
-    radius = complex((local - motion.linkage.local(link, base)) * motion.poses[link].z[k])
+    local: of the points under stones, in the axes of their links.
+    """
+    link, index = about.link, about.point.name + about.base.name
+    turning, own = motion.link(link), {**motion.linkage.links[link].points, **local}
+    radius = complex((own[about.point.name] - own[about.base.name]) * motion.poses[link].z[k])
     bend = start - complex(turning.omega[k] ** 2) * radius
     end = bend + 1j * complex(turning.epsilon[k]) * radius
     return (

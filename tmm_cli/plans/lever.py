@@ -55,7 +55,7 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     """
     linkage = motion.linkage
     ends = ends_of(linkage, POLE, lambda point: TURNED * complex(motion.named(point).first[k]))
-    bars = (*absolute(ends, POLE), *relative(linkage, ends))
+    bars = (*absolute(ends, POLE), *relative(motion, ends))
     for link in massive(linkage):
         ends[other_than(ends, f"s{link}")] = TURNED * complex(motion.centre(link).first[k])
     acting: list[Acting] = []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -14,15 +13,8 @@ from tmm_cli.pairs.base import axis
 from tmm_cli.pairs.gear import Gear
 from tmm_cli.pairs.rack import Rack
 from tmm_cli.plans.record import NamedVector, Plan, Symbol
-
-
-def hinge_points(linkage: Linkage, link: str) -> list[str]:
-    """Points of a link that tell its motion: those it shares with others, or all when it shares fewer than two."""
-    points = list(linkage.links[link].points)
-    shared = {h.point for h in linkage.hinges if link in h.links}
-    running = {s.at for s in linkage.slides if s.runner == link}
-    told = [p for p in points if p in shared or linkage.local(link, p) in running]
-    return told if len(told) > 1 else points
+from tmm_cli.plans.vector_equations import found_first, hinge_points
+from tmm_cli.structure.assur import Group
 
 
 def letters(linkage: Linkage) -> dict[str, str]:
@@ -51,16 +43,23 @@ def ends_of(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dic
     return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in linkage.moving_points}
 
 
-def relative(linkage: Linkage, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Vectors ab, bc, ... from end to end along each link: of b about a, of c about b."""
+def relative(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
+    """Vectors ab, ac, ... along each link, from the end of its point that is found first to those of the others."""
+    linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
+    rank = found_first(linkage, groups_of(motion))
     vectors = []
     for link in linkage.moving:
-        told = [p for p in hinge_points(linkage, link) if p not in fixed]
-        for base, point in pairwise(told):
+        base, *others = sorted((p for p in hinge_points(linkage, link) if p not in fixed), key=rank.__getitem__) or [""]
+        for point in others:
             a, b = letter_of[base], letter_of[point]
             vectors.append(NamedVector(a + b, ends[a], ends[b], "relative", Symbol("v", point + base)))
     return vectors
+
+
+def groups_of(motion: Motion) -> list[Group]:
+    """The groups as they were solved."""
+    return [kernel.group for kernel in motion.kernels]
 
 
 def absolute(
@@ -106,7 +105,7 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
     """Vectors pa, ab, ... in m/s at position k."""
     linkage = motion.linkage
     ends = ends_of(linkage, "p", lambda point: motion.named(point).v[k])
-    vectors, names = relative(linkage, ends), {letter: point for point, letter in letters(linkage).items()}
+    vectors, names = relative(motion, ends), {letter: point for point, letter in letters(linkage).items()}
     for stone in stones(motion, ends, k):
         slide, under = stone.slide, stone.under
         ends[under], names[under] = complex(motion.point(slide.carrier, stone.local).v[k]), stone.below

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from tmm_cli.linkage import FRAME
-
-if TYPE_CHECKING:
-    from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.assur import Structure
 
 
 class Joint(Protocol):

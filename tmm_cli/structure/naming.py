@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import FRAME, Linkage
-
-if TYPE_CHECKING:
-    from tmm_cli.structure.assur import Group
+from tmm_cli.structure.assur import Group
 
 
 def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser, UnknownParameterError
 from tmm_cli.problem.build import build as build_linkage
@@ -169,7 +169,7 @@ class TaskFile:
                     )
                 return read(self.block, ValueReader(self.early, self.units), self.tried)
         except Infeasible as error:
-            raise refusal(error, self.block, self.units).at("synthesis") from None
+            raise self._refusal(error) from None
         except OfTheFile as error:
             raise error.error from None
         except UnknownParameterError as error:
@@ -201,11 +201,14 @@ class TaskFile:
             with under("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
                 outcome = sound(solver(self.block.task).solve(task))
         except Infeasible as error:
-            told = self.nearest(error.path) if error.suggestion is None else error.suggestion
-            raise refusal(error, self.block, self.units, told).at("synthesis") from None
+            searched = error.nearest is None and error.search and not self.searches
+            raise self._refusal(error, self.nearest(error.path) if searched else None) from None
         except OfTheFile as error:
             raise error.error from None
         return Synthesised(self.block.task, outcome, self.names)
+
+    def _refusal(self, error: Infeasible, searched: str | None = None) -> ProblemError:
+        return refusal(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
     def nearest(self, at_fault: Path) -> str:
         """The nearest feasible value of one of the numbers at this path, the last of them first, in words."""

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 if TYPE_CHECKING:
     from tmm_cli.linkage import Sketch
     from tmm_cli.synthesis.construction import Construction, Diagram
 
-Shown = tuple[Any, ...]  # of a refusal: value (SI), kind, perhaps exact, or below, above: a limit not allowed itself
 SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
 
@@ -106,19 +105,17 @@ def given(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[Value,
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """A task that no mechanism meets.
 
-    key: which of what was given is at fault, or the way to it inside the block; reason: a text, with `values` in its
-    fields. suggestion: another way, in words; None: the nearest feasible value of what the key gives is searched for.
+    key: which of what was given is at fault, or the way to it inside the block. nearest: its nearest feasible value,
+    where the task knows it: a word, or (value in SI, kind, the side to which it may be rounded: 1, -1, or 0). Else it
+    is searched for, but not where `search` says that this takes as long as the task itself, again and again.
     """
 
     def __init__(
-        self,
-        key: str | tuple[str | int, ...],
-        reason: str,
-        suggestion: str | None = None,
-        values: Mapping[str, Shown] | None = None,
-    ) -> None:
+        self, key: str | tuple[str | int, ...], reason: str, nearest: str | tuple[float, Kind, int] | None = None, *,
+        search: bool = True,
+    ) -> None:  # fmt: skip
         self.path = (key,) if isinstance(key, str) else key
-        self.reason, self.suggestion, self.values = reason, suggestion, dict(values or {})
+        self.reason, self.nearest, self.search = reason, nearest, search and bool(self.path)
         super().__init__(reason)
 
 
@@ -126,7 +123,5 @@ def sound(outcome: Outcome) -> Outcome:
     """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
-            raise Infeasible(
-                (), _("no mechanism was found: it has no {name}"), _("other numbers"), {"name": (value.text, "word")}
-            )
+            raise Infeasible((), _("no mechanism was found: it has no {name}").format(name=value.text))
     return outcome

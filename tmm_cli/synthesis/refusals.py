@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from decimal import ROUND_HALF_EVEN, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
-from pydantic import BaseModel
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.errors import ProblemError, path_text, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, KINDS, NUMBER, Dimension
 from tmm_cli.roots import bisect
-from tmm_cli.synthesis.blocks import Block
-from tmm_cli.synthesis.record import Infeasible, Shown
+from tmm_cli.synthesis.record import Infeasible
 
-STRICT: Final = Decimal("1e-6")  # relative: how far inside a limit that is not allowed itself
 DIGITS: Final = 6
-LOW, HIGH = ("least", "above"), ("most", "below")
 GROWING: Final = np.geomspace(1e-3, 1e4, 40)
 STEPS: Final = np.concatenate([GROWING, -GROWING])  # changes that are tried, over the given value
 SHARES: Final = np.concatenate([np.geomspace(1e-6, 1, 24), -np.geomspace(1e-6, 1, 24)])
@@ -29,17 +25,21 @@ BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
 ALONE: Final = 1e-3
-NONE: Final = _("another task: no other value of it was found to help")
+NONE: Final = N_("another task: no other value of it was found to help")
 
 
-def refusal(error: Infeasible, block: Block, units: UnitSystem, told: str = NONE) -> ProblemError:
-    """The reason, and what could be met: what the room says, else what is told."""
-    if error.suggestion is not None:
-        told = error.suggestion.format(**shown(error.values, units))
-    return ProblemError(
-        error.reason.format(**shown(error.values, units)), path=error.path, found=_found(block, error.path),
-        allowed=told,
-    )  # fmt: skip
+def refusal(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
+    """The reason, and what could be met: what the task knows of it, else what was searched. given: the file's block."""
+    told = error.nearest if isinstance(error.nearest, str) else searched
+    if isinstance(error.nearest, tuple):
+        value, kind, side = error.nearest
+        dimension = KINDS[kind].dimension
+        told = _told(error.path, rounded(units, value, dimension, side), dimension, units)
+    for step in error.path:
+        inside = isinstance(given, list) or (isinstance(given, dict) and step in given)
+        given = given[step] if inside else None
+    found = quote(given) if error.path and given is not None else None
+    return ProblemError(translated(error.reason), path=error.path, found=found, allowed=told)
 
 
 def nearest(
@@ -52,12 +52,16 @@ def nearest(
     for path, (value, want) in given.items():
         found = _nearest(value, want, partial(solved, path))
         if found is not None:
-            number = _rounded(units, found, want, "least" if found > value else "most")
+            number = rounded(units, found, want, 1 if found > value else -1)
             if not solved(path, units.si(number, want)):
                 number = float(units.from_si(found, want))
-            told = f"{number:.15g} {units.symbol(want)}".rstrip()
-            return _("the nearest is {name}: {value}").format(name=path_text(path), value=told)
+            return _told(path, number, want, units)
     return NONE
+
+
+def _told(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
+    value = f"{number:.15g} {units.symbol(want)}".rstrip()
+    return _("the nearest is {name}: {value}").format(name=path_text(path), value=value)
 
 
 def _nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
@@ -78,56 +82,13 @@ def _nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> 
     return None
 
 
-def _found(block: Block, path: Path) -> str | None:
-    """What stands there; of bounds all of them."""
-    given = _at(block, path)
-    if path == ("vary",):
-        return quote(", ".join(f"{name}: {_told(own)}" for name, own in given.items()))
-    if isinstance(given, BaseModel):  # steps or values of one parameter
-        return quote(_told(given))
-    return quote(given) if path else None
-
-
-def _told(own: Any) -> str:
-    """Bounds, or steps, as they are written."""
-    if isinstance(own, list):
-        return f"[{', '.join(map(str, own))}]"
-    given = own.model_dump(by_alias=True, exclude_defaults=True)
-    return f"{{{', '.join(f'{key}: {_told(v) if isinstance(v, list) else v}' for key, v in given.items())}}}"
-
-
-def _at(block: Any, path: Path) -> Any:
-    for step in path:
-        own = isinstance(step, int) or isinstance(block, dict)
-        block = block[step] if own else getattr(block, str(step), getattr(block, f"{step}_", None))
-    return getattr(block, "of", block)  # of a quantity its name
-
-
-def shown(values: Mapping[str, Shown], units: UnitSystem) -> dict[str, str]:
-    """Values of a refusal in the file's units, limits rounded to the allowed side."""
-    return {name: _text(units, *row) for name, row in values.items()}
-
-
-def _text(units: UnitSystem, value: Any, kind: str, side: str = "") -> str:
-    if kind == "word":
-        return str(value)
-    dimension = KINDS[kind].dimension
-    number = float(units.from_si(float(value), dimension))
-    if side in (*LOW, *HIGH):
-        number = _rounded(units, float(value), dimension, side)
-    return f"{number:.{15 if side == 'exact' else DIGITS}g} {units.symbol(dimension)}".rstrip()
-
-
-def _rounded(units: UnitSystem, value: float, dimension: Dimension, side: str) -> float:
-    """A limit in the file's unit with so many digits as are printed, nothing beyond it."""
+def rounded(units: UnitSystem, value: float, dimension: Dimension, side: int) -> float:
+    """A limit (SI) in the file's unit with as many digits as are printed, to its larger (1) or smaller (-1) side."""
     exact = Decimal(float(units.from_si(value, dimension)))
-    if not exact.is_finite() or exact == 0:
+    if side == 0 or not exact.is_finite() or exact == 0:
         return float(exact)
     step = Decimal(1).scaleb(exact.adjusted() - DIGITS + 1)
-    number, sign = exact.quantize(step, ROUND_HALF_EVEN), 1 if side in LOW else -1
-    strict = side in ("above", "below")
-    while sign * (units.si(float(number), dimension) - value) < 0 or (
-        strict and sign * (number - exact) < STRICT * abs(exact)
-    ):
-        number += sign * step
+    number = exact.quantize(step, ROUND_CEILING if side > 0 else ROUND_FLOOR)
+    while side * (units.si(float(number), dimension) - value) < 0:
+        number += side * step
     return float(number)

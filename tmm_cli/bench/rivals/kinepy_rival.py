@@ -8,6 +8,7 @@ from contextlib import redirect_stdout
 from itertools import product
 from typing import Any
 
+import kinepy
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
@@ -39,8 +40,6 @@ class _Model:
     """The linkage in kinepy's terms, SI."""
 
     def __init__(self, case: Case) -> None:
-        import kinepy
-
         driver = case.linkage.driver
         if driver.kind != "turn" or case.linkage.others:
             raise Unable("the driver must be one crank here")

@@ -6,6 +6,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from pylinkage.actuators import Crank
+from pylinkage.components import Ground
+from pylinkage.dyads import RRPDyad, RRRDyad
+from pylinkage.simulation import Linkage
+from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
 from tmm_cli.kinematics.motion import move
@@ -37,11 +42,6 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     This is the fastest route that its documentation has: the solver that numba compiles, called directly with arrays
     that are made once (pylinkage.solver).
     """
-    from pylinkage.actuators import Crank
-    from pylinkage.components import Ground
-    from pylinkage.simulation import Linkage
-    from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
-
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
         raise Unable("a crank is the only driver")
@@ -90,9 +90,6 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
 
 def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], places: Mapping[str, complex]) -> None:
     """The inner hinge of a group."""
-    from pylinkage.components import Ground
-    from pylinkage.dyads import RRPDyad, RRRDyad
-
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
         raise Unable(f"it has no group {group.title} of type {group.type or 'of class III'}")

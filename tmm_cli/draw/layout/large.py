@@ -15,7 +15,7 @@ from tmm_cli.draw.layout.pieces import ENOUGH, GAP, Page, Piece, area, begun, ea
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
@@ -48,7 +48,7 @@ def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[
     for number, (subject, (size, pictures, pages)) in enumerate(zip(SUBJECTS, found, strict=True)):
         field = field_of(size, problem.title_texts.block)
         for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
-            titles = Titles(problem.title_texts, problem.title, subject, f"{number}{letter}", count)
+            titles = Titles(problem.title_texts, problem.title, _(subject), f"{number}{letter}", count)
             yield f"sheet-{number}{letter}", framed([pictures[k] for k in page], field, size, titles)
 
 

@@ -9,7 +9,7 @@ from itertools import product
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
 from tmm_cli.draw.paper.picture import Picture
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.record import round_scale
 from tmm_cli.problem.errors import ProblemError
 

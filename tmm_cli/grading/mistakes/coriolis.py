@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.accelerations import OtherTerms
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.state import Poses, Rates
+from tmm_cli.language import N_
 from tmm_cli.linkage import FRAME
+from tmm_cli.pairs.base import Constraint
 from tmm_cli.pairs.sliding import Guided, Sliding
-
-if TYPE_CHECKING:
-    from tmm_cli.groups.base import Kernel
-    from tmm_cli.groups.state import Poses, Rates
-    from tmm_cli.pairs.base import Constraint
-    from tmm_cli.variants.family import Family
+from tmm_cli.variants.family import Family
 
 
 @dataclass(frozen=True)
@@ -27,8 +25,8 @@ class Coriolis(Mistake):
     carrier: str = ""
     sense: int = 0
 
-    name = _("Coriolis acceleration")
-    sentence = _("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
+    name = N_("Coriolis acceleration")
+    sentence = N_("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
-from tmm_cli.errors import _
+from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
-
-if TYPE_CHECKING:
-    from tmm_cli.forces.applied import Applied
-    from tmm_cli.kinematics.motion import Motion
-    from tmm_cli.variants.family import Family
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
+from tmm_cli.variants.family import Family
 
 
 @dataclass(frozen=True)
@@ -21,8 +19,8 @@ class InertiaReversed(Mistake):
 
     parts: tuple[str, ...] = ()
 
-    name = _("inertia not reversed")
-    sentence = _("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+    name = N_("inertia not reversed")
+    sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

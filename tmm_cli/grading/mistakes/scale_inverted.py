@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.quantities.base import Quantity
-    from tmm_cli.grading.solution import Solution
-    from tmm_cli.variants.family import Family
-    from tmm_cli.vectors import Real
-
+from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
+from tmm_cli.variants.family import Family
+from tmm_cli.vectors import Real
 
 SIZES = tuple(m * 10.0**power for power in (-3, -2, -1, 0, 1, 2) for m in (1, 2, 2.5, 4, 5) if m * 10.0**power != 1)
 
@@ -26,8 +23,8 @@ class ScaleInverted(Mistake):
     stage: str = ""
     scale: float = 1.0
 
-    name = _("scale factor inverted")
-    sentence = _(
+    name = N_("scale factor inverted")
+    sentence = N_(
         "All values of this plan are wrong by one factor: lengths divided by the scale in place of multiplied."
     )
     solves = False

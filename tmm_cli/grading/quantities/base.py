@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
+from tmm_cli.grading.solution import Solution
+from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import Dimension
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.solution import Solution
-    from tmm_cli.linkage import Linkage
-    from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.assur import Structure
 
 Stage = Literal["structure", "places", "velocities", "accelerations", "forces", "balance"]
 STAGES: tuple[Stage, ...] = ("structure", "places", "velocities", "accelerations", "forces", "balance")

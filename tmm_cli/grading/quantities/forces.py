@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import FORCE, LENGTH, MOMENT
 from tmm_cli.structure.assur import Structure
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.solution import Solution
-
 
 NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be drawn
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.analysis.selection import mass_centres, named_points
 from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution
 from tmm_cli.kinematics.strokes import output_run
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import (
@@ -21,9 +22,6 @@ from tmm_cli.quantities import (
     place_dimension,
 )
 from tmm_cli.structure.assur import Structure
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.solution import Solution
 
 
 def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.grading.solution import Solution
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.structure.assur import Structure
-
-if TYPE_CHECKING:
-    from tmm_cli.grading.solution import Solution
 
 
 def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
 from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
@@ -22,12 +22,12 @@ FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are ref
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 DEFECTS: Final = {  # by their numbers in Marks
-    1: _("branch defect: some positions are on the other assembly of the four-bar"),
-    2: _("order defect: AB does not reach the positions in order by turning one way"),
-    3: _("circuit defect: AB locks on the way between the positions"),
+    1: N_("branch defect: some positions are on the other assembly of the four-bar"),
+    2: N_("order defect: AB does not reach the positions in order by turning one way"),
+    3: N_("circuit defect: AB locks on the way between the positions"),
 }
-POLE: Final = _("{point} does not move between these positions, or not against the coupler: it is the pole")
-NO_LINKS: Final = _("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
+POLE: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
+NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 
 
 def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
@@ -37,14 +37,13 @@ def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
         raise Infeasible(_key_of(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
     mark = marks(task.poses, one, other)
     if mark.defect and not task.keep:
-        raise Infeasible("positions", DEFECTS[int(mark.defect)], _others(task))
+        raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_quick(task))
     return one, other, mark
 
 
-def _others(task: Task) -> str | None:
-    """What is told where a link is free on Burmester's curves, which are searched only for what is asked."""
-    searched = len(task.places) == 4 and len(task.sides) < 2 and not task.still
-    return _("other positions, or links by AB_turn and DC_turn") if searched else None
+def _quick(task: Task) -> bool:
+    """Whether other values can be tried: not where a link is free on Burmester's curves, which takes long."""
+    return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
 def _key_of(task: Task, name: str) -> str:
@@ -72,7 +71,7 @@ def dyad(task: Task, name: str) -> Dyads:
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
     if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_PLACES * task.size:
-        raise Infeasible(point, POLE.format(point=point))
+        raise Infeasible(point, _(POLE).format(point=point))
     if len(places) == 3:
         found = centre(places)
         if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_PLACES:
@@ -96,7 +95,7 @@ def given_on_curves(task: Task) -> dict[str, Dyads]:
                 "no link of sensible length turns by this angle from the first position to the second: near the turn "
                 "of the coupler itself links grow beyond all bounds"
             )
-            raise Infeasible(f"{name}_turn", reason, _others(task))
+            raise Infeasible(f"{name}_turn", reason, search=_quick(task))
     return found
 
 
@@ -123,7 +122,7 @@ def of_near(task: Task, name: str) -> Dyads:
         found.append((distance, turn, branch))
     distance, turn, branch = min(found)
     if not np.isfinite(distance):
-        raise Infeasible(f"{name[0]}_near", NO_LINKS, _others(task))
+        raise Infeasible(f"{name[0]}_near", NO_LINKS, search=_quick(task))
     return by_turn(task.poses, np.asarray(turn, np.longdouble), branch)
 
 
@@ -153,8 +152,8 @@ def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
             return found[:2]
     if task.within is not None:
         reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
-        raise Infeasible("pivots_within", reason, _("another box, or other positions"))
-    raise Infeasible("positions", NO_LINKS, _others(task))
+        raise Infeasible("pivots_within", reason, search=False)
+    raise Infeasible("positions", NO_LINKS, search=_quick(task))
 
 
 def parallel(task: Task) -> tuple[Dyads, Dyads]:
@@ -168,23 +167,17 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
     arms = places - middle
     radius = abs(arms[0])
     if not (np.isfinite(radius) and radius < FAR * task.size):
-        raise Infeasible(
-            "positions",
-            _("the coupler does not turn, and its places lie on a line: links would be infinitely long"),
-            _("places on a circle, or a slider"),
-        )
+        reason = _("the coupler does not turn, and its places lie on a line: links would be infinitely long")
+        raise Infeasible("positions", reason, search=False)
     if np.max(np.abs(np.abs(arms) - radius)) > SAME_PLACES * radius:
-        raise Infeasible(
-            ("positions", 3),
-            _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
-              "through the others"),
-            _("a fourth place on that circle, or a coupler that turns"),
-        )  # fmt: skip
+        reason = _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
+                   "through the others")  # fmt: skip
+        raise Infeasible(("positions", 3), reason, search=False)
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():
         if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_PLACES:
             reason = _("the coupler does not turn: both links turn as its places do on their circle")
-            raise Infeasible(f"{name}_turn", reason, "{turn}", {"turn": (turn, "angle", "exact")})
+            raise Infeasible(f"{name}_turn", reason, (turn, "angle", 0))
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
     way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
     frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, task.size)

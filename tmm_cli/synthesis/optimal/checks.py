@@ -9,8 +9,9 @@ import numpy as np
 
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.kinematics.driver_range import cycle_of
+from tmm_cli.language import _
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.optimal.task import Task, near
 from tmm_cli.synthesis.record import Infeasible
@@ -36,11 +37,7 @@ def first_of(task: Task) -> list[float]:
         except LinkageError:
             continue
         return numbers
-    raise Infeasible(
-        "vary",
-        _("no linkage within these bounds can be assembled as it is sketched"),
-        _("other bounds; or a sketch that fits, e.g. with places that rest on the parameters"),
-    )
+    raise Infeasible("vary", _("no linkage within these bounds can be assembled as it is sketched"))
 
 
 def check(task: Task, first: Sequence[float]) -> None:
@@ -54,15 +51,12 @@ def check(task: Task, first: Sequence[float]) -> None:
         other = list(first)
         other[k] = p.low if abs(first[k] - p.low) > abs(first[k] - p.high) else p.high
         if dict(numbers_of(task.make(other))) == before:
-            raise Infeasible(
-                ("vary", p.name), _("nothing in the file rests on this parameter"),
-                _("a parameter that lengths, places, masses or loads of the file rest on"),
-            )  # fmt: skip
+            raise Infeasible(("vary", p.name), _("nothing in the file rests on this parameter"))
     groups, closed = mobile(variant.linkage).solved, variant.ends is None
     for at, quantity in ((("objective",), task.objective), *((c.at, c.quantity) for c in task.constraints)):
         unfit = quantity.unfit(variant.linkage, groups, closed=closed)
         if unfit is not None:
-            raise Infeasible(at, *unfit)
+            raise Infeasible(at, unfit)
     if closed:
         _check_cycle(task, first, variant.linkage)
 
@@ -84,10 +78,8 @@ def _check_cycle(task: Task, first: Sequence[float], linkage: Linkage) -> None:
             other = task.make(numbers).linkage
             turns.add(cycle_of(other, kernels) or _ratios(other))
         if len(turns) > 1:
-            raise Infeasible(
-                ("vary", p.name), _("after how many turns all comes round again rests on this parameter"),
-                _("another parameter; or over: [from, to]"),
-            )  # fmt: skip
+            reason = _("after how many turns all comes round again rests on this parameter")
+            raise Infeasible(("vary", p.name), reason)
 
 
 def _ratios(linkage: Linkage) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.choices import Choices
@@ -26,6 +26,7 @@ STARTS = 3  # of the polish: the best that differ; one where candidates are move
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
+NEVER: Final = N_("no mechanism within these bounds can go the whole way of its driver; over: tells another way")
 
 
 def solve(task: Task) -> Outcome:
@@ -99,30 +100,18 @@ def _best_of(candidates: Candidates, starts: Iterable[Real], evolved: Evolved) -
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
         if goes or evolved.violation[0] == 0.0:
-            raise Infeasible("objective", *_none(candidates, candidates.task.objective))
-        raise _never(candidates)
+            raise Infeasible("objective", _none(candidates, candidates.task.objective))
+        raise Infeasible("vary", NEVER)
     missed, __, x, values = min(found, key=lambda one: one[:2])
     return Best(x, candidates.numbers(x), values, missed, evolved)
 
 
-def _never(candidates: Candidates) -> Infeasible:
-    """Where no candidate comes all the way: the place to look at is how far the driver is to go."""
-    return Infeasible(
-        "vary", _("no mechanism within these bounds can go the whole way of its driver"),
-        _("other bounds; or, where the crank is not to turn fully, over: [from, to] or over: positions")
-        if candidates.closed else _("other bounds; or another way of the driver (over, stroke or positions)"),
-    )  # fmt: skip
-
-
-def _none(candidates: Candidates, quantity: Goal) -> tuple[str, str]:
+def _none(candidates: Candidates, quantity: Goal) -> str:
     """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
     if quantity.forces and candidates.variant.accelerated:
-        return (
-            _("the driver does not come to all places of its way with this acceleration: it stops before, or they lie "
-              "before position 0"),
-            _("less to brake it, a higher speed, or a way from position 0 on in its sense"),
-        )  # fmt: skip
-    return _("no mechanism within the bounds was found that has this quantity"), _("other bounds, or another quantity")
+        return N_("the driver does not come to all places of its way with this acceleration: it stops before, or they "
+                 "lie before position 0")  # fmt: skip
+    return N_("no mechanism within the bounds was found that has this quantity")
 
 
 def _missed(candidates: Candidates, found: Best) -> Infeasible:
@@ -131,16 +120,16 @@ def _missed(candidates: Candidates, found: Best) -> Infeasible:
     n = int(np.argmax(misses))
     constraint, value = candidates.constraints[n], found.values[n + 1]
     if misses[0] > KEPT:
-        return _never(candidates)
+        return Infeasible("vary", NEVER)
     if np.isnan(value):
-        return Infeasible(constraint.at, *_none(candidates, constraint.quantity))
+        return Infeasible(constraint.at, _none(candidates, constraint.quantity))
     bound, at = constraint.broken(value)
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
     near = _best_of(Candidates(task), [found.x], found.evolved)
     reason = _("no mechanism within the bounds was found that meets this and the other constraints")
     if near.missed:
-        return Infeasible(at, reason, _("other bounds, or other constraints: several are not met"))
-    side = "exact" if constraint.equal else "below" if near.values[0] < bound else "above"
-    shown = near.values[0], constraint.quantity.kind(candidates.linkage, candidates.groups), side
-    return Infeasible(at, reason, _("with the others kept, the nearest found is {value}"), {"value": shown})
+        return Infeasible(at, reason)
+    side = 0 if constraint.equal else -1 if near.values[0] < bound else 1
+    kind = constraint.quantity.kind(candidates.linkage, candidates.groups)
+    return Infeasible(at, reason, (near.values[0], kind, side))

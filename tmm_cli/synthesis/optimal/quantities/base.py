@@ -126,8 +126,8 @@ class Goal(ABC):
         """What it is called."""
         return self.text
 
-    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> tuple[str, str] | None:
-        """Why a linkage has no such quantity, and what has."""
+    def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
+        """Why a linkage has no such quantity."""
         return None
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
