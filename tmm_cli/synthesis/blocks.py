@@ -75,6 +75,7 @@ class SynthesisFile(Strict):
     """A problem file without a linkage, for `tmm synthesis` alone."""
 
     tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict)
