@@ -43,7 +43,7 @@ def _groups(results: Results) -> Drawn:
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (_scheme, 110), "groups": (_groups, 70), "synthesis": (synthesised, 140),
+    "structure": (_scheme, 100), "groups": (_groups, 60), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
@@ -105,16 +105,18 @@ class Subject:
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
-    def figures(self, name: str, sentence: str, caption: str, k: int | None = None, only: str = "") -> Iterable[Block]:
+    def figures(
+        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = ""
+    ) -> Iterable[Block]:
         """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
 
-        only: those of this stem, and what is continued of it.
+        caption: else the drawing's own heading. only: those of this stem, and what is continued of it.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and stem != only and not stem.startswith(f"{only}-sheet-"):
                 continue
             yield said(sentence, figure=Ref(stem))
-            yield Figure(caption, drawing, stem)
+            yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
 
 
 def figures(text: str, language: str) -> str:

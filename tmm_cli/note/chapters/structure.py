@@ -111,11 +111,11 @@ def _groups(subject: Subject) -> Iterable[Block]:
         yield Rows(
             _("Assur groups, in the order in which they are joined"), tuple(line(h) for h in head), rows, "groups"
         )
-    yield from _apart(subject)
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
     yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+    yield from _apart(subject)
 
 
 def _apart(subject: Subject) -> Iterable[Block]:

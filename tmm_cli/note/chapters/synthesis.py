@@ -29,7 +29,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Synthesis of the mechanism"))
     yield paragraph(_("The sizes of the mechanism are found from what it must do."))
-    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units)}
+    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
     if "synthesis-asked" in tables:
         yield rows_of(subject, tables.pop("synthesis-asked"), _("What is asked"), digits=FOUND)
     yield paragraph(_("The way of the solution: {source}.").format(source=task.outcome.source.rstrip(".")))
@@ -40,8 +40,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield rows_of(subject, found, _("What is found"), digits=FOUND)
         yield from (paragraph(note) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
-    sentence, caption = _("The construction is shown in figure {figure}."), _("Synthesis of the mechanism")
-    yield from subject.figures("synthesis", sentence, caption)
+    yield from subject.figures("synthesis", _("This is shown in figure {figure}."))
     if measured is not None:
         yield paragraph(_("On the mechanism with these sizes the same quantities are measured."))
         yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), digits=FOUND)
