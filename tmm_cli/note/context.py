@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -79,7 +80,7 @@ class Subject:
     def value(self, si: float, dimension: Dimension, digits: int = 4) -> str:
         """A number of the file with its unit there."""
         units = self.results.problem.units
-        return f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip()
+        return with_degrees(f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip())
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
@@ -122,6 +123,11 @@ class Subject:
 def figures(text: str, language: str) -> str:
     """Figures with the decimal mark and the minus of a language."""
     return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
+
+
+def with_degrees(text: str) -> str:
+    """90 deg is 90°."""
+    return re.sub(r"(?<=\d) deg\b", "°", text)
 
 
 def printed_unit(text: str) -> str:

@@ -50,6 +50,8 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield said(_("The loads are given in table {table}."), table=Ref("loads"))
         yield _loads(subject)
     for table in given(problem):
+        if table.name == "drivers" and not linkage.others:
+            continue
         if table.name in FURTHER or table.name.startswith("load_table"):
             yield rows_of(subject, table)
             yield from (paragraph(note) for note in table.notes)

@@ -133,7 +133,7 @@ class Writer:
             for row in rows.rows
         )  # fmt: skip
         return (
-            f"<table{self.place(rows.key)}><caption>{data(caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
+            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table>\n<thead><tr>{head}</tr></thead>\n'
             f"<tbody>{body}</tbody></table>"
         )
 
