@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from bank import moved, solved
 from models import PARALLELOGRAM
-from test_commands import ROOT, SHAPER
+from test_commands import SHAPER
 
-from tmm_cli import load, solve
+from tmm_cli import solve
 from tmm_cli.draw import files, remarks, sheets
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.paper.ground import Ground
@@ -104,14 +105,14 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
 
 @pytest.mark.parametrize("name", ["six-bar", "course-2", "cylinder", "inclined-slider", "tangent"])
 def test_every_point_of_a_moving_link_is_named(name):
-    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "kinematics")
+    results = moved(name)
     moving = {point for link in results.linkage.moving for point in results.linkage.links[link].points}
     labels = plain(dict(all_positions(results))["mechanism"])
     assert moving <= {name for label in labels for name in label.split(", ")}  # with a centre of mass that lies there
 
 
 def test_every_sheet_is_written_in_every_format():
-    results = solve(load(str(ROOT / "problems" / "tangent.yaml")))
+    results = solved("tangent")
     begins = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF-", "dxf": b"  0\nSECTION", "emf": b"\x01\x00\x00\x00"}
     assert set(begins) == set(FORMATS)
     every = dict(sheets(results))
@@ -122,7 +123,7 @@ def test_every_sheet_is_written_in_every_format():
 
 
 def test_a_run_writes_pictures_of_every_sheet():
-    results = solve(load(str(ROOT / "problems" / "tangent.yaml")), "kinematics")
+    results = moved("tangent")
     assert [name for name, __ in files(results)] == [
         f"{stem}.{kind}" for stem, __ in sheets(results) for kind in ("png", "svg")
     ]

@@ -9,12 +9,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from bank import solved
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pypdf import PdfReader
-from test_commands import ROOT, SHAPER, tmm
+from test_commands import SHAPER, tmm
 
-from tmm_cli import load, solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.dxf import plain
@@ -35,11 +35,6 @@ from tmm_cli.problem.reader import read_text
 
 COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 PRECISE = 0.01  # mm
-
-
-@functools.cache
-def solved(name):
-    return solve(load(str(ROOT / "problems" / f"{name}.yaml")))
 
 
 @functools.cache
