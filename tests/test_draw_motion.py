@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import pytest
 from bank import solved
@@ -16,6 +17,7 @@ from tmm_cli.draw.sheets.motion_plans import motion_plans, sorts, table
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 
 
+@cache
 def plans(name):
     """The first position in detail, and its two sheets with what they are of."""
     results = solved(name)

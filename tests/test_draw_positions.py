@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import LENGTH
 
 
+@cache
 def sheet_of(name):
     results = moved(name)
     ((__, sheet),) = all_positions(results)
