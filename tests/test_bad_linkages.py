@@ -107,6 +107,11 @@ CASES = {
         "  found:   0\n"
         "  allowed: more than zero",
     ),
+    "hardly a tooth": (
+        blocks.GEARED, "teeth: [30, 30]", "teeth: [1e-17, 30]", "1e-17",
+        "gears.z.teeth[0]: a number of teeth is whole\n"
+        "  found:   1e-17",
+    ),
     "half a tooth": (
         blocks.GEARED, "teeth: [30, 30], module: 5 mm", "teeth: [1.5, 30]", "1.5",
         "gears.z.teeth[0]: a number of teeth is whole\n"

@@ -23,9 +23,9 @@ from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.draw import files as drawings
 from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
 from tmm_cli.kinematics.motion import move
-from tmm_cli.library import count, structure_of
+from tmm_cli.library import count, problem_of, structure_of
 from tmm_cli.problem.build_chain import build_chain
-from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import LENGTH, NUMBER
 from tmm_cli.results.files import Staged, listed
@@ -201,6 +201,15 @@ def test_closed_form_and_newton_give_the_same_places():
     assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
     for link, pose in motion.poses.items():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
+
+
+def test_a_group_that_is_equally_far_from_dead_everywhere_is_not_searched_for_dead_positions():
+    """Its margin has hundreds of least values, all of them rounding."""
+    text = (ROOT / "problems" / "crossed-slots.yaml").read_text(encoding="utf-8").replace("L: [0, 220]", "L: [0, 440]")
+    results = solve(problem_of(read_text(text, "x.yaml")))
+    with counted() as count:
+        assert results.dead == ()
+    assert count.all < 15_000
 
 
 def test_what_shows_tables_imports_no_drawing():

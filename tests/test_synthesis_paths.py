@@ -11,7 +11,7 @@ from tmm_cli.bench.paths import PROBLEMS
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.optimal.least_squares import descend
+from tmm_cli.synthesis.optimal.least_squares import Rows, descend, step_of
 from tmm_cli.synthesis.optimal.many_starts import Ends, residuals
 from tmm_cli.synthesis.optimal.outcome import outcome_of
 from tmm_cli.synthesis.optimal.settling import Settling
@@ -103,3 +103,11 @@ def test_slopes_of_residuals_are_those_of_the_sum_of_squares():
 def test_what_is_at_the_least_stays_there(found):
     again, __ = descend(residuals(prepared(SEMICIRCLE)), found[0].x[None], 50)
     np.testing.assert_allclose(again[0], found[0].x, atol=1e-6)
+
+
+def test_a_constraint_beside_which_nothing_is_left_costs_a_step_and_not_the_search():
+    rows = Rows(np.array([[0.1, -0.2], [0.1, -0.2]]), np.array([[-1e12], [1.0]]))
+    slopes = Rows(np.array([np.eye(2)] * 2), np.array([[[1e12, 1e12]], [[0.0, 0.0]]]))
+    step = step_of(rows, slopes, np.full((2, 2), 0.5), np.array([1e-3, 1e-3]))
+    assert np.all(np.isfinite(step[0]))
+    np.testing.assert_allclose(step[1], [-0.1, 0.2], rtol=2e-3)

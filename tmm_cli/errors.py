@@ -1,4 +1,4 @@
-"""What a stage may refuse, and the mark of sentences for people.
+"""What a stage may refuse.
 
 A stage says what is wrong in numbers and names; the words are put where files are known.
 """
@@ -6,14 +6,10 @@ A stage says what is wrong in numbers and names; the words are put where files a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from gettext import NullTranslations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tmm_cli.structure.assur import Group, Structure
-
-# Sentences are marked for gettext. There are no catalogues yet; gettext() would look for them on the disk every time.
-_ = NullTranslations().gettext
 
 
 class LinkageError(Exception):
@@ -110,3 +106,23 @@ class NotOnFrameError(LinkageError):
     def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
         super().__init__(link)
         self.link, self.allowed = link, allowed
+
+
+class NoCycleError(LinkageError):
+    """A law of motion is wanted where there is no cycle: the driver slides, does not turn fully, or is not alone."""
+
+
+class StandstillError(LinkageError):
+    """The machine comes to rest at the way `place` of its cycle (rad): its energy is used up there."""
+
+    def __init__(self, place: float) -> None:
+        super().__init__(place)
+        self.place = place
+
+
+class NoFlywheelError(LinkageError):
+    """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
+
+    def __init__(self, wanted: float, own: float) -> None:
+        super().__init__(wanted, own)
+        self.wanted, self.own = wanted, own

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 
 
 @dataclass(frozen=True)
@@ -190,87 +190,87 @@ def place_dimension(kind: str) -> Dimension:
 PER_UNIT: Final = "SI, per unit of the driver's motion"
 
 POINT: Final = (
-    Quantity("x", "place", "m", LENGTH, (_("x"), _("y")), vector=True, leading=True),
-    Quantity("v", "velocity", "m/s", SPEED, (_("vx"), _("vy"), _("v")), vector=True, leading=True),
-    Quantity("a", "acceleration", "m/s^2", ACCELERATION, (_("ax"), _("ay"), _("a")), vector=True, leading=True),
+    Quantity("x", "place", "m", LENGTH, (N_("x"), N_("y")), vector=True, leading=True),
+    Quantity("v", "velocity", "m/s", SPEED, (N_("vx"), N_("vy"), N_("v")), vector=True, leading=True),
+    Quantity("a", "acceleration", "m/s^2", ACCELERATION, (N_("ax"), N_("ay"), N_("a")), vector=True, leading=True),
     Quantity("first", "derivative of its place by the driver's", PER_UNIT, NUMBER,
-             (_("dx/dq, SI"), _("dy/dq, SI")), vector=True),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("d2x/dq2, SI"), _("d2y/dq2, SI")), vector=True),
+             (N_("dx/dq, SI"), N_("dy/dq, SI")), vector=True),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("d2x/dq2, SI"), N_("d2y/dq2, SI")), vector=True),
 )  # fmt: skip
 
 LINK: Final = (
-    Quantity("angle", "of its x axis", "rad", ANGLE, (_("angle"),), leading=True),
-    Quantity("omega", "angular speed", "rad/s", ANGULAR_SPEED, (_("omega"),), leading=True),
-    Quantity("epsilon", "angular acceleration", "rad/s^2", ANGULAR_ACCELERATION, (_("epsilon"),), leading=True),
-    Quantity("first", "d angle / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
+    Quantity("angle", "of its x axis", "rad", ANGLE, (N_("angle"),), leading=True),
+    Quantity("omega", "angular speed", "rad/s", ANGULAR_SPEED, (N_("omega"),), leading=True),
+    Quantity("epsilon", "angular acceleration", "rad/s^2", ANGULAR_ACCELERATION, (N_("epsilon"),), leading=True),
+    Quantity("first", "d angle / d driver", PER_UNIT, NUMBER, (N_("first transfer function, SI"),)),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("second transfer function, SI"),)),
 )
 
 SLIDE: Final = (
-    Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (_("s"),)),
-    Quantity("v", "relative velocity", "m/s", SPEED, (_("v relative"),)),
-    Quantity("a", "relative acceleration", "m/s^2", ACCELERATION, (_("a relative"),)),
+    Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (N_("s"),)),
+    Quantity("v", "relative velocity", "m/s", SPEED, (N_("v relative"),)),
+    Quantity("a", "relative acceleration", "m/s^2", ACCELERATION, (N_("a relative"),)),
     Quantity("coriolis", "Coriolis acceleration", "m/s^2", ACCELERATION,
-             (_("Coriolis x"), _("Coriolis y"), _("Coriolis")), vector=True),
-    Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (_("first transfer function, SI"),)),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (_("second transfer function, SI"),)),
+             (N_("Coriolis x"), N_("Coriolis y"), N_("Coriolis")), vector=True),
+    Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (N_("first transfer function, SI"),)),
+    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("second transfer function, SI"),)),
 )  # fmt: skip
 
-REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (_("F"),), read=lambda r: np.abs(r.force))
+REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (N_("F"),), read=lambda r: np.abs(r.force))
 REACTION: Final = (
-    Quantity("force", "on link `on`", "N", FORCE, (_("Fx"), _("Fy")), vector=True, leading=True, symbol="R"),
+    Quantity("force", "on link `on`", "N", FORCE, (N_("Fx"), N_("Fy")), vector=True, leading=True, symbol="R"),
     REACTION_SIZE,
-    Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (_("angle"),)),
+    Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (N_("angle"),)),
     Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
-    Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (_("R tangential"),), vector=True,
+    Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (N_("R tangential"),), vector=True,
              goes_with="normal"),
-    Quantity("normal", "part along it", "N", FORCE, (_("R normal"),), vector=True, goes_with="tangential"),
+    Quantity("normal", "part along it", "N", FORCE, (N_("R normal"),), vector=True, goes_with="tangential"),
     Quantity("signed", "guides: force along the guide's left normal", "N", FORCE, goes_with="couple"),
-    Quantity("couple", "guides: couple, reduced to the running point", "N*m", MOMENT, (_("couple"),), leading=True,
+    Quantity("couple", "guides: couple, reduced to the running point", "N*m", MOMENT, (N_("couple"),), leading=True,
              symbol="M", goes_with="couple"),
     Quantity("arm", "guides: where the force acts, along the guide from the running point", "m", LENGTH,
-             (_("acts at"),), goes_with="couple"),
+             (N_("acts at"),), goes_with="couple"),
 )  # fmt: skip
 
 LOAD: Final = (
-    Quantity("force", "force", "N", FORCE, (_("Fx"), _("Fy"), _("F")), vector=True),
-    Quantity("moment", "couple", "N*m", MOMENT, (_("M"),)),
+    Quantity("force", "force", "N", FORCE, (N_("Fx"), N_("Fy"), N_("F")), vector=True),
+    Quantity("moment", "couple", "N*m", MOMENT, (N_("M"),)),
 )
 
 BALANCE: Final = (
-    Quantity("moment", "null for a driven slider", "N*m", MOMENT, (_("M_b"),)),
-    Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (_("F_b"),)),
+    Quantity("moment", "null for a driven slider", "N*m", MOMENT, (N_("M_b"),)),
+    Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (N_("F_b"),)),
     Quantity("vector", "the force", "N", FORCE, vector=True),
     Quantity("at", "where it acts", "m", LENGTH, vector=True),
 )
 BALANCING: Final = Quantity(
-    "balancing", "what works with the driver's place: moment or force", "N*m or N", MOMENT, (_("M_b"),),
-    of_slider=(_("F_b"), FORCE), leading=True, symbol="T", read=lambda balance: balance.generalized,
+    "balancing", "what works with the driver's place: moment or force", "N*m or N", MOMENT, (N_("M_b"),),
+    of_slider=(N_("F_b"), FORCE), leading=True, symbol="T", read=lambda balance: balance.generalized,
 )  # fmt: skip
 
 LEVER_FORCE: Final = (
-    Quantity("size", "force", "N", FORCE, (_("force"),)),
-    Quantity("arm", "about the pole", "m per rad", LENGTH, (_("arm"),), of_slider=(_("arm"), NUMBER)),
+    Quantity("size", "force", "N", FORCE, (N_("force"),)),
+    Quantity("arm", "about the pole", "m per rad", LENGTH, (N_("arm"),), of_slider=(N_("arm"), NUMBER)),
 )
 LEVER_COUPLE: Final = (
-    Quantity("size", "couple", "N*m", MOMENT, (_("couple"),)),
-    Quantity("arm", "omega / omega_1", "", NUMBER, (_("omega / omega_1"),)),
+    Quantity("size", "couple", "N*m", MOMENT, (N_("couple"),)),
+    Quantity("arm", "omega / omega_1", "", NUMBER, (N_("omega / omega_1"),)),
 )
-LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N*m or N", MOMENT, (_("moment"),),
-                               of_slider=(_("moment"), FORCE))  # fmt: skip
+LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N*m or N", MOMENT, (N_("moment"),),
+                               of_slider=(N_("moment"), FORCE))  # fmt: skip
 
 ENERGY: Final = (
-    Quantity("inertia", "reduced moment of inertia, or mass", "kg*m^2 or kg", INERTIA, (_("J reduced"),),
-             of_slider=(_("m reduced"), MASS)),
-    Quantity("slope", "its derivative by the driver", "SI", NUMBER, (_("dJ/dphi, SI"),),
-             of_slider=(_("dm/ds, SI"), NUMBER)),
-    Quantity("moment", "reduced moment of all loads but inertia, or force", "N*m or N", MOMENT, (_("M reduced"),),
-             of_slider=(_("F reduced"), FORCE)),
-    Quantity("kinetic", "kinetic energy", "J", NUMBER, (_("kinetic energy, J"),)),
-    Quantity("rate", "its rate", "W", NUMBER, (_("its rate, W"),)),
-    Quantity("drivers", "power of the drivers", "W", NUMBER, (_("drivers, W"),)),
-    Quantity("weights", "power of weights", "W", NUMBER, (_("weights, W"),)),
-    Quantity("loads", "power of loads", "W", NUMBER, (_("loads, W"),)),
-    Quantity("friction", "power of friction", "W", NUMBER, (_("friction, W"),)),
+    Quantity("inertia", "reduced moment of inertia, or mass", "kg*m^2 or kg", INERTIA, (N_("J reduced"),),
+             of_slider=(N_("m reduced"), MASS)),
+    Quantity("slope", "its derivative by the driver", "SI", NUMBER, (N_("dJ/dphi, SI"),),
+             of_slider=(N_("dm/ds, SI"), NUMBER)),
+    Quantity("moment", "reduced moment of all loads but inertia, or force", "N*m or N", MOMENT, (N_("M reduced"),),
+             of_slider=(N_("F reduced"), FORCE)),
+    Quantity("kinetic", "kinetic energy", "J", NUMBER, (N_("kinetic energy, J"),)),
+    Quantity("rate", "its rate", "W", NUMBER, (N_("its rate, W"),)),
+    Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("drivers, W"),)),
+    Quantity("weights", "power of weights", "W", NUMBER, (N_("weights, W"),)),
+    Quantity("loads", "power of loads", "W", NUMBER, (N_("loads, W"),)),
+    Quantity("friction", "power of friction", "W", NUMBER, (N_("friction, W"),)),
     Quantity("balance", "what is left of all powers, against the largest", "", NUMBER),
 )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -73,14 +74,19 @@ def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real
     return (same + other) / 2
 
 
-def least(function: Callable[[Real], Real], low: float, high: float) -> tuple[float, float]:
-    """Place and value of the least of a function with one minimum: nine places at once, the best third kept."""
+def least(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
+    """Places and values of the least between places, of all intervals at once, in each of which there is one minimum:
+    nine places of each, the best third kept.
+    """
+    ends = np.array([low, high])
+    if not ends.size:
+        return ends[0], ends[1]
     for _ in range(THIRDS):
-        places = np.linspace(low, high, 9)
-        best = int(np.argmin(function(places)))
-        low, high = places[max(best - 1, 0)], places[min(best + 1, 8)]
-    middle = np.array([(low + high) / 2])
-    return float(middle[0]), float(function(middle)[0])
+        places = np.linspace(ends[0], ends[1], 9)
+        best = np.argmin(function(places.ravel()).reshape(places.shape), axis=0)
+        ends = np.take_along_axis(places, np.clip([best - 1, best + 1], 0, 8), 0)
+    middle = np.mean(ends, axis=0)
+    return middle, function(np.ravel(middle)).reshape(np.shape(middle))[()]
 
 
 def top(function: Callable[[Real], Real], place: float, half: float) -> float:

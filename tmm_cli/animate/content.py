@@ -15,8 +15,8 @@ from tmm_cli.draw.paper.picture import reach
 from tmm_cli.draw.paper.sheet import Sheet
 from tmm_cli.draw.sheets.motion_plans import sorts
 from tmm_cli.draw.symbols.scene import Scene, fit, fixed_pivots, to_scale
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.vectors import Real

@@ -11,8 +11,8 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.paper.sheet import COLOURS, THIN, with_unit
 from tmm_cli.draw.sheets.motion_plans import Sort
 from tmm_cli.draw.sheets.over_cycle import Quantities, balances, output
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.vectors import Vector
 
 PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it

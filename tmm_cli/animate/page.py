@@ -17,7 +17,7 @@ from typing import Any
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.animate.content import FRAMES, content, frames, loops, paths, picture_of, view
 from tmm_cli.draw.formats.svg import element
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 MOST = 300_000  # bytes of a page
 FEWEST = 36  # frames a turn

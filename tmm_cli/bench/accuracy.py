@@ -16,13 +16,12 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Meth
 from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.errors import _
 from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 NAMED: dict[Compared, str] = {
-    "positions": _("Positions"), "velocities": _("Velocities"), "accelerations": _("Accelerations"),
-    "reactions": _("Reactions"), "balancing": _("Balancing moment"),
+    "positions": "Positions", "velocities": "Velocities", "accelerations": "Accelerations",
+    "reactions": "Reactions", "balancing": "Balancing moment",
 }  # fmt: skip
 COUNT = 360  # positions of a timed run
 REPEATS, REDUCED_REPEATS = 15, 3
@@ -51,7 +50,7 @@ class Accuracy(Measured):
     positions: int
     repeats: int
 
-    met: ClassVar[str] = _("all targets met: positions within 1e-14, the rest within 1e-13")
+    met: ClassVar[str] = "all targets met: positions within 1e-14, the rest within 1e-13"
 
     @property
     def linkages(self) -> tuple[str, ...]:
@@ -86,8 +85,8 @@ class Accuracy(Measured):
         """One a linkage."""
         return tuple(
             words(
-                "accuracy", _("Errors over the largest value in the cycle: {linkage}").format(linkage=name),
-                (_("method"), _("µs a position"), *NAMED.values()),
+                "accuracy", f"Errors over the largest value in the cycle: {name}",
+                ("method", "µs a position", *NAMED.values()),
                 [(row.method, "-" if row.microseconds is None else f"{row.microseconds:.3g}",
                   *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in NAMED))
                  for row in self.rows if row.linkage == name],

@@ -12,19 +12,18 @@ from matplotlib.ticker import LogLocator
 from tmm_cli.bench.accuracy import NAMED, TARGETS, Accuracy, Row
 from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, ORANGE, RED, bare, decades, errors, page
 from tmm_cli.bench.methods.case import QUANTITIES
-from tmm_cli.errors import _
 
 LOW, HIGH = 1e-20, 1e4  # of the error axis; what lies beyond is drawn on its edge
 FIVE = 0.05  # what a course project allows
 PURPLE = "#7a3d99"
 FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
-    "closed": (_("groups (tmm), class II in closed form"), {"marker": "*", "ms": 13, "color": RED, "zorder": 9}),
-    "taped": (_("the same, written on a tape"), {"marker": "*", "ms": 13, "color": RED, "mfc": "white", "zorder": 9}),
-    "newton": (_("Newton on loop closure, tolerances 1e-2 to 1e-15"), {"marker": "o", "ms": 4, "color": BLUE}),
-    "multibody": (_("whole Jacobian, Lagrange multipliers"), {"marker": "s", "ms": 6, "color": GREEN, "zorder": 8}),
-    "differences": (_("central differences, steps 0.1 to 1e-8 rad"), {"marker": "v", "ms": 4.5, "color": ORANGE}),
-    "single": (_("groups in single precision"), {"marker": "D", "ms": 5.5, "color": PURPLE}),
-    "extended": (_("groups in extended precision"), {"marker": "D", "ms": 5.5, "color": PURPLE, "mfc": "white"}),
+    "closed": ("groups (tmm), class II in closed form", {"marker": "*", "ms": 13, "color": RED, "zorder": 9}),
+    "taped": ("the same, written on a tape", {"marker": "*", "ms": 13, "color": RED, "mfc": "white", "zorder": 9}),
+    "newton": ("Newton on loop closure, tolerances 1e-2 to 1e-15", {"marker": "o", "ms": 4, "color": BLUE}),
+    "multibody": ("whole Jacobian, Lagrange multipliers", {"marker": "s", "ms": 6, "color": GREEN, "zorder": 8}),
+    "differences": ("central differences, steps 0.1 to 1e-8 rad", {"marker": "v", "ms": 4.5, "color": ORANGE}),
+    "single": ("groups in single precision", {"marker": "D", "ms": 5.5, "color": PURPLE}),
+    "extended": ("groups in extended precision", {"marker": "D", "ms": 5.5, "color": PURPLE, "mfc": "white"}),
     "pylinkage": ("pylinkage", {"marker": "P", "ms": 7, "color": "#00838f"}),
     "kinepy": ("kinepy", {"marker": "X", "ms": 7, "color": "#5d4037"}),
 }
@@ -39,12 +38,12 @@ def charts(accuracy: Accuracy) -> dict[str, Figure]:
 def chart(accuracy: Accuracy, linkage: str) -> Figure:
     """The chart of one linkage, A4."""
     rows = [row for row in accuracy.rows if row.linkage == linkage]
-    caption = _(
+    caption = (
         "largest relative error over the cycle against 50 digits; time with all reactions, "
         "{count} positions at once, median of {repeats}; tmm {tmm}, Python {python}, NumPy "
         "{numpy}, {system}"
     ).format(count=accuracy.positions, repeats=accuracy.repeats, **accuracy.machine)
-    figure = page(_("Time against error: {linkage}").format(linkage=linkage), caption)
+    figure = page(f"Time against error: {linkage}", caption)
     times = [row.microseconds for row in rows if row.microseconds is not None]
     for number, quantity in enumerate(QUANTITIES):
         axes = figure.add_subplot(2, 3, number + 1)
@@ -64,9 +63,9 @@ def chart(accuracy: Accuracy, linkage: str) -> Figure:
         if quantity == "balancing":
             axes.axhline(FIVE, color=GREEN, lw=1.1, zorder=2)
         if number % 3 == 0:
-            axes.set_ylabel(_("largest relative error"), fontsize=9)
+            axes.set_ylabel("largest relative error", fontsize=9)
         if number > 1:
-            axes.set_xlabel(_("µs a position"), fontsize=9)
+            axes.set_xlabel("µs a position", fontsize=9)
     _legend(figure, rows)
     figure.subplots_adjust(left=0.07, right=0.98, top=0.885, bottom=0.07, hspace=0.24, wspace=0.2)
     return figure
@@ -102,10 +101,10 @@ def _legend(figure: Figure, rows: list[Row]) -> None:
     ]  # fmt: skip
     for row in rows:
         if row.family == "board":
-            label = _("drawing board, read to {mm} mm").format(mm=row.setting)
+            label = f"drawing board, read to {row.setting} mm"
             handles.append(Line2D([], [], color=DARK, lw=1.1, ls=_dashes(row), label=label))
-    handles.append(Line2D([], [], color=GREEN, lw=1.1, label=_("the 5 % rule")))
-    handles.append(Line2D([], [], color=RED, lw=0.7, ls="-.", label=_("target of tmm")))
+    handles.append(Line2D([], [], color=GREEN, lw=1.1, label="the 5 % rule"))
+    handles.append(Line2D([], [], color=RED, lw=0.7, ls="-.", label="target of tmm"))
     axes = figure.add_subplot(2, 3, 6)
     axes.axis("off")
     axes.legend(handles=handles, loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(-0.08, 1.02),

@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 
 from tmm_cli.bench.chart_axes import BLUE, DARK, ORANGE, page
 from tmm_cli.bench.savings import COUNTED, NAMED, Savings
-from tmm_cli.errors import _
 
 SHARE = 0.75  # of the height of a landscape sheet
 
@@ -20,7 +19,7 @@ def charts(measured: Savings) -> dict[str, Figure]:
 def chart(measured: Savings) -> Figure:
     """Bars of both shares, a pair a saving, with the numbers beside them."""
     shown = measured.found
-    figure = page(_("What is saved by computing no more than what is asked for"), measured.title[:90], SHARE)
+    figure = page("What is saved by computing no more than what is asked for", measured.title[:90], SHARE)
     axes = figure.add_subplot()
     at = np.arange(len(shown))
     counts = [s.with_ / s.without for s in shown]
@@ -28,8 +27,8 @@ def chart(measured: Savings) -> Figure:
     counted = [f"{s.with_} / {s.without} {COUNTED[s.counts]}" for s in shown]
     timed = [f"{_short(s.seconds[0])} / {_short(s.seconds[1])}" for s in shown]
     for off, colour, shares, told, label in (
-        (-0.2, BLUE, counts, counted, _("counts: with / without")),
-        (0.2, ORANGE, times, timed, _("time: with / without")),
+        (-0.2, BLUE, counts, counted, "counts: with / without"),
+        (0.2, ORANGE, times, timed, "time: with / without"),
     ):
         axes.barh(at + off, np.minimum(shares, 1.0), height=0.36, color=colour, label=label)
         for place, share, text in zip(at + off, shares, told, strict=True):
@@ -41,7 +40,7 @@ def chart(measured: Savings) -> Figure:
     axes.axvline(1.0, color=DARK, lw=0.8)
     axes.grid(True, axis="x", color="#d8d8d8", lw=0.5)
     axes.set_axisbelow(True)
-    axes.set_xlabel(_("what is left"), fontsize=9)
+    axes.set_xlabel("what is left", fontsize=9)
     figure.legend(loc="upper right", bbox_to_anchor=(0.98, 0.985), fontsize=8, ncol=2, framealpha=0.9)
     figure.subplots_adjust(left=0.27, right=0.98, top=0.88, bottom=0.09)
     return figure

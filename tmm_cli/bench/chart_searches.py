@@ -10,7 +10,6 @@ from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
 from tmm_cli.bench.chart_axes import DARK, bare, page
 from tmm_cli.bench.searches import NAMES, NEAR, PER_SECOND, Searches
-from tmm_cli.errors import _
 
 COLOURS = dict(zip(NAMES, ("#b3261e", "#1f4e9c", "#1d7a3a"), strict=True))
 MARKS = dict(zip(NAMES, "osD", strict=True))
@@ -25,9 +24,9 @@ def charts(measured: Searches) -> dict[str, Figure]:
 
 def chart(measured: Searches) -> Figure:
     """Both panels on half a sheet."""
-    caption = _("five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
+    caption = ("five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
                 "Python {python}, NumPy {numpy}, {system}")  # fmt: skip
-    title = _("Optimal synthesis: how quickly candidates are evaluated, how near the search comes")
+    title = "Optimal synthesis: how quickly candidates are evaluated, how near the search comes"
     figure = page(title, caption.format(**measured.machine), SHARE)
     grid = figure.add_gridspec(1, 2, left=0.065, right=0.98, top=0.8, bottom=0.12, wspace=0.2)
     _rates(figure.add_subplot(grid[0, 0]), measured)
@@ -38,13 +37,11 @@ def chart(measured: Searches) -> Figure:
 def _rates(axes: Any, measured: Searches) -> None:
     for name in NAMES:
         rates = [r for r in measured.rates if r.problem == name]
-        label = _("{problem}: {parameters} lengths, {constraints} constraints").format(
-            problem=name, parameters=rates[0].parameters, constraints=rates[0].constraints
-        )
+        label = f"{name}: {rates[0].parameters} lengths, {rates[0].constraints} constraints"
         axes.plot([r.generation for r in rates], [r.per_second / 1e3 for r in rates], f"{MARKS[name]}-", ms=5.5, lw=1.3,
                   color=COLOURS[name], label=label)  # fmt: skip
     aimed = next(r for r in measured.rates if r.target is not None)
-    label = _("target, at the size that the search uses")
+    label = "target, at the size that the search uses"
     axes.plot([aimed.generation], [PER_SECOND / 1e3], "_", ms=18, mew=1.8, color=DARK, label=label)
     sizes = sorted({r.generation for r in measured.rates if r.problem == aimed.problem})
     axes.set_xscale("log")
@@ -52,10 +49,10 @@ def _rates(axes: Any, measured: Searches) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(sizes[0] / 1.5, sizes[-1] * 1.5)
     axes.set_ylim(0, 1.45 * max(r.per_second for r in measured.rates) / 1e3)
-    axes.set_xlabel(_("candidates in a generation"), fontsize=9)
-    axes.set_ylabel(_("thousand candidates a second"), fontsize=9)
+    axes.set_xlabel("candidates in a generation", fontsize=9)
+    axes.set_ylabel("thousand candidates a second", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    bare(axes, _("Candidates a second"))
+    bare(axes, "Candidates a second")
 
 
 def _found(axes: Any, measured: Searches) -> None:
@@ -64,19 +61,19 @@ def _found(axes: Any, measured: Searches) -> None:
     for n, f in enumerate(f for f in measured.found if f.history):
         x, off = np.array([at for at, __ in f.history]) / 1e3, 100 * np.array([off for __, off in f.history])
         axes.plot(x, np.maximum(off, FLOOR), "-", lw=0.9, alpha=0.6, color=colour, drawstyle="steps-post",
-                  label=_("search, seed by seed, from 72 positions") if n == 0 else None)  # fmt: skip
+                  label="search, seed by seed, from 72 positions" if n == 0 else None)  # fmt: skip
         end, low = f.evaluations / 1e3, max(100 * f.off, FLOOR)
         axes.plot([end, 1.06 * last], [max(off[-1], FLOOR), low], ":", lw=0.8, color=colour)
-        polished = _("polished on exact peaks, 1e-7 % and nearer") if n == 0 else None
+        polished = "polished on exact peaks, 1e-7 % and nearer" if n == 0 else None
         axes.plot([1.06 * last], [low], "*", ms=10, color=colour, label=polished, clip_on=False, zorder=5)
-    axes.axhline(100 * NEAR, color=DARK, lw=1.2, label=_("target, 0.1 %"))
+    axes.axhline(100 * NEAR, color=DARK, lw=1.2, label="target, 0.1 %")
     axes.set_yscale("log")
     axes.set_xlim(0, 1.12 * last)
     axes.set_ylim(FLOOR / 2, None)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, __: f"{value:g}".replace("e-0", "e-")))
     axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel(_("thousand candidates evaluated"), fontsize=9)
-    axes.set_ylabel(_("above the best known, %"), fontsize=9)
+    axes.set_xlabel("thousand candidates evaluated", fontsize=9)
+    axes.set_ylabel("above the best known, %", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    near = _("{near} of {count} seeds within 0.1 % of the best known")
+    near = "{near} of {count} seeds within 0.1 % of the best known"
     bare(axes, near.format(near=measured.near, count=len(measured.found)))

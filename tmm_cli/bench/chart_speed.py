@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 
 from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, GREY, RED, bare, decades, page
 from tmm_cli.bench.speed import GROWING, Growth, Speed
-from tmm_cli.errors import _
 
 COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
@@ -21,11 +20,11 @@ def charts(speed: Speed) -> dict[str, Figure]:
 
 def chart(speed: Speed) -> Figure:
     """All of the measurement on one sheet."""
-    caption = _(
+    caption = (
         "all joints, centres of mass, reactions, balancing moment; least of many turns in one "
         "process; tmm {tmm}, Python {python}, NumPy {numpy}, {system}"
     ).format(**speed.machine)
-    figure = page(_("Speed: tmm against code written by hand for one mechanism"), caption)
+    figure = page("Speed: tmm against code written by hand for one mechanism", caption)
     grid = figure.add_gridspec(2, 6, left=0.07, right=0.98, top=0.86, bottom=0.08, hspace=0.38, wspace=1.2)
     _times(figure.add_subplot(grid[0, :3]), speed)
     _ratios(figure.add_subplot(grid[0, 3:]), speed)
@@ -39,14 +38,14 @@ def _times(axes: Any, speed: Speed) -> None:
         races = [r for r in speed.races if r.mechanism == name and r.variants == 1]
         x = [r.positions for r in races]
         axes.plot(x, [r.ours for r in races], "o-", ms=5, lw=1.3, color=colour,
-                  label=_("{name}, tmm").format(name=name))  # fmt: skip
+                  label=f"{name}, tmm")  # fmt: skip
         axes.plot(x, [r.by_hand for r in races], "s--", ms=4.5, lw=1, mfc="white", color=colour,
-                  label=_("{name}, by hand").format(name=name))  # fmt: skip
+                  label=f"{name}, by hand")  # fmt: skip
     decades(axes)
-    axes.set_xlabel(_("positions"), fontsize=9)
-    axes.set_ylabel(_("ns a position"), fontsize=9)
+    axes.set_xlabel("positions", fontsize=9)
+    axes.set_ylabel("ns a position", fontsize=9)
     axes.legend(fontsize=8, frameon=False)
-    bare(axes, _("Time a position"))
+    bare(axes, "Time a position")
 
 
 def _ratios(axes: Any, speed: Speed) -> None:
@@ -63,20 +62,20 @@ def _ratios(axes: Any, speed: Speed) -> None:
     axes.axhline(1, color=GREY, lw=0.8, zorder=0)
     axes.set_ylim(0, 1.25 * max([1.3, *(r.ratio for r in speed.races)]))
     axes.set_xticks(range(len(kinds)), [f"{variants} x {positions}" for variants, positions in kinds], fontsize=8)
-    axes.set_xlabel(_("variants x positions"), fontsize=9)
-    axes.set_ylabel(_("tmm / by hand"), fontsize=9)
+    axes.set_xlabel("variants x positions", fontsize=9)
+    axes.set_ylabel("tmm / by hand", fontsize=9)
     axes.legend(fontsize=8, frameon=False, ncol=3, loc="upper left")
-    bare(axes, _("Ratio, and what is allowed"))
+    bare(axes, "Ratio, and what is allowed")
 
 
 def _growth(axes: Any, growth: Growth) -> None:
     n, t = np.array(growth.numbers, float), 1e3 * np.array(growth.seconds)
     slope, start = np.polyfit(n, t, 1, w=1 / t)
-    axes.plot(n, start + slope * n, "-", lw=1, color=GREY, label=_("straight line: linear growth"))
+    axes.plot(n, start + slope * n, "-", lw=1, color=GREY, label="straight line: linear growth")
     axes.plot(n, t, "o", ms=5, color=RED)
     decades(axes)
     what = GROWING[growth.what][0]
     axes.set_xlabel(what, fontsize=9)
-    axes.set_ylabel(_("ms"), fontsize=9)
+    axes.set_ylabel("ms", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper left")
-    bare(axes, _("Growth with {what}: exponent {exponent:.3f}").format(what=what, exponent=growth.exponent))
+    bare(axes, f"Growth with {what}: exponent {growth.exponent:.3f}")

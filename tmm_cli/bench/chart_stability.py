@@ -13,31 +13,30 @@ from matplotlib.patches import Patch
 from tmm_cli.bench.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
 from tmm_cli.bench.families import BY_NAME
 from tmm_cli.bench.stability import OURS, Row, Stability
-from tmm_cli.errors import _
 
 PANELS = 5  # on a sheet; the sixth place is the key's
 LOW, HIGH = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
 METHODS: dict[str, tuple[str, dict[str, Any]]] = {
-    OURS: (_("tmm, with its bound"), {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
-    "closed": (_("groups (tmm) in float64 alone"), {"marker": ".", "ms": 4, "color": "#e58a83", "lw": 1.0}),
-    "newton-2": (_("Newton on loop closure, 1e-2"), {"marker": "^", "color": "#8fb4e8"}),
-    "newton-6": (_("Newton on loop closure, 1e-6"), {"marker": "v", "color": "#4a7fd0"}),
-    "newton-12": (_("Newton on loop closure, 1e-12"), {"marker": "o", "color": "#1f3f80"}),
-    "multibody": (_("whole Jacobian, multipliers"), {"marker": "s", "color": GREEN}),
-    "differences-4": (_("central differences, 1e-4 rad"), {"marker": "v", "color": ORANGE}),
-    "single": (_("groups in single precision"), {"marker": "D", "color": "#7a3d99"}),
-    "extended": (_("groups in extended precision"), {"marker": "D", "color": "#7a3d99", "mfc": "white"}),
-    "board-0.50": (_("drawing board, 0.50 mm"), {"marker": "_", "ms": 4, "color": DARK}),
-    "cosines": (_("law of cosines (acos)"), {"marker": "P", "color": "#00838f"}),
-    "freudenstein": (_("Freudenstein, tan of half the angle"), {"marker": "X", "color": "#5d4037"}),
+    OURS: ("tmm, with its bound", {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
+    "closed": ("groups (tmm) in float64 alone", {"marker": ".", "ms": 4, "color": "#e58a83", "lw": 1.0}),
+    "newton-2": ("Newton on loop closure, 1e-2", {"marker": "^", "color": "#8fb4e8"}),
+    "newton-6": ("Newton on loop closure, 1e-6", {"marker": "v", "color": "#4a7fd0"}),
+    "newton-12": ("Newton on loop closure, 1e-12", {"marker": "o", "color": "#1f3f80"}),
+    "multibody": ("whole Jacobian, multipliers", {"marker": "s", "color": GREEN}),
+    "differences-4": ("central differences, 1e-4 rad", {"marker": "v", "color": ORANGE}),
+    "single": ("groups in single precision", {"marker": "D", "color": "#7a3d99"}),
+    "extended": ("groups in extended precision", {"marker": "D", "color": "#7a3d99", "mfc": "white"}),
+    "board-0.50": ("drawing board, 0.50 mm", {"marker": "_", "ms": 4, "color": DARK}),
+    "cosines": ("law of cosines (acos)", {"marker": "P", "color": "#00838f"}),
+    "freudenstein": ("Freudenstein, tan of half the angle", {"marker": "X", "color": "#5d4037"}),
 }
 VERDICTS = {
-    "right": (_("right"), "#ffffff"), "said": (_("no answer, or a bound as wide as it is off"), "#9aa0a6"),
-    "wrong": (_("wrong, and it does not say so"), "#d93025"),
+    "right": ("right", "#ffffff"), "said": ("no answer, or a bound as wide as it is off", "#9aa0a6"),
+    "wrong": ("wrong, and it does not say so", "#d93025"),
 }  # fmt: skip
 DISTANCES = {
-    "rad": _("distance of the driver, rad"), "share": _("distance as a share of the length"), "ratio": "l / r",
-    "m": _("size, m"),
+    "rad": "distance of the driver, rad", "share": "distance as a share of the length", "ratio": "l / r",
+    "m": "size, m",
 }  # fmt: skip
 
 
@@ -45,7 +44,7 @@ def charts(stability: Stability) -> dict[str, Figure]:
     """Sheets of A4 with five families each, by the names of their files."""
     families = stability.families
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
-    title = _("Near what kills a method ({page} of {pages})")
+    title = "Near what kills a method ({page} of {pages})"
     return {
         f"stability-{number}.png": _sheet(stability, chosen, title.format(page=number, pages=len(pages)))
         for number, chosen in enumerate(pages, 1)
@@ -54,11 +53,11 @@ def charts(stability: Stability) -> dict[str, Figure]:
 
 def _sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:
     shown = [method for method in METHODS if method in stability.methods]
-    caption = _(
-        "Above: largest error of the answers given, positions to balancing moment, over the "
-        "largest value. Below: of {scenes} linkages at each distance the share that it gets "
-        "right, does not and says so, gets wrong."
-    ).format(scenes=max(row.scenes for row in stability.rows))
+    caption = (
+        "Above: largest error of the answers given, positions to balancing moment, over the largest value. Below: of "
+        f"{max(row.scenes for row in stability.rows)} linkages at each distance the share that it gets right, does not "
+        "and says so, gets wrong."
+    )
     figure = page(title, caption)
     for number, family in enumerate(families):
         left, bottom = 0.075 + 0.322 * (number % 3), 0.51 - 0.47 * (number // 3)
@@ -97,7 +96,7 @@ def _errors(axes: Any, stability: Stability, family: str, shown: list[str], labe
     axes.tick_params(labelsize=6.5)
     axes.grid(True, axis="y", color="#e2e2e2", lw=0.5)
     if labelled:
-        axes.set_ylabel(_("largest error"), fontsize=7.5)
+        axes.set_ylabel("largest error", fontsize=7.5)
 
 
 def _made(axes: Any, stability: Stability, family: str, shown: list[str]) -> None:
@@ -127,7 +126,7 @@ def _mixed(row: Row) -> tuple[float, ...]:
 
 def _key(figure: Figure, shown: list[str]) -> None:
     handles: list[Any] = [Line2D([], [], label=METHODS[method][0], **_style(method)) for method in shown]
-    handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label=_("the bound that tmm prints")))
+    handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="the bound that tmm prints"))
     for label, colour in VERDICTS.values():
         handles.append(Patch(facecolor=colour, edgecolor="#808080", lw=0.5, label=label))
     figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.7, 0.46), fontsize=7.5, frameon=False,

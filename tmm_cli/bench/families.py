@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from decimal import Decimal
 from typing import Literal
 
-from tmm_cli.errors import _
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch, Slide
 
 Numbers = Mapping[str, Decimal]
@@ -215,15 +214,15 @@ def _fold(n: Numbers, distance: Decimal) -> Scene:
 
 
 FAMILIES: tuple[Family, ...] = (
-    Family("dead-position", _("Dead position of the driven four-bar"), _dead, NEAR, fixed=True),
-    Family("change-point", _("Change point of a parallelogram"), _dead, NEAR, fixed=True),
-    Family("outer-tangent", _("Circles touching from outside, d → b + c"), _outer, NEAR, "share"),
-    Family("inner-tangent", _("Circles touching from inside, d → |b - c|"), _inner, NEAR, "share"),
-    Family("stone-over-pivot", _("Stone over the pivot of its slotted link"), _stone, NEAR, "share"),
-    Family("short-rod", _("Rod hardly longer than its crank"), _short, NEAR[:12], "share"),
-    Family("long-rod", _("Rod much longer than its crank"), _long, LONGER, "ratio"),
-    Family("size", _("Size"), _size, SIZES, "m"),
-    Family("three-in-line", _("Start with three points in line"), _line, NEAR),
-    Family("two-assemblies-lost", _("Class III group losing two assemblies"), _fold, NEAR, fixed=True),
+    Family("dead-position", "Dead position of the driven four-bar", _dead, NEAR, fixed=True),
+    Family("change-point", "Change point of a parallelogram", _dead, NEAR, fixed=True),
+    Family("outer-tangent", "Circles touching from outside, d → b + c", _outer, NEAR, "share"),
+    Family("inner-tangent", "Circles touching from inside, d → |b - c|", _inner, NEAR, "share"),
+    Family("stone-over-pivot", "Stone over the pivot of its slotted link", _stone, NEAR, "share"),
+    Family("short-rod", "Rod hardly longer than its crank", _short, NEAR[:12], "share"),
+    Family("long-rod", "Rod much longer than its crank", _long, LONGER, "ratio"),
+    Family("size", "Size", _size, SIZES, "m"),
+    Family("three-in-line", "Start with three points in line", _line, NEAR),
+    Family("two-assemblies-lost", "Class III group losing two assemblies", _fold, NEAR, fixed=True),
 )
 BY_NAME = {family.name: family for family in FAMILIES}

@@ -18,7 +18,6 @@ import numpy as np
 import tmm_cli
 from tmm_cli.bench.groups import Group, family_of, group, write
 from tmm_cli.bench.measured import CLOCK, Measured, slack, words
-from tmm_cli.errors import _
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.draw_variants import CHUNK, Variety
 from tmm_cli.grading.following import following
@@ -65,7 +64,7 @@ class Figure:
             fails = self.found < self.target / slack
         if not fails:
             return ""
-        told = _("{what}, of {of}: {found}, target {target:g}")
+        told = "{what}, of {of}: {found}, target {target:g}"
         return told.format(what=self.what, of=self.of, found=f"{self.found:.4g}", target=self.target)
 
 
@@ -82,14 +81,14 @@ class Grades(Measured):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        title = _("Grading a group of a six-bar with forces, 12 answers each, drawn to 1 %")
+        title = "Grading a group of a six-bar with forces, 12 answers each, drawn to 1 %"
         signs = {"most": "≤", "least": "≥"}
         rows = [
             (one.what, str(one.of), f"{one.found:.4g}",
              "" if one.target is None else f"{signs[one.bound]} {one.target:.4g}")
             for one in self.figures
         ]  # fmt: skip
-        return (words("grading", title, (_("figure"), _("of"), _("found"), _("target")), rows),)
+        return (words("grading", title, ("figure", "of", "found", "target"), rows),)
 
 
 def measure(*, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None) -> Grades:
@@ -98,11 +97,11 @@ def measure(*, reduced: bool = False, full: bool = False, progress: Callable[[st
     figures: list[Figure] = []
     made = group(sheets)
     for count in range(3):
-        progress(_("diagnosis of {count} mistakes").format(count=count))
+        progress(f"diagnosis of {count} mistakes")
         figures += diagnosed(made, count)
-    progress(_("following errors"))
+    progress("following errors")
     figures.append(followed(group(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
-    progress(_("variants"))
+    progress("variants")
     figures.append(judged(REDUCED_CANDIDATES if reduced else CANDIDATES))
     sizes = REDUCED_STUDENTS if reduced else (*STUDENTS, *[MANY] * full)
     return Grades((*figures, *graded(sizes, progress)), reduced=reduced)
@@ -125,14 +124,14 @@ def diagnosed(group: Group, count: int) -> Iterator[Figure]:
     share = 100 / len(students)
     if count == 0:
         fails = np.any(group.right.error(written) > group.right.allowed, axis=1)
-        yield Figure(_("right sheets with an answer marked wrong, %"), len(students), share * np.sum(fails), 0.0)
-        yield Figure(_("right sheets accused of a mistake, %"), len(students), share * wrongly, 0.0)
+        yield Figure("right sheets with an answer marked wrong, %", len(students), share * np.sum(fails), 0.0)
+        yield Figure("right sheets accused of a mistake, %", len(students), share * wrongly, 0.0)
         return
     least, most = ((95.0, 1.0), (80.0, 2.0))[count - 1]
-    told = (_("sheets with one mistake, {how}, %"), _("sheets with two mistakes, {how}, %"))[count - 1]
-    yield Figure(told.format(how=_("named rightly")), len(students), share * rightly, least, "least")
-    yield Figure(told.format(how=_("named wrongly")), len(students), share * wrongly, most)
-    yield Figure(told.format(how=_("with another one named too")), len(students), share * (beside - wrongly))
+    told = ("sheets with one mistake, {how}, %", "sheets with two mistakes, {how}, %")[count - 1]
+    yield Figure(told.format(how="named rightly"), len(students), share * rightly, least, "least")
+    yield Figure(told.format(how="named wrongly"), len(students), share * wrongly, most)
+    yield Figure(told.format(how="with another one named too"), len(students), share * (beside - wrongly))
 
 
 def followed(group: Group) -> Figure:
@@ -162,7 +161,7 @@ def followed(group: Group) -> Figure:
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
         for n in range(count)
     )  # fmt: skip
-    told = _("chains that lose the points of one answer alone, %")
+    told = "chains that lose the points of one answer alone, %"
     return Figure(told, count, 100 * alone / count, 100.0, "least")
 
 
@@ -176,16 +175,14 @@ def judged(count: int) -> Figure:
         start = CLOCK()
         found = variety.judged(picks[first : first + CHUNK])
         per_second = max(per_second, len(found.why) / (CLOCK() - start))
-    return Figure(
-        _("candidates for variants judged in a second"), count, per_second, PER_SECOND, "least", absolute=True
-    )
+    return Figure("candidates for variants judged in a second", count, per_second, PER_SECOND, "least", absolute=True)
 
 
 def graded(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[Figure]:
     """Groups of these sizes graded by the command, from files to files."""
     times = []
     for students in sizes:
-        progress(_("{students} students").format(students=students))
+        progress(f"{students} students")
         solving = 0.0
         with tempfile.TemporaryDirectory() as folder:
             for number in range(-(-students // PART)):
@@ -198,16 +195,14 @@ def graded(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[Fi
         times.append(run.first + run.others)
         limit = SECONDS * students + (BEGINNING if students < OF else 0)
         least = min(run.seconds, run.first + run.others / 2)  # what else the machine does counts in the former alone
-        yield Figure(_("graded with all outputs on two cores, s"), students, least, limit, absolute=True)
-        yield Figure(_("the same by the clock, s"), students, run.seconds)
-        yield Figure(_("the same, s of all processors"), students, times[-1])
-        yield Figure(_("memory of all processes, MB"), students, run.memory, MEMORY if students <= OF else None)
-        yield Figure(
-            _("solving the variants, % of the time of processors"), students, 100 * solving / times[-1], SOLVING
-        )
+        yield Figure("graded with all outputs on two cores, s", students, least, limit, absolute=True)
+        yield Figure("the same by the clock, s", students, run.seconds)
+        yield Figure("the same, s of all processors", students, times[-1])
+        yield Figure("memory of all processes, MB", students, run.memory, MEMORY if students <= OF else None)
+        yield Figure("solving the variants, % of the time of processors", students, 100 * solving / times[-1], SOLVING)
     for k in range(1, len(sizes)):
         power = math.log(times[k] / times[k - 1]) / math.log(sizes[k] / sizes[k - 1])
-        yield Figure(_("time grows as the number of students to the power"), sizes[k], power, GROWTH)
+        yield Figure("time grows as the number of students to the power", sizes[k], power, GROWTH)
 
 
 def _mixed(group: Group) -> list[tuple[int, ...]]:

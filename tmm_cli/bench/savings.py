@@ -13,7 +13,6 @@ from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.measured import Measured
 from tmm_cli.draw import files
-from tmm_cli.errors import _
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.motion import move
@@ -33,12 +32,12 @@ REPEATS, FEW = 7, 3
 PLACES, FEW_PLACES = 3601, 721  # over the cycle, for what grows with their number
 
 NAMED = {
-    "structure": _("structure alone is counted"), "groups": _("groups on the way only"),
-    "positions": _("positions asked for only"), "orders": _("accelerations where needed"),
-    "massless": _("massless links carry nothing"), "closed": _("closed form where there is one"),
-    "drawings": _("drawings when asked for"),
+    "structure": "structure alone is counted", "groups": "groups on the way only",
+    "positions": "positions asked for only", "orders": "accelerations where needed",
+    "massless": "massless links carry nothing", "closed": "closed form where there is one",
+    "drawings": "drawings when asked for",
 }  # fmt: skip
-COUNTED = {"solutions": _("solutions"), "loads": _("loads"), "pictures": _("pictures")}
+COUNTED = {"solutions": "solutions", "loads": "loads", "pictures": "pictures"}
 
 Work = Callable[[], Any]
 
@@ -89,17 +88,17 @@ class Savings(Measured):
     def tables(self) -> tuple[Table, ...]:
         """A row a saving: what was counted and how long it took, with it and without."""
         found = self.found
-        note = _("A solution is a group at one place of the driver, or a round of Newton's method there; "
+        note = ("A solution is a group at one place of the driver, or a round of Newton's method there; "
                  "its velocities and its accelerations are one more each.")  # fmt: skip
-        return (Table("savings", _("What is saved by computing no more than what is asked for"), (
-            Column(_("saving"), [NAMED[s.name] for s in found]),
-            Column(_("counted"), [COUNTED[s.counts] for s in found]),
-            Column(_("with it"), [str(s.with_) for s in found]),
-            Column(_("without"), [str(s.without) for s in found]),
-            Column(_("with it, ms"), [s.seconds[0] * 1e3 for s in found], NUMBER, digits=3),
-            Column(_("without, ms"), [s.seconds[1] * 1e3 for s in found], NUMBER, digits=3),
-            Column(_("times faster"), [s.seconds[1] / s.seconds[0] for s in found], NUMBER, digits=3),
-            Column(_("remark"), ["" if s.holds else _("saves nothing") for s in found]),
+        return (Table("savings", "What is saved by computing no more than what is asked for", (
+            Column("saving", [NAMED[s.name] for s in found]),
+            Column("counted", [COUNTED[s.counts] for s in found]),
+            Column("with it", [str(s.with_) for s in found]),
+            Column("without", [str(s.without) for s in found]),
+            Column("with it, ms", [s.seconds[0] * 1e3 for s in found], NUMBER, digits=3),
+            Column("without, ms", [s.seconds[1] * 1e3 for s in found], NUMBER, digits=3),
+            Column("times faster", [s.seconds[1] / s.seconds[0] for s in found], NUMBER, digits=3),
+            Column("remark", ["" if s.holds else "saves nothing" for s in found]),
         ), notes=(note,)),)  # fmt: skip
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
 from tmm_cli.bench.paths import PROBLEMS, PathProblem
-from tmm_cli.errors import _
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.table import Table
 from tmm_cli.synthesis.optimal.candidates import Candidates
@@ -145,33 +144,33 @@ class Searches(Measured):
     @property
     def tables(self) -> tuple[Table, ...]:
         runs = self.known["runs"]
-        title = _(
+        title = (
             "Search from several seeds, {problem}; best known {objective:.9g} "
             "of {runs} runs of {evaluations} candidates"
         )
         rates = words(
-            "rates", _("Candidates a second at the evaluation, one thread: least time of several turns"),
-            (_("problem"), _("parameters"), _("constraints"), _("positions"), _("operations"), _("generation"),
-             _("candidates/s"), _("at least")),
+            "rates", "Candidates a second at the evaluation, one thread: least time of several turns",
+            ("problem", "parameters", "constraints", "positions", "operations", "generation",
+             "candidates/s", "at least"),
             [(r.problem, str(r.parameters), str(r.constraints), str(r.positions), str(r.operations), str(r.generation),
               f"{r.per_second:.0f}", "" if r.target is None else f"{r.target:.0f}") for r in self.rates],
         )  # fmt: skip
         found = words(
             "found", title.format(problem=self.known["problem"], objective=self.known["objective"], runs=len(runs),
                                   evaluations=max(run["evaluations"] for run in runs)),
-            (_("seed"), _("objective (SI)"), _("above the best known, %"), _("candidates"), _("search, s"),
-             _("polish, s")),
+            ("seed", "objective (SI)", "above the best known, %", "candidates", "search, s",
+             "polish, s"),
             [(str(f.seed), f"{f.objective:.9g}", f"{100 * f.off:.2g}", str(f.evaluations), f"{f.searching:.2f}",
               f"{f.polishing:.2f}") for f in self.found],
         )  # fmt: skip
         paths = words(
-            "paths", _("Published path problems of four-bar linkages, least squares"),
-            (_("problem"), _("parameters"), _("seed"), _("distance, mm"), _("best printed, mm"),
-             _("above the least known, %"),
-             _("starts agree"), _("s")),
+            "paths", "Published path problems of four-bar linkages, least squares",
+            ("problem", "parameters", "seed", "distance, mm", "best printed, mm",
+             "above the least known, %",
+             "starts agree", "s"),
             [(p.problem, str(p.parameters), str(p.seed), f"{p.distance:.10g}",
               "" if p.printed is None else f"{p.printed:.5g}", f"{100 * p.off:.2g}",
-              _("yes") if p.agree else _("no"), f"{p.seconds:.1f}") for p in self.paths],
+              "yes" if p.agree else "no", f"{p.seconds:.1f}") for p in self.paths],
         )  # fmt: skip
         return rates, found, paths
 

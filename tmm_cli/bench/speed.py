@@ -16,7 +16,6 @@ from tmm_cli.bench.methods import taped
 from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.results.table import Table
@@ -33,9 +32,9 @@ EXPONENT = 0.05  # growth may differ so much from linear
 
 DYADS = (1, 2, 3, 5, 8, 12, 18, 24, 30)
 GROWING = {  # what grows, and the numbers that are measured
-    "links": (_("moving links"), DYADS),
-    "positions": (_("positions"), (360, 1000, 3000, 9000, 18_000, 36_000, 72_000)),
-    "variants": (_("variants"), (30, 100, 300, 1000, 3000, 10_000)),
+    "links": ("moving links", DYADS),
+    "positions": ("positions", (360, 1000, 3000, 9000, 18_000, 36_000, 72_000)),
+    "variants": ("variants", (30, 100, 300, 1000, 3000, 10_000)),
 }
 
 
@@ -129,20 +128,20 @@ class Speed(Measured):
     @property
     def tables(self) -> tuple[Table, ...]:
         races = words(
-            "races", _("Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism"),
-            (_("mechanism"), _("variants"), _("positions"), _("tmm"), _("by hand"), _("ratio"), _("at most"),
-             _("preparing once, ms")),
+            "races", "Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism",
+            ("mechanism", "variants", "positions", "tmm", "by hand", "ratio", "at most",
+             "preparing once, ms"),
             [(r.mechanism, str(r.variants), str(r.positions), f"{r.ours:.0f}", f"{r.by_hand:.0f}", f"{r.ratio:.2f}",
               "" if r.target is None else f"{r.target:g}", f"{r.preparing:.0f}") for r in self.races],
         )  # fmt: skip
         growths = words(
-            "growths", _("How time grows: t0 + c n^exponent"), (_("with"), _("n"), _("ms"), _("exponent")),
+            "growths", "How time grows: t0 + c n^exponent", ("with", "n", "ms", "exponent"),
             [(GROWING[g.what][0], f"{g.numbers[0]} ... {g.numbers[-1]}",
               f"{1e3 * g.seconds[0]:.2f} ... {1e3 * g.seconds[-1]:.2f}", f"{g.exponent:.3f}") for g in self.growths],
         )  # fmt: skip
         rivals = words(
-            "rivals", _("Other programs, nanoseconds a position of 360"),
-            (_("program"), _("mechanism"), _("its time"), _("tmm"), _("times as long"), _("at least")),
+            "rivals", "Other programs, nanoseconds a position of 360",
+            ("program", "mechanism", "its time", "tmm", "times as long", "at least"),
             [(r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
              for r in self.rivals],
         )  # fmt: skip

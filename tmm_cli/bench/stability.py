@@ -21,7 +21,7 @@ from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.truths import Known, known
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.results.table import Table
 from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
@@ -89,7 +89,7 @@ class Stability(Measured):
     rows: tuple[Row, ...]
     widths: tuple[float, ...]
 
-    met: ClassVar[str] = _("all targets met: every value within its bound or not given")
+    met: ClassVar[str] = "all targets met: every value within its bound or not given"
 
     @property
     def families(self) -> tuple[str, ...]:
@@ -141,15 +141,15 @@ class Stability(Measured):
             if not self.of(family, method):
                 return "-"
             distance = self.lies(family, method)
-            return _("never") if distance is None else f"{distance:.0e}".replace("e-0", "e-")
+            return "never" if distance is None else f"{distance:.0e}".replace("e-0", "e-")
 
         rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
-        title = _("Where each method first gives a wrong answer without saying so")
-        return (words("stability", title, (_("method"), *self.families), rows),)
+        title = "Where each method first gives a wrong answer without saying so"
+        return (words("stability", title, ("method", *self.families), rows),)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        sharp = _("{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error")
+        sharp = "{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error"
         return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{WIDE:g}")
 
 

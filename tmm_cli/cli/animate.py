@@ -12,7 +12,7 @@ from tmm_cli.animate.page import page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.results.files import folder_name, write_whole
 from tmm_cli.results.warnings import warnings
 

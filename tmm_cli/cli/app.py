@@ -14,13 +14,14 @@ import typer
 from tmm_cli import __version__
 from tmm_cli.cli.commands import add_commands
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 COMMANDS = {
     "run": "Compute a problem whole; write tables, drawings, result.json.",
     "structure": "Mobility, pairs, Assur groups, names of links, contours.",
     "kinematics": "Positions, velocities, accelerations, transfer functions.",
     "forces": "Loads, reactions, what balances the driver, Zhukovsky lever.",
+    "dynamics": "Law of motion: driving moment or motor, flywheel, speeds and accelerations of the driver.",
     "check": "Compute problems again, compare them with what is expected.",
     "explain": "Say what a file was understood to mean, what is computed.",
     "new": "Start a problem file from a commented template.",

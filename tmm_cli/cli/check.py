@@ -10,7 +10,7 @@ import typer
 from tmm_cli.cli.common import progress, refusing
 from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
 from tmm_cli.cli.talk import BAD_INPUT, say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
 

@@ -12,8 +12,8 @@ from tmm_cli import __version__
 from tmm_cli.cli.common import console
 from tmm_cli.cli.reporting import computed
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
-from tmm_cli.errors import _
 from tmm_cli.grading.examples import grades
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.as_json import to_json

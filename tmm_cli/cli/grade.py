@@ -14,8 +14,7 @@ import typer
 
 from tmm_cli.cli.common import bars, console, refusing
 from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
-from tmm_cli.errors import _
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say, speak_as
 from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
@@ -26,6 +25,7 @@ from tmm_cli.grading.submissions.template import write_template
 from tmm_cli.grading.tables import read_table
 from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.workers import cluster, processes
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.reader import read_file
 from tmm_cli.results.terminal import show
@@ -64,7 +64,7 @@ def grade(
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
     """
     with refusing():
-        task = read_task(read_file(file))
+        task = read_task(speak_as(read_file(file)))
         if template is not None:
             write_template(task, template)
             say(_("written: {files}").format(files=template))

@@ -13,7 +13,7 @@ from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Va
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.library import assemblies, solve
 
 Assemblies = Annotated[

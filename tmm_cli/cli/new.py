@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli.cli.common import refusing
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest
 from tmm_cli.problem.templates import template_text, templates
 

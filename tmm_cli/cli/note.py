@@ -12,7 +12,7 @@ from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import OK, say
 from tmm_cli.draw import remarks
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note import note as note_of
 from tmm_cli.note.formats import FORMATS, formats_of
 from tmm_cli.results.files import folder_name, write_whole

@@ -14,7 +14,7 @@ from tmm_cli.cli.common import Files, Json, Position, Settings, Variant, Variant
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.results.output import write_results
 from tmm_cli.results.warnings import warnings
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError, nearest, quote

@@ -10,7 +10,7 @@ import typer
 from tmm_cli.cli.common import Json, console, emit_json, progress, refusing
 from tmm_cli.cli.scheme_files import named_types, wanted_chains, wanted_schemes, write_skeletons
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.schemes import chains_json, chains_table, schemes_json, schemes_table

@@ -16,7 +16,7 @@ from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say
 from tmm_cli.draw import remarks
 from tmm_cli.draw.layout.files import files_of_sheets, formats_of
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.results.warnings import warnings
 
 

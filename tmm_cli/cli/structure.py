@@ -11,7 +11,7 @@ from tmm_cli.cli.common import Files, Json, Out, Settings, Variant, Variants, ea
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 Drawings = Annotated[
     bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")

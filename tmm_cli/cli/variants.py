@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import console, progress, refusing
-from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
+from tmm_cli.cli.talk import say, speak_as
 from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
 from tmm_cli.grading.choices import with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
@@ -17,6 +16,7 @@ from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.tables import csv_of, read_students, rows_of_table, xlsx_of
 from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.task_sheets import TaskSheets
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.results.files import Staged
@@ -45,7 +45,7 @@ def variants(
 ) -> None:  # fmt: skip
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
-        task = read_task(with_vary(read_file(file), vary or ()))
+        task = read_task(with_vary(speak_as(read_file(file)), vary or ()))
         variety = Variety(task)
         if students is None:
             table = draw(variety, seed, count)

@@ -20,7 +20,7 @@ from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.quantities import FORCE, MOMENT
 
 OF_POSITION = (position, motion_plans, group_loads, forces, lever)

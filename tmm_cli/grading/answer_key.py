@@ -8,11 +8,12 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.grading.grade import numbers_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.sheet import right
 from tmm_cli.grading.task import Asked, Task
+from tmm_cli.language import _
 from tmm_cli.quantities import NUMBER
 from tmm_cli.variants.family import families
 

@@ -15,7 +15,7 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.problem.errors import ProblemError, quote
 
 LARGEST = 2_000_000  # bytes of a file
@@ -34,8 +34,8 @@ TEXT = re.compile(rb"</(?:[\w.-]+:)?si\s*>")
 CELL = re.compile(rb"<" + _NAME + rb"c[\s/>]")
 OTHERS = {"content.xml", "xl/workbook.bin"}  # in what is not XLSX, and might be read as a table all the same
 REFUSED = {  # parts of an XLSX
-    "vbaproject": _("it has macros: save it as .xlsx without them"),
-    "externallink": _("it takes values from other files: put the values themselves in"),
+    "vbaproject": N_("it has macros: save it as .xlsx without them"),
+    "externallink": N_("it takes values from other files: put the values themselves in"),
 }
 
 
@@ -147,7 +147,7 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
             names = {part.filename.casefold() for part in parts}
             for name, why in REFUSED.items():
                 if any(name in part for part in names):
-                    raise ProblemError(why)
+                    raise ProblemError(_(why))
             if "xl/workbook.xml" not in names or names & OTHERS:
                 raise ProblemError(_("this is no XLSX"), allowed=_("a table as CSV or XLSX"))
             cells, longest = 0, 0

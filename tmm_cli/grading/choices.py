@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.block import Blocks
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote, under
 from tmm_cli.problem.scalars import plain_value
 from tmm_cli.problem.tree import Path, Tree

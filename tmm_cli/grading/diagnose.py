@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.scale_inverted import ScaleInverted
 from tmm_cli.grading.sheet import Right, Written, predicted, written_down
 from tmm_cli.grading.solution import solve
+from tmm_cli.language import _
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real, Vector
 

@@ -18,13 +18,14 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.grading.choices import choices, numbers
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.sheet import Right, right
 from tmm_cli.grading.soundness import faults_of
 from tmm_cli.grading.task import Asked, Task
 from tmm_cli.groups.sequence import link_states
+from tmm_cli.language import _
 from tmm_cli.tolerances import SAME_ASSEMBLY
 from tmm_cli.variants.family import Family, families, together
 from tmm_cli.variants.variant import Variant

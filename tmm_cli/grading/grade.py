@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.following import following
 from tmm_cli.grading.mistakes.other_zero import OtherZero
@@ -15,6 +15,7 @@ from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, Varian
 from tmm_cli.grading.sheet import right
 from tmm_cli.grading.submissions.positions import at_positions
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.quantities import Dimension
 from tmm_cli.variants.family import Family, families
 from tmm_cli.vectors import Real

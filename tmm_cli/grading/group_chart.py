@@ -12,10 +12,10 @@ from tmm_cli.draw.paper.chart import FINE, Panel
 from tmm_cli.draw.paper.drawing import POINT, Drawing
 from tmm_cli.draw.paper.fonts import width
 from tmm_cli.draw.paper.sheet import DARK, Sheet
-from tmm_cli.errors import _
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
 from tmm_cli.grading.task import Task
+from tmm_cli.language import N_, _
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.vectors import Real
 
@@ -27,8 +27,8 @@ LEFT = 16.0  # mm for the numbers of students
 UPPER, LOWER, GAP = 55.0, 75.0, 12.0  # mm: heights of the panels, and between them
 BLUE, ORANGE, PALE, BAD = "#4a6fa5", "#c77700", "#f9ecd6", "#c4574b"
 STATES: dict[State, tuple[str, str]] = {
-    "right": (_("right"), "#4c9a68"), "follows": (_("right given own"), "#a9d6b8"), "wrong": (_("wrong"), BAD),
-    "missing": (_("missing"), "#d0d0d0"),
+    "right": (N_("right"), "#4c9a68"), "follows": (N_("right given own"), "#a9d6b8"), "wrong": (N_("wrong"), BAD),
+    "missing": (N_("missing"), "#d0d0d0"),
 }  # fmt: skip
 
 
@@ -97,7 +97,7 @@ def _difficulties(panel: Panel, found: Sequence[Difficulty]) -> None:
             _bar(panel, row, left, left + share, colour)
             left += share
         _name(panel, row, own.name)
-    entries = list(STATES.values())
+    entries = [(_(name), colour) for name, colour in STATES.values()]
     middle = complex((panel.sheet.ground.low.real + panel.x.end - _room(entries)) / 2, panel.y.start - 8)
     _legend(panel, entries, middle)
 

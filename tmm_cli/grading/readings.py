@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.record import Form, Given, Key, Submission
 from tmm_cli.grading.sheet import Right, Written
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.units import UnitError, UnitSystem, parse_unit
 from tmm_cli.quantities import (

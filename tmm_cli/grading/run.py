@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from tmm_cli.errors import _
 from tmm_cli.grading.copies import with_copies
 from tmm_cli.grading.exports import write
 from tmm_cli.grading.exports.book import Gradebook
@@ -19,6 +18,7 @@ from tmm_cli.grading.kept import keep, key_of, read_kept
 from tmm_cli.grading.record import StudentMarks, Submission, VariantTable
 from tmm_cli.grading.task import Task
 from tmm_cli.grading.workers import Way, here, processes
+from tmm_cli.language import _
 from tmm_cli.problem.tree import Tree
 
 SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the others

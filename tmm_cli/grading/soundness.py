@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import angle, followers, named
 from tmm_cli.kinematics.strokes import Strokes
+from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.family import Family

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.shown import sentence, shown
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column, Table, table_of_words
 from tmm_cli.vectors import Real

@@ -8,11 +8,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.errors import _
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.choices import NUMBER
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.results.text import csv_cell

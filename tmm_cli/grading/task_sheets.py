@@ -13,10 +13,11 @@ import yaml
 
 from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.sheets.task import task_picture
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.task import Asked, Task
+from tmm_cli.language import N_, _
 from tmm_cli.library import structure_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -30,31 +31,31 @@ MEASURES = (LENGTH, *(kind.dimension for kind in KINDS.values()))
 PLAIN = re.compile(r"[\w.+\-*/^()° ]+")
 SIGNS = re.compile(r"([\\`*_\[\]|#~])")  # of markup
 MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
-    "W": _("mobility"),
-    "class": _("class of the mechanism"),
-    "n": _("number of moving links"),
-    "p1": _("number of pairs of one freedom"),
-    "p2": _("number of pairs of two freedoms"),
-    "H": _("stroke of the output"),
-    "psi": _("swing of the output"),
-    "k": _("time of the working stroke over that of the idle one"),
-    "x": _("from the frame's origin"),
-    "y": _("from the frame's origin"),
-    "v": _("velocity, a vector"),
-    "a": _("acceleration, a vector"),
-    "phi": _("from the x axis to the link, from its first point to its second; counterclockwise"),
-    "s": _("place along the guide, from the point that it goes through; angle of what swings"),
-    "omega": _("angular speed, positive counterclockwise"),
-    "epsilon": _("angular acceleration, positive counterclockwise"),
-    "v on": _("of the one link along its guide on the other"),
-    "a on": _("of the one link along its guide on the other"),
-    "Coriolis": _("Coriolis acceleration, a vector"),
-    "U": _("force of inertia, a vector"),
-    "M": _("couple of inertia, positive counterclockwise"),
-    "R": _("force of the first link on the second, a vector"),
-    "arm": _("where this force acts, from the point that slides, along the guide"),
-    "M_b": _("balancing moment on the driver, positive counterclockwise"),
-    "F_b": _("balancing force on the driver"),
+    "W": N_("mobility"),
+    "class": N_("class of the mechanism"),
+    "n": N_("number of moving links"),
+    "p1": N_("number of pairs of one freedom"),
+    "p2": N_("number of pairs of two freedoms"),
+    "H": N_("stroke of the output"),
+    "psi": N_("swing of the output"),
+    "k": N_("time of the working stroke over that of the idle one"),
+    "x": N_("from the frame's origin"),
+    "y": N_("from the frame's origin"),
+    "v": N_("velocity, a vector"),
+    "a": N_("acceleration, a vector"),
+    "phi": N_("from the x axis to the link, from its first point to its second; counterclockwise"),
+    "s": N_("place along the guide, from the point that it goes through; angle of what swings"),
+    "omega": N_("angular speed, positive counterclockwise"),
+    "epsilon": N_("angular acceleration, positive counterclockwise"),
+    "v on": N_("of the one link along its guide on the other"),
+    "a on": N_("of the one link along its guide on the other"),
+    "Coriolis": N_("Coriolis acceleration, a vector"),
+    "U": N_("force of inertia, a vector"),
+    "M": N_("couple of inertia, positive counterclockwise"),
+    "R": N_("force of the first link on the second, a vector"),
+    "arm": N_("where this force acts, from the point that slides, along the guide"),
+    "M_b": N_("balancing moment on the driver, positive counterclockwise"),
+    "F_b": N_("balancing force on the driver"),
 }
 STYLE = """
 body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:52rem;margin:2rem auto;padding:0 1rem}
@@ -202,7 +203,7 @@ def meaning(name: str) -> str:
     """What a quantity is, for a student who has not seen its name yet."""
     kind, _of, thing = name.partition(" of ")
     kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind
-    return MEANINGS.get(kind) or MEANINGS.get(kind.partition("_")[0], "")
+    return _(MEANINGS.get(kind, MEANINGS.get(kind.partition("_")[0], "")))
 
 
 def _unit(task: Task, asked: Asked) -> str:

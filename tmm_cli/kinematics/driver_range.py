@@ -223,7 +223,8 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, nu
     def slack(q: Real) -> Real:
         return -link_states(linkage, upto, q, 0).placements[-1].residual
 
-    return np.array([least(slack, scan.q[k] - step, scan.q[k] + step)[0] for k in close])
+    narrow: Real = least(slack, scan.q[close] - step, scan.q[close] + step)[0]
+    return narrow
 
 
 def _lost(motion: LinkStates, side: list[float]) -> Real:
@@ -266,7 +267,9 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: Drive
         at = motion.placements[number]
         margin = np.where(motion.placed | at.dead, at.margin, np.inf)
         inner = margin[1:-1]
-        low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1)) + 1
+        with np.errstate(invalid="ignore"):  # where it cannot fall by so much between two places, none is dead there
+            reach = inner - 2 * np.maximum(margin[:-2] - inner, margin[2:] - inner) < DEAD
+        low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1) & reach) + 1
         places = list(q[low])
         steps = q[1] - q[0]
         if driver_range.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
@@ -274,10 +277,9 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: Drive
         upto = towards(kernels, dyad.group.links)
         passed = _passed(linkage, upto, driver_range)
         found += passed
-        for place in places:
-            if any(abs(_apart(place, p.place, driver_range)) <= 2 * steps for p in passed):
-                continue
-            best, left = least(partial(_margin, linkage, upto), place - steps, place + steps)
+        away = [p for p in places if all(abs(_apart(p, o.place, driver_range)) > 2 * steps for o in passed)]
+        narrowest = least(partial(_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
+        for best, left in zip(*narrowest, strict=True):
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
                 best = pinned(linkage, upto, best, steps)
                 passive = getattr(dyad, "passive", False)  # what holds it twice leads it through

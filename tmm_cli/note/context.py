@@ -23,6 +23,7 @@ from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
+from tmm_cli.note.expression import plain, rounded
 from tmm_cli.quantities import Dimension
 
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
@@ -42,12 +43,12 @@ def _groups(results: Results) -> Drawn:
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (_scheme, 110), "groups": (_groups, 150), "synthesis": (synthesised, 140),
+    "structure": (_scheme, 110), "groups": (_groups, 70), "synthesis": (synthesised, 140),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
-    "group-loads": (group_loads, 110), "forces": (forces, 110), "lever": (lever, 120),
+    "group-loads": (group_loads, 90), "forces": (forces, 100), "lever": (lever, 110),
 }  # fmt: skip
 
 
@@ -78,27 +79,40 @@ class Subject:
     def value(self, si: float, dimension: Dimension, digits: int = 4) -> str:
         """A number of the file with its unit there."""
         units = self.results.problem.units
-        return f"{self.text(units.from_si(si, dimension), digits)} {units.symbol(dimension)}".rstrip()
+        return f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip()
+
+    def unit(self, dimension: Dimension) -> str:
+        """The file's unit as it is printed."""
+        return printed_unit(self.results.problem.units.symbol(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
-        return figures(f"{value + 0.0:.{digits}g}", self.language)
+        return self.figures_of(plain(rounded(value, digits), digits))
 
-    def drawings(self, name: str, k: int | None = None) -> Mapping[str, Drawing]:
+    def figures_of(self, text: str) -> str:
+        """The same of figures that are there already."""
+        return figures(text, self.language)
+
+    def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
         if not self.drawn:
             return {}
         draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
         if (draw, k) not in self._drawings:
-            with within(Space(longest, (WIDTH, HEIGHT))):
+            with within(Space(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
                 self._drawings[draw, k] = dict(draw(subject))
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
-    def figures(self, name: str, sentence: str, caption: str, k: int | None = None) -> Iterable[Block]:
-        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}." """
+    def figures(self, name: str, sentence: str, caption: str, k: int | None = None, only: str = "") -> Iterable[Block]:
+        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
+
+        only: those of this stem, and what is continued of it.
+        """
         for stem, drawing in self.drawings(name, k).items():
+            if only and stem != only and not stem.startswith(f"{only}-sheet-"):
+                continue
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption, drawing, stem)
 
@@ -106,3 +120,8 @@ class Subject:
 def figures(text: str, language: str) -> str:
     """Figures with the decimal mark and the minus of a language."""
     return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
+
+
+def printed_unit(text: str) -> str:
+    """kg*m^2 is kg·m², also in a heading."""
+    return text.replace("*", "·").replace("^2", "²").replace("^3", "³")

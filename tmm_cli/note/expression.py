@@ -92,7 +92,8 @@ class Substitution:
     """A quantity found: name = letters = numbers = result with its unit.
 
     result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
-    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only.
+    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only. whole: a
+    number that is counted.
     """
 
     name: Symbol
@@ -100,6 +101,7 @@ class Substitution:
     result: float
     unit: str = ""
     angle: bool = False
+    whole: bool = False
 
     def value(self, figures: int) -> float:
         """Of the expression with numbers of so many figures put in, in the unit of the result."""
@@ -115,6 +117,8 @@ class Substitution:
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
         shown = 0.0 if abs(result) <= NOTHING * terms else result
+        if self.whole and self.value(MOST_FIGURES) == result:
+            return MOST_FIGURES, str(round(result))
         for own in range(FIGURES, 0, -1):
             text = fixed(shown, own, terms)
             unit = last_digit(text)
@@ -243,13 +247,12 @@ def plain(value: float, figures: int) -> str:
 
 
 def fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """A result with so many figures, its zeros at the end kept: they are true. terms: what a zero is the sum of."""
+    """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
     power = math.floor(math.log10(abs(rounded(value, figures))))
     if -4 <= power < 7:
-        decimals = figures - 1 - power
-        return f"{value:.{decimals}f}" if decimals >= 0 else f"{round(value, decimals):.0f}"
+        return f"{value:.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
 
@@ -264,4 +267,4 @@ def result_node(text: str, unit: str, say: Callable[[str], str] = str) -> paper.
     """A result as it stands at the end of its formula, with its unit."""
     digits = text[1:] if text.startswith("-") else text
     shown = paper.row("−", _figures(digits, say)) if text.startswith("-") else _figures(digits, say)
-    return paper.row(shown, paper.Words(f" {unit}" if unit not in ("", "°") else unit))
+    return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown

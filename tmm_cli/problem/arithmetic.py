@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.scalars import comma_error
 from tmm_cli.problem.units import PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit
@@ -26,6 +26,7 @@ _DOTTED = re.compile(r"\s*((?:[^\W\d_]+\s*[./]\s*)*[^\W\d_]+\.(?:\s*/?\s*[^\W\d_
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
 _JOINT = re.compile(r"\s*[*·/]|\s+")
 
+MOST_ANGLE: Final = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 _ANGLE_IN: Final = ("sin", "cos", "tan")
 _ANGLE_OUT: Final = ("asin", "acos", "atan")
 _OF_MANY: Final = ("atan2", "hypot", "min", "max")
@@ -37,10 +38,6 @@ def taken(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | N
     if found.dimension is None:
         return units.si(found.value, want)
     return found.value if found.dimension.fits(want) else None
-
-
-class UnknownParameterError(ProblemError):
-    """A name in arithmetic that no parameter has."""
 
 
 class Parser:
@@ -191,7 +188,7 @@ class Parser:
             raise ProblemError(_("a unit without a number before it"), found=quote(name), allowed=f"e.g. 1 {name}")
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
-        raise UnknownParameterError(
+        raise ProblemError(
             _("there is no such parameter"), found=quote(name), allowed=", ".join(self.parameters) or "none is given",
             near=nearest(name, names),
         )  # fmt: skip
@@ -217,6 +214,8 @@ class Parser:
             angle = taken(given, ANGLE, self.units)
             if angle is None:
                 raise self.fault(_("{name} wants an angle, not {dimension}").format(name=name, dimension=dimension))
+            if abs(float(angle)) > MOST_ANGLE:
+                raise self.fault(_("{name} of so large an angle has no digit left").format(name=name))
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault(_("tan of a right angle has no value"))
             return PhysicalValue(compute(angle), None)

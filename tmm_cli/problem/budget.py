@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.problem.errors import ProblemError
 

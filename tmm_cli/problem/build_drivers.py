@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 from typing import Literal
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link, Request, Sketch
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_links import Members

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Hinge, Link, Slide
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import Linkage, Load, LoadTable
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError

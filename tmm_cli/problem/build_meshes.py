@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 from tmm_cli.problem import schema
@@ -140,7 +140,7 @@ def _teeth(values: ValueReader, value: object, path: Path) -> float:
     """A number of teeth, which is whole, whatever decimals arithmetic has left behind."""
     teeth = values.positive(value, NUMBER, path)
     whole: float = np.floor(teeth + 0.5)
-    if abs(float(teeth) - float(whole)) > WHOLE_TEETH:
+    if whole < 1 or abs(float(teeth) - float(whole)) > WHOLE_TEETH:
         raise ProblemError(_("a number of teeth is whole"), path=path, found=quote(value))
     return whole
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Linkage, Spring
 from tmm_cli.problem import schema
 from tmm_cli.problem.values import Part, ValueReader, check_name

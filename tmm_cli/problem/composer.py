@@ -8,7 +8,7 @@ from typing import Any, Final, NoReturn
 
 import yaml
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.scalars import HIDDEN, Scalar, comma_error, plain_value, split_number
 from tmm_cli.problem.tree import Mark, Path

@@ -6,9 +6,9 @@ import copy
 import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from gettext import gettext as _
 from typing import Any, Self
 
+from tmm_cli.language import _
 from tmm_cli.problem.tree import Mark, Path, Tree
 
 CLOSE = 0.66  # a name that is nearer to another by difflib's measure was meant for it: a third of letters is wrong

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
 from tmm_cli.problem.errors import ProblemError, quote, under
 from tmm_cli.problem.tree import Path, WrittenNumber

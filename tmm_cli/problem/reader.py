@@ -14,7 +14,7 @@ import re
 import stat
 from typing import Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.composer import Composer
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.scalars import HIDDEN

@@ -6,7 +6,7 @@ import math
 import re
 from typing import Final
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import WrittenNumber
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from tmm_cli.problem.schema_dynamics import Dynamics
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
@@ -264,6 +265,7 @@ class File(Strict):
     """A problem of planar lever mechanisms."""
 
     tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
@@ -298,4 +300,5 @@ class File(Strict):
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
+    dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")

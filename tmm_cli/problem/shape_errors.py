@@ -8,24 +8,24 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.foreign_keys import FOREIGN
 from tmm_cli.problem.reader import decimal_comma_hint
 from tmm_cli.problem.tree import Path, Tree
 
-KEYS_WANTED = _("keys with values are wanted")
+KEYS_WANTED = N_("keys with values are wanted")
 WORDS = {  # what is wrong with a value, by pydantic's kind of error
-    "int": _("a whole number is wanted"),
-    "greater_than_equal": _("at least {ge} is wanted"),
-    "less_than_equal": _("at most {le} is wanted"),
-    "too_long": _("this is too long: at most {max_length}"),
-    "string_too_long": _("this is too long: at most {max_length}"),
-    "too_short": _("{min_length} are wanted here"),
-    "empty": _("there is nothing here"),
-    "string_type": _("text is wanted"),
-    "list_type": _("a list [..., ...] is wanted"),
+    "int": N_("a whole number is wanted"),
+    "greater_than_equal": N_("at least {ge} is wanted"),
+    "less_than_equal": N_("at most {le} is wanted"),
+    "too_long": N_("this is too long: at most {max_length}"),
+    "string_too_long": N_("this is too long: at most {max_length}"),
+    "too_short": N_("{min_length} are wanted here"),
+    "empty": N_("there is nothing here"),
+    "string_type": N_("text is wanted"),
+    "list_type": N_("a list [..., ...] is wanted"),
     "dict_type": KEYS_WANTED,
     "model_type": KEYS_WANTED,
     "model_attributes_type": KEYS_WANTED,
@@ -123,5 +123,5 @@ def _refusal(
         )  # fmt: skip
     if kind == "too_short" and context["min_length"] == 1:
         kind = "empty"
-    message = WORDS.get("int" if kind.startswith("int_") else kind, "{msg}").format(**context)
+    message = _(WORDS.get("int" if kind.startswith("int_") else kind, "{msg}")).format(**context)
     return ProblemError(message, path=path, found=quote(value), allowed=hint or described)

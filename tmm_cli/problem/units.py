@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (

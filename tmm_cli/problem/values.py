@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
+from tmm_cli.problem.arithmetic import MOST_ANGLE
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
@@ -20,7 +21,6 @@ from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
-MOST_ANGLE = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
@@ -69,12 +69,16 @@ class ValueReader:
                 allowed=_("zero or more") if zero else _("more than zero"),
             )  # fmt: skip
         if 0 < number < SMALLEST and not (zero and want == NUMBER):  # a share that may be zero divides nothing
-            least = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
-            raise ProblemError(
-                _("this is too small for a mechanism"), path=path, found=quote(value),
-                allowed=_("{least} or more").format(least=least),
-            )  # fmt: skip
+            raise self.too_small(value, SMALLEST, want, path)
         return number
+
+    def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
+        """Of a value below the least (SI) that a mechanism can have."""
+        shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
+        return ProblemError(
+            _("this is too small for a mechanism"), path=path, found=quote(value),
+            allowed=_("{least} or more").format(least=shown),
+        )  # fmt: skip
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
         """Two coordinates."""

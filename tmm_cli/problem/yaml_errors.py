@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import yaml
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Mark
 

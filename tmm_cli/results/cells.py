@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.quantities import ANGLE
 from tmm_cli.results.as_json import LARGE, numbers
 from tmm_cli.results.reports import REPORTS, tables_of
@@ -36,7 +35,7 @@ def all_numbers(
         keys = keys_of(table, count)
         for k, column in enumerate(table.columns):
             if column.dimension is not None and keys is None:
-                searched[False, table.name, column.header] = column.array
+                searched[False, table.name, k] = column.array
             elif column.dimension is not None and keys is not None:
                 at_positions.update(zip(keys[k], column.array.reshape(count, -1).T, strict=True))
     for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
@@ -67,7 +66,7 @@ def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> It
 
 def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
     """For each column the keys of its rows at one position; None when the rows are no positions."""
-    if not count or not table.columns or table.columns[0].header != _("position") or table.rows % count:
+    if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
         return None
     rows = range(table.rows // count)
     return [[(c.dimension == ANGLE, table.name, k, row) for row in rows] for k, c in enumerate(table.columns)]

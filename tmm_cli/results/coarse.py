@@ -7,16 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.quantities import FORCE, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
 
 HUGE = 1e300  # a bound of what is zero as far as is known
 RATIOS = {  # columns that are something over a force: the less of it there is the less they are known, of zero nothing
-    ("reactions", _("angle")): _("F"),
-    ("reactions", _("acts at")): _("F"),
-    ("lever", _("arm")): _("force"),
+    ("reactions", "angle"): "F",
+    ("reactions", "acts at"): "F",
+    ("lever", "arm"): "force",
 }
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.results.table import Table, table_of_words
 
 Path = tuple[str, ...]

@@ -21,8 +21,8 @@ from tmm_cli.accuracy.searches import blur, searched
 from tmm_cli.accuracy.wide import Wide, coarsely
 from tmm_cli.analysis.extended import near_dead
 from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import FIXED
+from tmm_cli.language import N_, _, translated
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.quantities import NUMBER, Dimension
@@ -36,7 +36,7 @@ from tmm_cli.vectors import Real, Record, mapped
 DENSE = 361  # places of a trajectory
 WHOLE = (*FIXED - {"where"}, "mechanism", "problem", "inputs", "structure")  # fields that hold no array over positions
 LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
-PARTS = {"bound": _("± rounding"), "lengths": _("± lengths"), "paper": _("± paper")}
+PARTS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
 
 
 @dataclass(frozen=True)
@@ -71,14 +71,14 @@ class AccuracyReport:
         """The same table, its numbers with their bounds and sensitivities."""
         keys = keys_of(table, len(self.relative))
         columns = [
-            replace(column, **self._parts(table, column, None if keys is None else keys[k]))
+            replace(column, **self._parts(table, k, None if keys is None else keys[k]))
             for k, column in enumerate(table.columns)
         ]
         return replace(table, columns=tuple(columns))
 
-    def _parts(self, table: Table, column: Column, keys: list[Hashable] | None) -> dict[str, Any]:
-        """The bounds of a column, and its sensitivities if wanted. keys: of its rows at one position, if any."""
-        single = (False, table.name, column.header)
+    def _parts(self, table: Table, k: int, keys: list[Hashable] | None) -> dict[str, Any]:
+        """The bounds of the k-th column, and its sensitivities if wanted. keys: of its rows at one position, if any."""
+        column, single = table.columns[k], (False, table.name, k)
         if column.dimension is None or (keys is None and single not in self.found().bound):
             return {}
         wanted = tuple(PARTS) if self.full else ("bound",)
@@ -165,7 +165,7 @@ def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
 
     Of a table in which every row has a unit of its own, the same of each row, beside the largest value of that unit.
     """
-    units = np.array(table.columns[-1].values) if table.columns[-1].header == _("unit") else None
+    units = np.array(table.columns[-1].values) if table.columns[-1].header == "unit" else None
     for column in table.columns:
         if column.bound is None:
             continue
@@ -177,7 +177,7 @@ def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
             (size,), (bound, share, paper) = _most(parts[:1, alike]), _most(parts[1:, own])
             if size > 0 and bound < size:  # else it is nothing but rounding
                 true = np.floor(-np.log10(2 * max(bound / size, ROUNDOFF)))
-                yield name, bound / size, true, 100 * share / size, 100 * paper / size
+                yield translated(name), bound / size, true, 100 * share / size, 100 * paper / size
 
 
 def _most(values: Real) -> Real:
@@ -226,7 +226,7 @@ def beside(table: Table) -> Table:
     columns: list[Column] = []
     for k, column in enumerate(table.columns):
         columns.append(column)
-        if column.bound is not None and (k > 1 or table.columns[0].header != _("position")):
+        if column.bound is not None and (k > 1 or table.columns[0].header != "position"):
             for part, header in PARTS.items():
                 columns.append(Column(header, getattr(column, part), column.dimension, digits=2, unit=column.unit))
     return replace(table, columns=tuple(columns))

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 LISTED = 100_000  # bytes: the list of files at the end of result.json is shorter, and the rest may be very long
 LONGEST = 150  # bytes of a folder's name

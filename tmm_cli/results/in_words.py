@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.results.understood import motion
@@ -22,7 +22,7 @@ def in_words(results: Results) -> Iterable[str]:
         )
     for driver in results.linkage.drivers:
         yield _("Link {link} ({role}) is a driving link: {motion}.").format(
-            link=driver.link, role=ROLES[results.roles[driver.link]], motion=motion(driver)
+            link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=motion(driver)
         )
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=ROMAN[min(structure.mechanism_class, 10)]

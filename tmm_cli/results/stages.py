@@ -10,10 +10,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.analysis.pipeline import CYCLE, Results
-from tmm_cli.errors import _
 from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.sequence import towards
 from tmm_cli.kinematics.driver_range import SCAN
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.problem.record import Problem
 from tmm_cli.results.table import Table, table_of_words

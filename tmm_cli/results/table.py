@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.double_double import array
+from tmm_cli.language import translated
 from tmm_cli.problem.units import Unit, UnitSystem, parse_unit
 from tmm_cli.quantities import NUMBER, Dimension
 
@@ -17,6 +18,7 @@ from tmm_cli.quantities import NUMBER, Dimension
 class Column:
     """A column: header, values in SI (None or nan where there is none) and what they measure; words have none.
 
+    header: best a phrase, by which the column is known in every language; it is translated when it is shown.
     bound: how far each value may be from the truth by rounding; lengths, paper: its change when every length changes by
     0.1 %, by 0.5 mm on paper (SI; None where they were not asked for). unit: its own, where it is not the file's.
     """
@@ -33,8 +35,8 @@ class Column:
     def heading(self, units: UnitSystem) -> str:
         """The header with the unit."""
         if self.dimension is None or self.dimension == NUMBER:
-            return self.header
-        return f"{self.header}, {self.unit or units.symbol(self.dimension)}"
+            return translated(self.header)
+        return f"{translated(self.header)}, {self.unit or units.symbol(self.dimension)}"
 
     def shown_in(self, units: UnitSystem) -> Unit:
         """The unit of its numbers on paper."""

@@ -11,15 +11,15 @@ from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 
 MOST_ROWS = 120  # on a terminal; files have them all
 GAP = 3  # between columns
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
-MORE_ROWS = _("... and {rows} rows more: -o DIR writes them all, --json too")
-MORE_ROWS_AS_JSON = _("... and {rows} rows more: --json prints them all")
+MORE_ROWS = N_("... and {rows} rows more: -o DIR writes them all, --json too")
+MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
 
 
 def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
@@ -62,7 +62,7 @@ def show(
             rich_table.add_row(*(Text(texts[k][row]) for k in part))
         console.print(rich_table)
     if len(chosen) > len(printed):
-        console.print(Text(more.format(rows=len(chosen) - len(printed)), style="dim"))
+        console.print(Text(_(more).format(rows=len(chosen) - len(printed)), style="dim"))
     for note in table.notes:
         console.print(Text(note, style="dim"))
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.units import UnitSystem

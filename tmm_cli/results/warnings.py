@@ -9,13 +9,13 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.assembly.sketch import sketch_deviations
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.loads import table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.language import _
 from tmm_cli.linkage import Load
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.reports.synthesis import missed

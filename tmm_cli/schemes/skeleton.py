@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.schemes.draft import SchemeLayout
 from tmm_cli.schemes.schemes import Scheme
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 if TYPE_CHECKING:
     from tmm_cli.linkage import Sketch

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.errors import ProblemError, path_text, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import UnitSystem
@@ -25,7 +25,7 @@ BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
 ALONE: Final = 1e-3
-NONE: Final = _("another task: no other value of it was found to help")
+NONE: Final = N_("another task: no other value of it was found to help")
 
 
 def refusal(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
@@ -39,7 +39,7 @@ def refusal(error: Infeasible, given: Any, units: UnitSystem, searched: str | No
         inside = isinstance(given, list) or (isinstance(given, dict) and step in given)
         given = given[step] if inside else None
     found = quote(given) if error.path and given is not None else None
-    return ProblemError(error.reason, path=error.path, found=found, allowed=told)
+    return ProblemError(translated(error.reason), path=error.path, found=found, allowed=told)
 
 
 def nearest(

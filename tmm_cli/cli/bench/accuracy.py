@@ -12,7 +12,6 @@ from tmm_cli.bench.references import NAMES
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
 
 Linkages = Annotated[
     list[str] | None,
@@ -25,5 +24,5 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
     Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
     """
-    names = chosen(linkage, NAMES, _("there is no reference linkage {name}; there are {names}"))
+    names = chosen(linkage, NAMES, "there is no reference linkage {name}; there are {names}")
     finish("accuracy", measure(names, reduced=reduced, progress=say), charts, out, as_json)

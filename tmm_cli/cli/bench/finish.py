@@ -15,7 +15,6 @@ from tmm_cli.bench.figures import FIGURES
 from tmm_cli.bench.measured import Measured
 from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
-from tmm_cli.errors import _
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.files import write_whole
 from tmm_cli.results.terminal import show
@@ -51,14 +50,14 @@ def finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | No
             show(table, UnitSystem(), console())
     if out is not None:
         try:
-            say(_("written: {files}").format(files=_write(name, measured, charts(measured), out)))
+            say(f"written: {_write(name, measured, charts(measured), out)}")
         except OSError as error:
             say(f"error: {error.filename or out}: {error.strerror}")
             raise typer.Exit(BAD_INPUT) from None
     for line in measured.remarks:
         say(line)
     for failure in measured.failures:
-        say(_("target missed: {what}").format(what=failure))
+        say(f"target missed: {failure}")
     if not measured.failures:
         say(measured.met)
     raise typer.Exit(CHECK_FAILED if measured.failures else OK)

@@ -12,7 +12,6 @@ from tmm_cli.bench.stability import measure
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
-from tmm_cli.errors import _
 
 Families = Annotated[
     list[str] | None,
@@ -26,5 +25,5 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
     are within 100 times the true error.
     """
-    names = chosen(family, BY_NAME, _("there is no family {name}; there are {names}"))
+    names = chosen(family, BY_NAME, "there is no family {name}; there are {names}")
     finish("stability", measure(names, reduced=reduced, progress=say), charts, out, as_json)

@@ -13,7 +13,7 @@ from tmm_cli.draw.formats.png import png
 from tmm_cli.draw.formats.svg import svg
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.fonts import lacking
-from tmm_cli.errors import _
+from tmm_cli.language import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf, "emf": emf}
 WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings

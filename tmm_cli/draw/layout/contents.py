@@ -19,9 +19,9 @@ from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 
-SUBJECTS = (_("Structure and synthesis"), _("Kinematics"), _("Forces"))
+SUBJECTS = (N_("Structure and synthesis"), N_("Kinematics"), N_("Forces"))
 
 
 @dataclass(frozen=True)

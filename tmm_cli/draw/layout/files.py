@@ -10,7 +10,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
 from tmm_cli.draw.layout.contents import chosen
 from tmm_cli.draw.layout.large import large_sheets
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 
 MOST = 24  # positions of which plans are drawn

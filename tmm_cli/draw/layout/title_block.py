@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tmm_cli.draw.paper.drawing import Line, Mark
 from tmm_cli.draw.paper.writing import DARK, written
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.problem.record import TitleTexts
 
 LEFT, EDGE = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others

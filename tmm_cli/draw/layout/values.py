@@ -14,7 +14,7 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import on_paper
 from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
-from tmm_cli.errors import _
+from tmm_cli.language import _, translated
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.problem.units import UnitSystem
@@ -44,7 +44,7 @@ def structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Links and kinematic pairs."""
     for found in walk(results, ("links", "pairs")):
         rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
-        yield f"table-{found.name}", table(found.title, [column.header for column in found.columns], rows)
+        yield f"table-{found.name}", table(found.title, [translated(column.header) for column in found.columns], rows)
 
 
 def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:

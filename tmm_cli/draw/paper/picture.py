@@ -45,11 +45,13 @@ class Picture(Drawing):
 class Space:
     """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes.
 
-    most: width and height (mm) of the field of the sheet.
+    most: width and height (mm) of the field of the sheet. written: headings and equations stand by the drawings; in a
+    note its own text has them.
     """
 
     longest: float | None
     most: Size = (math.inf, math.inf)
+    written: bool = True
 
 
 _SPACE: ContextVar[Space | None] = ContextVar("space", default=None)
@@ -68,6 +70,12 @@ def within(space: Space) -> Iterator[None]:
 def on_large_sheet() -> bool:
     """Whether what is drawn now is to be a picture beside others."""
     return _SPACE.get() is not None
+
+
+def written_here() -> bool:
+    """Whether what is drawn now has its heading and its equations by it."""
+    space = _SPACE.get()
+    return space is None or space.written
 
 
 def longest_for(usual: float) -> float:
@@ -101,7 +109,7 @@ def picture(
     notes: Sequence[str] = (),
 ) -> Picture:  # fmt: skip
     """What was drawn, cut out of its paper, below its title and notes."""
-    drawn = list(marks)
+    drawn, title = list(marks), title if written_here() else ""
     low, high = extremes(drawn)
     room = max((high - low).real, NARROW)
     y = high.imag + AIR

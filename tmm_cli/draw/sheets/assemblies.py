@@ -17,7 +17,7 @@ from tmm_cli.draw.sheets.structure import colours
 from tmm_cli.draw.symbols.parts import STRUCTURAL, Look, numbers, symbol_size
 from tmm_cli.draw.symbols.render import names, render, spot
 from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
 from tmm_cli.results.reports.assemblies import place

@@ -14,7 +14,7 @@ from tmm_cli.draw.sheets.lettering import rename
 from tmm_cli.draw.symbols.fixed import guide, support, support_side
 from tmm_cli.draw.symbols.forms import Line
 from tmm_cli.draw.symbols.parts import MEASURED, box
-from tmm_cli.errors import _
+from tmm_cli.language import _, translated
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
@@ -40,7 +40,7 @@ def construction(
 ) -> Sheet:  # fmt: skip
     """One sheet; joints are called as in the linkage, parameters by their names in the file."""
     drawn, letters = rename(drawn, linkage, names or {})
-    sheet = Sheet(title, drawn.title.format(**letters), granted(drawn), pad=PAD)
+    sheet = Sheet(title, translated(drawn.title).format(**letters), granted(drawn), pad=PAD)
     sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
     rods = [(sheet.on(s.start), sheet.on(s.end)) for s in drawn.segments if s.style.startswith("link")]
     for spot in drawn.spots:
@@ -212,4 +212,4 @@ def _notes(sheet: Sheet, drawn: Construction, letters: Mapping[str, str], units:
     if drawn.sizes:
         sheet.note(_("sizes in {unit}").format(unit=units.symbol(KINDS["length"].dimension)))
     for key in drawn.notes:
-        sheet.note(key.format(**letters))
+        sheet.note(translated(key).format(**letters))

@@ -28,8 +28,8 @@ from tmm_cli.draw.paper.sheet import (
 )
 from tmm_cli.draw.sheets import over_cycle
 from tmm_cli.draw.sheets.over_cycle import Quantities
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import (

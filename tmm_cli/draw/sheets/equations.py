@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.script import Words, filled
 from tmm_cli.draw.sheets.beneath import Table
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part

@@ -9,12 +9,13 @@ import numpy as np
 from tmm_cli.draw.paper.blocks import NOTE, Block, Row
 from tmm_cli.draw.paper.drawing import POINT, Drawing
 from tmm_cli.draw.paper.labels import gathered
+from tmm_cli.draw.paper.picture import written_here
 from tmm_cli.draw.paper.room import Figure, room
 from tmm_cli.draw.paper.script import Words, wrapped
 from tmm_cli.draw.paper.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.equations import figure
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.record import NamedVector, extent
 from tmm_cli.tolerances import NO_FORCE
@@ -48,7 +49,7 @@ def _sheet(here: Position, plan: ForcePlan, title: str) -> Sheet:
     ground.spots([0j], ABOUT)
     for vector, off in zip(drawn, aside, strict=True):
         ground.line(vector.start, vector.end, ABOUT, off)
-    equation = list(wrapped(_equation(plan), NOTE * POINT, EQUATION))
+    equation = list(wrapped(_equation(plan), NOTE * POINT, EQUATION)) if written_here() else []
     # how wide the table is hardly hangs on the scale
     notes = [*equation, "μ = 0.0000 N/mm"]
     found = room(ground, Block(notes, table(plan, plan.plan.size / 100 or 1.0), 3))

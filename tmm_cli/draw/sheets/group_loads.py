@@ -6,13 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.draw.paper.picture import written_here
 from tmm_cli.draw.paper.sheet import REACTION, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import along_guide, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position, measured
 from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.moments import LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import extent as extent_of
@@ -65,8 +66,8 @@ def _sheets(
         title = _("Driving link {links} under its loads. {caption}")
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
-    lines = [line for e in equations for line in written(e)]
-    lines += [line for one in sums for line in along_guide(one)]
+    lines = [line for e in equations for line in written(e)] if written_here() else []
+    lines += [line for one in sums for line in along_guide(one)] if written_here() else []
     units, shown = here.results.problem.units, [*part.acting, *further]
 
     def beneath(mu: float) -> Beneath:

@@ -19,7 +19,7 @@ from tmm_cli.draw.symbols.parts import FREE, STRUCTURAL, Look, box, numbers, qui
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.symbols.wheel_symbols import draw
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.results.reports.structure import ROLES
@@ -80,7 +80,7 @@ def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], ro
 
 def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
     """What a part is, in lines that fit a width (mm)."""
-    links = ", ".join(f"{n} {ROLES[roles[n]]}" if n in roles else n for n in part.links)
+    links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.group is None:
         words = [_("primary mechanism: driver and frame"), _("links: {links}").format(links=links)]
         driving = [pair for pair in pairs if {pair.i, pair.j} == {FRAME, *part.links}]

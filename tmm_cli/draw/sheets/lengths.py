@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.paper.blocks import Row
 from tmm_cli.draw.paper.script import Words
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pairs.base import axis
 from tmm_cli.plans.record import Symbol

@@ -8,13 +8,14 @@ import numpy as np
 
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.labels import gathered
+from tmm_cli.draw.paper.picture import written_here
 from tmm_cli.draw.paper.script import Words, filled
 from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet, scale_words
 from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.plans.lever import POLE, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE
@@ -42,7 +43,9 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     )
     unit = "N·m" if crank else "N"
     pairs = [word for pair in plan.pairs for word in _pair(pair)]
-    lines = [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)]
+    lines = (
+        [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)] if written_here() else []
+    )
     units = results.problem.units if crank else None
 
     def beneath(mu: float) -> Beneath:

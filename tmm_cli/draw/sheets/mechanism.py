@@ -19,9 +19,9 @@ from tmm_cli.draw.symbols.parts import MEASURED, mass_centre
 from tmm_cli.draw.symbols.render import Rendered, render, slider
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import PAD, balance_symbol
 from tmm_cli.plans.velocity import massive

@@ -14,8 +14,8 @@ from tmm_cli.draw.paper.sheet import COLOURS, THIN, scale_words
 from tmm_cli.draw.sheets.equations import figure
 from tmm_cli.draw.sheets.lever import letter_points
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.readings import readings, turns
 from tmm_cli.plans.record import NamedVector, Plan

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import angle, followers, named
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import balance_name, reaction_name
 from tmm_cli.quantities import (

@@ -22,9 +22,9 @@ from tmm_cli.draw.sheets.tracks import Extreme, Track, driver_track, extreme_sta
 from tmm_cli.draw.symbols.parts import MEASURED
 from tmm_cli.draw.symbols.render import arrows
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
-from tmm_cli.errors import _
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.vectors import Vector

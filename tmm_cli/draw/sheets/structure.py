@@ -19,7 +19,7 @@ from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.draw.symbols.parts import PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
 from tmm_cli.structure.assur import ROMAN, Group, Structure

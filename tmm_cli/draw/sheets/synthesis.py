@@ -20,7 +20,7 @@ from tmm_cli.draw.symbols.forms import by_points
 from tmm_cli.draw.symbols.parts import MEASURED
 from tmm_cli.draw.symbols.render import slider
 from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.errors import _
+from tmm_cli.language import _, translated
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, KINDS, Dimension
@@ -56,7 +56,7 @@ def synthesised(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     """Curves over one quantity, in the units of the file."""
-    sheet = Sheet(title, drawn.title, paper=LANDSCAPE)
+    sheet = Sheet(title, translated(drawn.title), paper=LANDSCAPE)
     words, kind = drawn.x
     wide = KINDS[kind].dimension
     over = limits([np.asarray(line.x, dtype=float) / units.factor(wide) for line in (*drawn.lines, *drawn.lower)])
@@ -66,7 +66,7 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     plots = [_plot(drawn.lines, drawn.y, wide, units)]
     if drawn.lower:
         plots.append(replace(_plot(drawn.lower, drawn.lower_y, wide, units), logarithmic=True, share=0.6))
-    chart(sheet, plots, Across(axis, with_unit(words, wide, units)), same_scale=drawn.equal)
+    chart(sheet, plots, Across(axis, with_unit(translated(words), wide, units)), same_scale=drawn.equal)
     return sheet.finish()
 
 
@@ -78,11 +78,12 @@ def _plot(lines: Iterable[Line], y: tuple[str, str], wide: Dimension, units: Uni
     curves = [
         Curve(
             np.asarray(line.x, dtype=float) / units.factor(wide), np.asarray(line.y, dtype=float) / units.factor(high),
-            line.text, THIN if line.faint else next(colours), width=1.0 if line.faint else 1.3, dots=line.dots,
+            translated(line.text), THIN if line.faint else next(colours), width=1.0 if line.faint else 1.3,
+            dots=line.dots,
         )
         for line in sorted(lines, key=lambda line: not line.faint)
     ]  # fmt: skip
-    return Plot(with_unit(words, high, units), curves)
+    return Plot(with_unit(translated(words), high, units), curves)
 
 
 def extremes(results: Results) -> Sheet:

@@ -21,7 +21,7 @@ from tmm_cli.draw.symbols.scene import BEYOND, ON_LINE, Scene, spread
 from tmm_cli.draw.symbols.wheel_symbols import CHAIN
 from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
 from tmm_cli.draw.symbols.wheels import CamShape, contact
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair
 

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from typing import Literal
 
-from tmm_cli.errors import _
 from tmm_cli.grading.readings import factor
 from tmm_cli.grading.record import Mark, StudentMarks
 from tmm_cli.grading.task import Asked, Task
+from tmm_cli.language import N_, _
 from tmm_cli.results.files import folder_name
 
 STATES = {
-    "right": _("right"),
-    "follows": _("right given yours"),
-    "wrong": _("wrong"),
-    "missing": _("no answer"),
+    "right": N_("right"),
+    "follows": N_("right given yours"),
+    "wrong": N_("wrong"),
+    "missing": N_("no answer"),
 }
 
 
@@ -52,13 +52,13 @@ class Answer:
     @property
     def of(self) -> str:
         """What errors of it are shares of."""
-        return OF[self.asked.quantity.against]
+        return _(OF[self.asked.quantity.against])
 
 
 OF = {
-    "largest": _("the largest value in the cycle"),
-    "range": _("the whole way"),
-    "angle": _("a radian"),
+    "largest": N_("the largest value in the cycle"),
+    "range": N_("the whole way"),
+    "angle": N_("a radian"),
     "exact": "",
 }
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from tmm_cli.errors import _
 from tmm_cli.grading.exports.student_sheet import Sheet
+from tmm_cli.language import _
 
 STYLE = """
 body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:60rem;margin:2rem auto;padding:0 1rem;

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 from html import escape
 
-from tmm_cli.errors import _
 from tmm_cli.grading.exports.student_sheet import Sheet
+from tmm_cli.language import _
 
 SIGNS = re.compile(r"([\\`*\[\]|#~])")
 LINE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")  # within a word it is no markup

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from tmm_cli.errors import _
 from tmm_cli.grading.exports.book import Answer, Gradebook, direction, percent, rounded
 from tmm_cli.grading.record import Mark, StudentMarks
 from tmm_cli.grading.shown import sentence, shown
+from tmm_cli.language import _
 
 Cell = str | float | None | Mark  # a mark: its points, and its state beside them or as a colour
 

@@ -6,17 +6,17 @@ import cmath
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from tmm_cli.errors import _
 from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, points_text, share_text
 from tmm_cli.grading.record import Mark, State, StudentMarks
 from tmm_cli.grading.shown import sentence, shown
+from tmm_cli.language import N_, _
 
 WIDENED = 1.05  # times the usual error: less more is not worth telling
 UNSAID = "†"  # marks answers without a unit
 SHARES = {
-    "largest": _("Errors are shares of the largest value of a quantity in the cycle."),
-    "range": _("Errors of places are shares of the whole way."),
-    "angle": _("Errors of angles are shares of a radian: 1 % is 0.57 degrees."),
+    "largest": N_("Errors are shares of the largest value of a quantity in the cycle."),
+    "range": N_("Errors of places are shares of the whole way."),
+    "angle": N_("Errors of angles are shares of a radian: 1 % is 0.57 degrees."),
 }
 
 
@@ -50,7 +50,7 @@ def sheets(book: Gradebook) -> Iterator[Sheet]:
     title, general = shown(book.title), _notes(book)
     for student in book.marks:
         both = list(zip(book.answers, student.marks, strict=True))
-        unsaid = (_UNSAID,) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
+        unsaid = (_unsaid(),) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
         yield Sheet(
             title, shown(student.student), _total(student), tuple(map(sentence, student.problems)), headers,
             tuple(Row(mark.state, _cells(answer, mark, reveal)) for answer, mark in both), tuple(_reasons(both)),
@@ -58,7 +58,8 @@ def sheets(book: Gradebook) -> Iterator[Sheet]:
         )  # fmt: skip
 
 
-_UNSAID = _("{mark} no unit was written: it was read in the one that fits.").format(mark=UNSAID)
+def _unsaid() -> str:
+    return _("{mark} no unit was written: it was read in the one that fits.").format(mark=UNSAID)
 
 
 def _total(student: StudentMarks) -> str:
@@ -71,7 +72,7 @@ def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
     right = (answer.text(mark.right) if mark.judged else "-",) if reveal else ()
     points = f"{points_text(mark.points)} / {points_text(mark.of)}"
     return (answer.name, written(answer, mark), *right, _error(answer, mark), _allowed(answer, mark), points,
-            STATES[mark.state])  # fmt: skip
+            _(STATES[mark.state]))  # fmt: skip
 
 
 def written(answer: Answer, mark: Mark) -> str:
@@ -100,7 +101,7 @@ def _allowed(answer: Answer, mark: Mark) -> str:
 def _notes(book: Gradebook) -> tuple[str, ...]:
     """What errors are shares of."""
     against = {answer.asked.quantity.against for answer in book.answers}
-    return tuple(SHARES[one] for one in SHARES if one in against)
+    return tuple(_(SHARES[one]) for one in SHARES if one in against)
 
 
 def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
@@ -136,7 +137,7 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
 
 def output(answer: Answer, mark: Mark, reveal: bool) -> str:
     """All about one answer in a few lines."""
-    lines = [_("result: {result}").format(result=STATES[mark.state])]
+    lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
     if mark.state != "missing":
         lines.append(_("your answer: {answer}").format(answer=written(answer, mark)))
     if reveal and mark.judged:
@@ -145,5 +146,5 @@ def output(answer: Answer, mark: Mark, reveal: bool) -> str:
         told = _("off by {error} of {whole}; allowed: {allowed}")
         lines.append(told.format(error=share_text(mark.error), whole=answer.of, allowed=_allowed(answer, mark)))
     if mark.reading and mark.value is not None:
-        lines.append(_UNSAID)
+        lines.append(_unsaid())
     return "\n".join((*lines, *map(sentence, mark.reasons)))

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.exports.book import Gradebook, rounded
 from tmm_cli.grading.exports.rows import Cell, finite, marks_header, marks_rows, reasons
 from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.statistics import tables
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column

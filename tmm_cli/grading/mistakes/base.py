@@ -11,6 +11,7 @@ from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
 from tmm_cli.groups.base import Kernel
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -35,12 +36,12 @@ class Mistake:
     @property
     def told(self) -> str:
         """The sentence with the fields of this case."""
-        return self.sentence.format(**vars(self))
+        return _(self.sentence).format(**vars(self))
 
     @property
     def called(self) -> str:
         """The name with the fields of this case."""
-        return self.name.format(**vars(self))
+        return _(self.name).format(**vars(self))
 
     def family(self, family: Family) -> Family:
         """The variants as the student took them."""

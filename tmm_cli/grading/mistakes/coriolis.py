@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.accelerations import OtherTerms
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Poses, Rates
+from tmm_cli.language import N_
 from tmm_cli.linkage import FRAME
 from tmm_cli.pairs.base import Constraint
 from tmm_cli.pairs.sliding import Guided, Sliding
@@ -25,8 +25,8 @@ class Coriolis(Mistake):
     carrier: str = ""
     sense: int = 0
 
-    name = _("Coriolis acceleration")
-    sentence = _("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
+    name = N_("Coriolis acceleration")
+    sentence = N_("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

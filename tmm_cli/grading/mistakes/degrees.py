@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -22,8 +22,10 @@ class Degrees(Mistake):
 
     factor: float = 1.0
 
-    name = _("degrees for radians")
-    sentence = _("This is the right value in the other unit of angles: degrees were taken for radians, or the reverse.")
+    name = N_("degrees for radians")
+    sentence = N_(
+        "This is the right value in the other unit of angles: degrees were taken for radians, or the reverse."
+    )
     solves = False
 
     @classmethod

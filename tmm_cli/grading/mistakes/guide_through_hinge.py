@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.vectors import Real
 
 
@@ -15,8 +15,8 @@ from tmm_cli.vectors import Real
 class GuideThroughHinge(Mistake):
     """It acts where moments about the hinge vanish, which is seldom the hinge itself."""
 
-    name = _("guide's reaction through the hinge")
-    sentence = _("The reaction of a guide does not act through the hinge: its place follows from moments about it.")
+    name = N_("guide's reaction through the hinge")
+    sentence = N_("The reaction of a guide does not act through the hinge: its place follows from moments about it.")
     solves = False
 
     def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:

@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.linkage import FRAME
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
@@ -23,8 +23,8 @@ class HingeInertia(Mistake):
 
     link: str = ""
 
-    name = _("moment of inertia about the hinge")
-    sentence = _("The moment of inertia was taken about the hinge; the couple wants it about the centre of mass.")
+    name = N_("moment of inertia about the hinge")
+    sentence = N_("The moment of inertia was taken about the hinge; the couple wants it about the centre of mass.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -19,8 +19,8 @@ class InertiaReversed(Mistake):
 
     parts: tuple[str, ...] = ()
 
-    name = _("inertia not reversed")
-    sentence = _("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+    name = N_("inertia not reversed")
+    sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

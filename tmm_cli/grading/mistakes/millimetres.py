@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -20,8 +20,8 @@ class Millimetres(Mistake):
 
     factor: float = 1.0
 
-    name = _("mm for m")
-    sentence = _("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
+    name = N_("mm for m")
+    sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
     solves = False
 
     @classmethod

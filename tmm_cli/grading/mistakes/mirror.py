@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Closed, Kernel
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -18,8 +18,8 @@ class Mirror(Mistake):
 
     links: str = ""
 
-    name = _("mirror assembly")
-    sentence = _("This belongs to another assembly: links {links} were drawn on the other side.")
+    name = N_("mirror assembly")
+    sentence = N_("This belongs to another assembly: links {links} were drawn on the other side.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -22,8 +22,8 @@ class Neighbour(Mistake):
 
     step: int = 1
 
-    name = _("neighbouring position")
-    sentence = _("This is the value of a neighbouring position.")
+    name = N_("neighbouring position")
+    sentence = N_("This is the value of a neighbouring position.")
     solves = False
 
     @classmethod

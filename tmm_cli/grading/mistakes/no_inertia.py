@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -21,8 +21,8 @@ class NoInertia(Mistake):
 
     link: str = ""
 
-    name = _("inertia force left out")
-    sentence = _("The inertia force m a_S was left out.")
+    name = N_("inertia force left out")
+    sentence = N_("The inertia force m a_S was left out.")
     part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
 
     @classmethod

@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -22,8 +22,8 @@ class NoWeight(Mistake):
     link: str = ""
     mass: bool = False
 
-    name = _("weight forgotten")
-    sentence = _("A weight G = m g was left out, or the mass was put in for it.")
+    name = N_("weight forgotten")
+    sentence = N_("A weight G = m g was left out, or the mass was put in for it.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

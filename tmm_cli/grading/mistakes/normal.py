@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.accelerations import OtherTerms, Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
 from tmm_cli.kinematics.motion import Motion, Point
+from tmm_cli.language import N_
 from tmm_cli.pairs.base import Constraint
 from tmm_cli.pairs.sliding import Guided, Sliding
 from tmm_cli.variants.family import Family
@@ -24,8 +24,8 @@ class Normal(Mistake):
 
     link: str = ""
 
-    name = _("normal part left out")
-    sentence = _("The normal part omega^2 r of the acceleration of link {link} was left out.")
+    name = N_("normal part left out")
+    sentence = N_("The normal part omega^2 r of the acceleration of link {link} was left out.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

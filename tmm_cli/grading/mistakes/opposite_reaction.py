@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.vectors import Real
 
 
@@ -15,8 +15,8 @@ from tmm_cli.vectors import Real
 class OppositeReaction(Mistake):
     """Reactions with the opposite direction."""
 
-    name = _("R_ik for R_ki")
-    sentence = _("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
+    name = N_("R_ik for R_ki")
+    sentence = N_("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
     solves = False
 
     def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:

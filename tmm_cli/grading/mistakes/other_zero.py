@@ -8,8 +8,8 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -20,8 +20,8 @@ class OtherZero(Mistake):
 
     extreme: bool = True
 
-    name = _("other zero of the crank")
-    sentence = _("The positions were counted from another zero of the crank than the task's.")
+    name = N_("other zero of the crank")
+    sentence = N_("The positions were counted from another zero of the crank than the task's.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

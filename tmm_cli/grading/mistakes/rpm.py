@@ -8,8 +8,8 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -17,8 +17,8 @@ from tmm_cli.variants.family import Family
 class Rpm(Mistake):
     """Velocities are 9.55 times too large, accelerations and inertia forces 91 times."""
 
-    name = _("rpm for rad/s")
-    sentence = _("The speed of the crank was put in as revolutions a minute; omega = pi n / 30 is wanted, in rad/s.")
+    name = N_("rpm for rad/s")
+    sentence = N_("The speed of the crank was put in as revolutions a minute; omega = pi n / 30 is wanted, in rad/s.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

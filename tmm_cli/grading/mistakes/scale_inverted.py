@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 from tmm_cli.vectors import Real
 
@@ -23,8 +23,8 @@ class ScaleInverted(Mistake):
     stage: str = ""
     scale: float = 1.0
 
-    name = _("scale factor inverted")
-    sentence = _(
+    name = N_("scale factor inverted")
+    sentence = N_(
         "All values of this plan are wrong by one factor: lengths divided by the scale in place of multiplied."
     )
     solves = False

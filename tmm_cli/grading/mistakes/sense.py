@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -17,8 +17,8 @@ class Sense(Mistake):
 
     counted: bool = False
 
-    name = _("sense of rotation")
-    sentence = _("This belongs to a crank that turns the other way.")
+    name = N_("sense of rotation")
+    sentence = N_("This belongs to a crank that turns the other way.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.accelerations import Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -20,8 +20,8 @@ class Tangential(Mistake):
 
     link: str = ""
 
-    name = _("tangential part left out")
-    sentence = _("The tangential part epsilon r of the acceleration of link {link} was left out.")
+    name = N_("tangential part left out")
+    sentence = N_("The tangential part epsilon r of the acceleration of link {link} was left out.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -19,8 +19,10 @@ from tmm_cli.variants.family import Family
 class WeightForMass(Mistake):
     """Inertia forces are g times too large."""
 
-    name = _("weight for mass")
-    sentence = _("The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large.")
+    name = N_("weight for mass")
+    sentence = N_(
+        "The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large."
+    )
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

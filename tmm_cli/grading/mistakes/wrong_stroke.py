@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tmm_cli.errors import _
 from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
 
@@ -17,8 +17,8 @@ class WrongStroke(Mistake):
 
     both: bool = False
 
-    name = _("load in the wrong stroke")
-    sentence = _("The useful resistance acts in the working stroke only; here it acts in the idle one.")
+    name = N_("load in the wrong stroke")
+    sentence = N_("The useful resistance acts in the working stroke only; here it acts in the idle one.")
 
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from tmm_cli.errors import _
 from tmm_cli.grading.record import Given, Key, Submission
 from tmm_cli.grading.submissions.headings import Heading, Headings, Part, UnknownQuantityError, read_position
 from tmm_cli.grading.submissions.numbers import checked_unit, read_answer
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.quantities import ANGLE

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, cast, get_args
 
-from tmm_cli.errors import _
 from tmm_cli.grading.submissions.numbers import checked_unit, plainly, read_number
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, latin, quote
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.quantities import ANGLE

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from tmm_cli.errors import _
 from tmm_cli.grading.record import Given
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, clean, latin, quote
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.problem.units import dotted_unit, parse_unit, plain_text

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.grading.record import Submission
 from tmm_cli.grading.submissions.answers import MOST_TOLD, twice
 from tmm_cli.grading.submissions.headings import Heading
 from tmm_cli.grading.task import Task
+from tmm_cli.language import _
 from tmm_cli.vectors import Real
 
 NEAR = np.radians(2.0)  # as angles are read off a drawing

@@ -8,18 +8,18 @@ from collections.abc import Collection, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from tmm_cli.errors import _
 from tmm_cli.grading.cells import bytes_of, decoded, rows_of
 from tmm_cli.grading.record import Submission
 from tmm_cli.grading.submissions.answers import Answers, Entry, one_line
 from tmm_cli.grading.submissions.shapes import Shape, shape_of
 from tmm_cli.grading.submissions.yaml_sheet import read_sheet
 from tmm_cli.grading.task import Task
+from tmm_cli.language import N_, _
 from tmm_cli.problem.errors import ProblemError, clean, latin, quote
 
 LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
-LONGER = _("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
+LONGER = N_("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
 NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder
 TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
 
@@ -83,7 +83,7 @@ class _Reader:
                 rows = rows_of(path, LARGEST, MOST_ROWS)
                 shape = self.shape(rows)
                 found = [(shape.named(row), list(shape.entries(row))) for row in rows[1:] if not shape.longer(row)]
-                problems = dict.fromkeys([LONGER] if any(map(shape.longer, rows[1:])) else [])
+                problems = dict.fromkeys([_(LONGER)] if any(map(shape.longer, rows[1:])) else [])
             else:
                 raise ProblemError(_("this is no answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
         except ProblemError as error:
@@ -115,7 +115,7 @@ class _Reader:
         for row in rows[1:]:
             by_student.setdefault(self.student(shape.named(row)), []).append(row)
         for student, own in by_student.items():
-            problems = (LONGER,) if any(map(shape.longer, own)) else ()
+            problems = (_(LONGER),) if any(map(shape.longer, own)) else ()
             entries = (entry for row in own if not shape.longer(row) for entry in shape.entries(row))
             yield self.answers.submission(student, entries, problems)
 

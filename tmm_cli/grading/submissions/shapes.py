@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from tmm_cli.errors import _
 from tmm_cli.grading.submissions.answers import Answers, Entry
 from tmm_cli.grading.submissions.headings import PARTS, Part
 from tmm_cli.grading.submissions.numbers import checked_unit
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 
 Row = Sequence[str]

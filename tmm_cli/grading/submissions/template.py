@@ -10,8 +10,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from tmm_cli.errors import _
 from tmm_cli.grading.task import Asked, Task
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.quantities import ANGLE
 from tmm_cli.results.files import write_whole

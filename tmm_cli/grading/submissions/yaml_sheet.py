@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tmm_cli.errors import _
 from tmm_cli.grading.submissions.answers import Entry
+from tmm_cli.language import _
 from tmm_cli.problem.composer import Composer
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.reader import read_text

@@ -4,17 +4,142 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.errors import _
-from tmm_cli.note.blocks import Block, Heading, paragraph
+from tmm_cli.draw.sheets.structure import parts
+from tmm_cli.language import _
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
-from tmm_cli.results.in_words import in_words
+from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
+from tmm_cli.note.math import Words
+from tmm_cli.plans.record import Symbol
+from tmm_cli.results.reports.structure import PAIRS, ROLES
+from tmm_cli.results.stages import link_name
+from tmm_cli.structure.assur import ROMAN, Group, Structure
+
+W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2")
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """From the scheme to the class."""
+    structure = subject.results.structure
     yield Heading(_("Structure of the mechanism"))
     yield from subject.figures(
-        "structure", _("The structural scheme is shown in figure {figure}."), _("Structural scheme")
+        "structure", _("The structural scheme is shown in figure {figure}."), _("Structural scheme of the mechanism")
     )
-    for sentence in in_words(subject.results):
-        yield paragraph(sentence)
+    yield said(
+        _("The moving links are listed in table {links}, the kinematic pairs in table {pairs}."),
+        links=Ref("links"), pairs=Ref("pairs"),
+    )  # fmt: skip
+    yield _links(subject)
+    yield _pairs(structure)
+    yield from _mobility(structure)
+    yield from _groups(subject)
+
+
+def _links(subject: Subject) -> Rows:
+    linkage, roles = subject.results.linkage, subject.results.roles
+    told = [
+        (name, ROLES[roles[name]], _motion(linkage, name), ", ".join(linkage.links[name].points))
+        for name in subject.results.structure.links
+    ]
+    rows = tuple(tuple(line(text) for text in row) for row in told)
+    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("points")))
+    return Rows(_("Moving links"), head, rows, "links")
+
+
+def _motion(linkage: Linkage, name: str) -> str:
+    """What a link does, told by what holds it on the frame."""
+    if linkage.hinged_to_frame(name):
+        return _("turns about {point}").format(point=linkage.shared(FRAME, name))
+    guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
+    return _("slides along guide {guide}").format(guide=guides[0]) if guides else _("plane motion")
+
+
+def _pairs(structure: Structure) -> Rows:
+    rows = tuple(
+        (line(p.name), line(f"{link_name(p.i)} – {link_name(p.j)}"), line(PAIRS[p.kind]), line("1" if p.lower else "2"))
+        for p in structure.pairs
+    )
+    head = tuple(line(text) for text in (_("pair"), _("links"), _("kind"), _("freedoms")))
+    return Rows(_("Kinematic pairs"), head, rows, "pairs")
+
+
+def _mobility(structure: Structure) -> Iterable[Block]:
+    higher = structure.higher
+    n, lower = len(structure.links), len(structure.pairs) - structure.higher
+    turning = sum(pair.kind == "R" for pair in structure.pairs)
+    counted = _("{n} moving links, {p1} lower pairs ({turning} turning, {sliding} sliding) and {p2} higher pairs")
+    yield said(
+        _(
+            "The mobility of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+            "moving links, {lower} that of lower pairs and {higher} that of higher pairs. There are {counted}:"
+        ),
+        n=N, lower=LOWER, higher=HIGHER, source=Link("artobolevskii"),
+        counted=counted.format(n=n, p1=lower, p2=higher, turning=turning, sliding=lower - turning),
+    )  # fmt: skip
+    yield Found(Substitution(W, chebyshev(n, lower, higher), structure.mobility, whole=True))
+    if structure.passive:
+        yield said(
+            _(
+                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only "
+                "repeat others by the special sizes of the mechanism; its true mobility is {w} = {true}."
+            ),
+            count=str(structure.redundant), w=W,
+            pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),
+            true=str(structure.mobility + structure.redundant),
+        )  # fmt: skip
+
+
+def chebyshev(n: int, lower: int, higher: int) -> Expression:
+    """3n − 2p₁ − p₂."""
+    held = Product((Constant(2), Leaf(LOWER, lower)))
+    return Sum(((1, Product((Constant(3), Leaf(N, n)))), (-1, held), (-1, Leaf(HIGHER, higher))))
+
+
+def _groups(subject: Subject) -> Iterable[Block]:
+    structure = subject.results.structure
+    if structure.groups:
+        yield said(
+            _(
+                "When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
+                "mobility of each of them is zero."
+            ),
+            table=Ref("groups"),
+        )  # fmt: skip
+        head = (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
+        rows = tuple(_group(group) for group in structure.groups)
+        yield Rows(
+            _("Assur groups, in the order in which they are joined"), tuple(line(h) for h in head), rows, "groups"
+        )
+    yield from _apart(subject)
+    yield paragraph(_("The formula of structure of the mechanism is:"))
+    yield Equation(Words(structure.formula.replace("->", "→")))
+    text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
+    yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+
+
+def _apart(subject: Subject) -> Iterable[Block]:
+    """The drawings of the parts, one after the other."""
+    drawn = subject.drawings("groups")
+    if drawn:
+        sentence = _("The primary mechanism and the groups are shown apart in figures {first} to {last}.")
+        if len(drawn) == 1:
+            sentence = _("The primary mechanism is shown in figure {first}.")
+        yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
+    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
+        text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
+        yield Figure(text.format(title=part.title), drawing, stem)
+
+
+def _group(group: Group) -> tuple[Line, ...]:
+    pairs = [pair for pair in (*group.inner, *group.outer) if pair.name not in group.redundant_pairs]
+    lower = sum(pair.lower for pair in pairs)
+    higher, drivers, n = len(pairs) - lower, len(group.drivers), len(group.links)
+    w = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + (f" − {drivers}" if drivers else "")
+    own = f"{w} = {3 * n - 2 * lower - higher - drivers}"
+    known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
+    outer = ", ".join(_("{pair} (of {link})").format(pair=pair, link=link_name(link)) for pair, link in known)
+    return (
+        line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(group.type),
+        line(", ".join(pair.name for pair in group.inner)), line(outer), line(own),
+    )  # fmt: skip

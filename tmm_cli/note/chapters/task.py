@@ -1,16 +1,168 @@
-"""The task and its data, as the file gives them."""
+"""The task and its data, as the file gives them, in its units."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import combinations
 
-from tmm_cli.errors import _
-from tmm_cli.note.blocks import Block, Heading, paragraph
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.linkage import FRAME, Link, Load
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.tables import rows_of
+from tmm_cli.plans.record import Symbol
+from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
+from tmm_cli.results.explain import given
+from tmm_cli.results.reports.structure import ROLES
+from tmm_cli.results.stages import heavy, link_name
+from tmm_cli.results.understood import motion
+
+FURTHER = ("drivers", "meshes", "cams", "springs", "friction")  # tables of `tmm explain` that are the file's own data
+SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
-    """What is given."""
+    """What is given and what is to be found."""
+    results = subject.results
+    problem, linkage = results.problem, results.linkage
     yield Heading(_("Task and data"))
-    if subject.results.problem.description:
-        yield paragraph(subject.results.problem.description)
+    if problem.description:
+        yield paragraph(problem.description.strip())
+    yield said(_("The sizes of the links are given in table {table}."), table=Ref("sizes"))
+    yield _sizes(subject)
+    yield said(_("The places of the fixed points and guides are given in table {table}."), table=Ref("fixed"))
+    yield _fixed(subject)
+    for driver in linkage.drivers:
+        yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
+    if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
+        sentence = _(
+            "The masses of the links, their moments of inertia and centres of mass are given in table {table}."
+        )
+        yield said(sentence, table=Ref("masses"))
+        yield _masses(subject)
+        yield from _gravity(subject)
+    if linkage.loads:
+        yield said(_("The loads are given in table {table}."), table=Ref("loads"))
+        yield _loads(subject)
+    for table in given(problem):
+        if table.name in FURTHER or table.name.startswith("load_table"):
+            yield rows_of(subject, table)
+            yield from (paragraph(note) for note in table.notes)
+    yield paragraph(_("It is required to find:"))
+    yield Items(tuple(line(text) for text in _wanted(subject)))
+
+
+def _gravity(subject: Subject) -> Iterable[Block]:
+    pull = subject.results.linkage.gravity
+    size = abs(pull)
+    if not size:
+        yield paragraph(_("The weights of the links are not taken into account."))
+        return
+    yield said(
+        _("The acceleration of gravity is {g} = {size} m/s², its direction {angle} from the x axis."),
+        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE),
+    )  # fmt: skip
+
+
+def _sizes(subject: Subject) -> Rows:
+    linkage, roles = subject.results.linkage, subject.results.roles
+    rows = tuple(
+        (line(name), line(link.label or ROLES[roles[name]]), _lengths(subject, link) or line("—"))
+        for name, link in linkage.links.items() if name != FRAME
+    )  # fmt: skip
+    head = (line(_("link")), line(_("is called")), line(_("sizes")))
+    return Rows(_("Links and their sizes"), head, rows, "sizes")
+
+
+def _lengths(subject: Subject, link: Link) -> Line:
+    """l_AB = 110 mm, ..."""
+    points = list(link.points)
+    pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
+    found: list[Line] = []
+    for a, b in pairs:
+        length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
+        if length > 0:
+            found.append(line(Symbol("l", a + b), f" = {subject.value(length, LENGTH, 6)}"))
+    return tuple(part for k, one in enumerate(found) for part in ((", ", *one) if k else one))
+
+
+def _fixed(subject: Subject) -> Rows:
+    linkage = subject.results.linkage
+    rows = [
+        (line(point), *_place(subject, place), line(""))
+        for point, place in linkage.links[FRAME].points.items()
+    ]  # fmt: skip
+    for slide in linkage.slides:
+        if slide.carrier == FRAME:
+            angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE, 6)
+            rows.append((line(_("guide {name}").format(name=slide.name)), *_place(subject, slide.through), line(angle)))
+    unit = subject.unit(LENGTH)
+    head = (line(_("point")), line(f"x, {unit}"), line(f"y, {unit}"), line(_("direction")))
+    shown = tuple(row if any(r[3] != ("",) for r in rows) else row[:3] for row in rows)
+    return Rows(_("Fixed points and guides"), head[: len(shown[0]) if shown else 3], shown, "fixed")
+
+
+def _place(subject: Subject, place: complex) -> tuple[Line, Line]:
+    value, units = complex(np.ravel(place)[0]), subject.results.problem.units
+    x, y = (subject.text(float(units.from_si(part, LENGTH)), 6) for part in (value.real, value.imag))
+    return line(x), line(y)
+
+
+def _masses(subject: Subject) -> Rows:
+    linkage, units = subject.results.linkage, subject.results.problem.units
+    rows = []
+    for name in heavy(linkage):
+        link = linkage.links[name]
+        mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
+        rows.append((
+            line(name), line(subject.text(float(units.from_si(mass, MASS)), 6)),
+            line(subject.text(float(units.from_si(inertia, INERTIA)), 6)), *_place(subject, link.centre),
+        ))  # fmt: skip
+    head = (
+        line(_("link")), line(Symbol("m"), f", {subject.unit(MASS)}"),
+        line(Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
+        line(Symbol("x", "S"), f", {subject.unit(LENGTH)}"), line(Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
+    )  # fmt: skip
+    return Rows(
+        _("Masses, moments of inertia and centres of mass (in the axes of each link)"), head, tuple(rows), "masses"
+    )
+
+
+def _loads(subject: Subject) -> Rows:
+    linkage = subject.results.linkage
+    head = tuple(line(text) for text in (_("load"), _("on link"), _("acts at"), _("size"), _("acts")))
+    return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
+
+
+def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
+    units = subject.results.problem.units
+    place = load.point
+    if load.force and not place:
+        x, y = _place(subject, load.at)
+        place = _("({x}; {y}) {unit}").format(x=x[0], y=y[0], unit=subject.unit(LENGTH))
+    size = subject.value(load.moment, MOMENT, 6)
+    if load.force:
+        parts = (subject.text(float(units.from_si(part, FORCE)), 6) for part in (load.force.real, load.force.imag))
+        size = "({}; {}) {}".format(*parts, subject.unit(FORCE))
+    if load.table is not None:
+        size = _("by a table")
+    when = _("in the working stroke") if load.working_stroke_only else _("always")
+    return line(load.name), line(link_name(load.link)), line(place if load.force else ""), line(size), line(when)
+
+
+def _wanted(subject: Subject) -> Iterable[str]:
+    results = subject.results
+    if results.problem.synthesis is not None:
+        yield _("the sizes of the mechanism from what it must do;")
+    yield _("the structure of the mechanism: its mobility, Assur groups, formula and class;")
+    if results.motion is None:
+        return
+    count = len(results.numbers)
+    yield (
+        _("positions, velocities and accelerations of points and links;") if count == 1
+        else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
+    )  # fmt: skip
+    if subject.acts:
+        yield _("reactions in the pairs, and what balances the driving link, checked by the Zhukovsky lever.")

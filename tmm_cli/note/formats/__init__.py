@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.util import find_spec
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.formats.html import html
 from tmm_cli.problem.errors import ProblemError, nearest, quote

@@ -12,7 +12,7 @@ from docx.enum.text import WD_ALIGN_PARAGRAPH
 from docx.oxml import parse_xml
 from docx.shared import Pt
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import (
     Block,
     Contents,

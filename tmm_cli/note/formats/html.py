@@ -10,7 +10,7 @@ from html import escape
 from importlib.resources import files
 
 from tmm_cli.draw.formats.svg import NOT_XML, svg
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.note.blocks import (
     Block,
     Contents,

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.checks import Check, checks
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.table import Table, table_of_words, with_unit
 from tmm_cli.tolerances import SAME_PLACE

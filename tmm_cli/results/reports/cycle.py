@@ -7,22 +7,22 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import power
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.language import N_, Phrase, _
 from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.quantities import FORCE, LINK, MOMENT, NUMBER, SLIDE, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real, pi
 
 OF_OUTPUT = {
-    "run": _("s of {link}"),
-    "v": _("v of {link}"),
-    "a": _("a of {link}"),
-    "angle": _("angle of {link}"),
-    "omega": _("omega of {link}"),
-    "epsilon": _("epsilon of {link}"),
+    "run": N_("s of {link}"),
+    "v": N_("v of {link}"),
+    "a": N_("a of {link}"),
+    "angle": N_("angle of {link}"),
+    "omega": N_("omega of {link}"),
+    "epsilon": N_("epsilon of {link}"),
 }
 
 
@@ -44,7 +44,7 @@ def driver_columns(results: Results) -> list[Column]:
     assert results.motion is not None
     name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
     return [
-        Column(_("position"), [str(n) for n in results.numbers]),
+        Column(N_("position"), [str(n) for n in results.numbers]),
         _place(results, results.linkage.driver, name, results.motion.q),
     ]
 
@@ -69,7 +69,7 @@ def tables(results: Results) -> Iterable[Table]:
         columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(_("state"), states(results)))
+        columns.append(Column(N_("state"), states(results)))
     yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage),))
 
 
@@ -81,7 +81,7 @@ def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple
     words = OF_OUTPUT if link in results.linkage.links else OF_OUTPUT | {"run": "{link}"}
     quantities = LINK if results.linkage.output_swings(link) else SLIDE
     for quantity, values in zip(quantities, (run, v, a), strict=False):
-        yield words[quantity.name].format(link=link), values, quantity.dimension
+        yield Phrase(words[quantity.name], link=link), values, quantity.dimension
 
 
 def _balance(results: Results) -> Iterable[Column]:
@@ -89,15 +89,15 @@ def _balance(results: Results) -> Iterable[Column]:
     reactions, lever, motion = results.reactions, results.lever, results.motion
     if reactions is None or lever is None or motion is None:
         return
-    difference = Column(_("difference, %"), lever.difference * 100, NUMBER, digits=2)
+    difference = Column(N_("difference, %"), lever.difference * 100, NUMBER, digits=2)
     if len(reactions.balances) == 1:
         balance = reactions.balance
         if balance.kind == "moment":
-            yield Column(_("M_b, force plan"), balance.moment, MOMENT)
-            yield Column(_("M_b, lever"), lever.balancing, MOMENT)
+            yield Column(N_("M_b, force plan"), balance.moment, MOMENT)
+            yield Column(N_("M_b, lever"), lever.balancing, MOMENT)
         else:
-            yield Column(_("F_b, force plan"), balance.force, FORCE)
-            yield Column(_("F_b, lever"), lever.balancing / balance.arm, FORCE)
+            yield Column(N_("F_b, force plan"), balance.force, FORCE)
+            yield Column(N_("F_b, lever"), lever.balancing / balance.arm, FORCE)
         yield difference
         return
     for balance in reactions.balances:
@@ -106,8 +106,8 @@ def _balance(results: Results) -> Iterable[Column]:
         yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
     first = results.linkage.driver
     size = MOMENT if first.kind == "turn" else FORCE
-    yield Column(_("reduced to {link}, force plan").format(link=first.link), power(motion, reactions), size)
-    yield Column(_("reduced to {link}, lever").format(link=first.link), lever.balancing, size)
+    yield Column(Phrase("reduced to {link}, force plan", link=first.link), power(motion, reactions), size)
+    yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
     yield difference
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.quantities import ENERGY, LENGTH, NUMBER, columns
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
@@ -22,7 +22,7 @@ def tables(results: Results) -> Iterable[Table]:
     table = [
         *driver_columns(results),
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
-        Column(_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
+        Column(N_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
     ]
     note = _(
         "Powers are positive that speed the mechanism up. What is reduced to the driver is by its place, which grows "
@@ -46,10 +46,10 @@ def _friction(results: Results) -> Table:
     return Table(
         "friction", _("Friction"),
         (
-            Column(_("pair"), [f.pair for f in given]),
-            Column(_("mu"), [f.coefficient for f in given], NUMBER),
-            Column(_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+            Column(N_("pair"), [f.pair for f in given]),
+            Column(N_("mu"), [f.coefficient for f in given], NUMBER),
+            Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
+            Column(N_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
     )  # fmt: skip

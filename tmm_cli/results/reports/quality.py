@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.strokes import OutputCurve, Strokes, Travel
+from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
@@ -39,7 +39,7 @@ def tables(results: Results) -> Iterable[Table]:
         rows += _travel(results.linkage, travel, place)
     rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
-        yield Table("quality", _("Quality"), _mixed(rows, results))
+        yield Table("quality", _("Quality"), of_rows(rows, results))
 
 
 def _strokes(linkage: Linkage, strokes: Strokes, place: Dimension) -> Iterable[Row]:
@@ -88,11 +88,11 @@ def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]
         yield _("with the driver at"), at, place
 
 
-def _mixed(rows: list[Row], results: Results) -> tuple[Column, ...]:
+def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
     """Rows of different dimensions: the unit stands in a column of its own."""
     units = results.problem.units
     return (
-        Column(_("what"), [name for name, __, __ in rows]),
-        Column(_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
-        Column(_("unit"), [units.symbol(dim) for __, __, dim in rows]),
+        Column(N_("what"), [name for name, __, __ in rows]),
+        Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
+        Column(N_("unit"), [units.symbol(dim) for __, __, dim in rows]),
     )

@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.contours import Contour, contours
 from tmm_cli.structure.redundancy import space
 
 KINDS = {
-    "turning": _("turning"),
-    "sliding": _("sliding"),
-    "screw": _("screw"),
-    "cylindrical": _("cylindrical"),
-    "spherical with a pin": _("spherical with a pin"),
-    "universal": _("universal"),
-    "spherical": _("spherical"),
-    "planar": _("planar"),
-    "sphere in cylinder": _("sphere in cylinder"),
-    "cylinder on plane": _("cylinder on plane"),
-    "sphere on plane": _("sphere on plane"),
+    "turning": N_("turning"),
+    "sliding": N_("sliding"),
+    "screw": N_("screw"),
+    "cylindrical": N_("cylindrical"),
+    "spherical with a pin": N_("spherical with a pin"),
+    "universal": N_("universal"),
+    "spherical": N_("spherical"),
+    "planar": N_("planar"),
+    "sphere in cylinder": N_("sphere in cylinder"),
+    "cylinder on plane": N_("cylinder on plane"),
+    "sphere on plane": N_("sphere on plane"),
 }
 
 
@@ -55,7 +55,7 @@ def tables(results: Results) -> Iterable[Table]:
         yield table_of_words(
             "replacements", _("Pairs that leave no redundant constraints"),
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
-            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", KINDS[r.was], KINDS[r.kind], str(r.freedoms))
+            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", _(KINDS[r.was]), _(KINDS[r.kind]), str(r.freedoms))
              for r in found.replacements],
             (note,),
         )  # fmt: skip

@@ -6,50 +6,50 @@ from collections import Counter
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import ROMAN, Structure
 from tmm_cli.structure.contours import classification
 
 ROLES = {
-    "crank": _("crank"),
-    "rocker": _("rocker"),
-    "coupler": _("coupler"),
-    "slider": _("slider"),
-    "stone": _("stone"),
-    "slotted link": _("slotted link"),
-    "rod": _("rod"),
-    "rocking slider": _("rocking slider"),
-    "wheel": _("toothed wheel"),
-    "planet": _("planet"),
-    "carrier": _("carrier"),
-    "rack": _("rack"),
-    "cam": _("cam"),
-    "follower": _("follower"),
-    "cylinder": _("cylinder"),
-    "piston": _("piston"),
+    "crank": N_("crank"),
+    "rocker": N_("rocker"),
+    "coupler": N_("coupler"),
+    "slider": N_("slider"),
+    "stone": N_("stone"),
+    "slotted link": N_("slotted link"),
+    "rod": N_("rod"),
+    "rocking slider": N_("rocking slider"),
+    "wheel": N_("toothed wheel"),
+    "planet": N_("planet"),
+    "carrier": N_("carrier"),
+    "rack": N_("rack"),
+    "cam": N_("cam"),
+    "follower": N_("follower"),
+    "cylinder": N_("cylinder"),
+    "piston": N_("piston"),
 }
 PAIRS = {
-    "R": _("turning (R)"),
-    "P": _("sliding (P)"),
-    "G": _("toothed wheels (G)"),
-    "K": _("wheel and rack (K)"),
-    "C": _("cam and follower (C)"),
+    "R": N_("turning (R)"),
+    "P": N_("sliding (P)"),
+    "G": N_("toothed wheels (G)"),
+    "K": N_("wheel and rack (K)"),
+    "C": N_("cam and follower (C)"),
 }
 HIGHER = {
-    "G": _("{count} of toothed wheels"),
-    "K": _("{count} of wheel and rack"),
-    "C": _("{count} of cam and follower"),
+    "G": N_("{count} of toothed wheels"),
+    "K": N_("{count} of wheel and rack"),
+    "C": N_("{count} of cam and follower"),
 }
 CLASSES = {
-    "open": _("open"),
-    "closed": _("closed"),
-    "elementary": _("elementary: the driver alone"),
-    "simple": _("simple: the driver and one group"),
-    "complex": _("complex: the driver and several groups"),
-    "same type": _("of the same type"),
-    "several types": _("of several types"),
+    "open": N_("open"),
+    "closed": N_("closed"),
+    "elementary": N_("elementary: the driver alone"),
+    "simple": N_("simple: the driver and one group"),
+    "complex": N_("complex: the driver and several groups"),
+    "same type": N_("of the same type"),
+    "several types": N_("of several types"),
 }
 
 
@@ -61,12 +61,12 @@ def tables(results: Results) -> Iterable[Table]:
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
         "links", _("Links"), (_("link"), _("is a"), _("called"), _("points")),
-        [(x.name, ROLES[roles[x.name]], x.label, ", ".join(x.points)) for x in links],
+        [(x.name, _(ROLES[roles[x.name]]), x.label, ", ".join(x.points)) for x in links],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
     yield table_of_words(
         "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("where")),
-        [(p.name, f"{p.i} - {p.j}", PAIRS[p.kind],
+        [(p.name, f"{p.i} - {p.j}", _(PAIRS[p.kind]),
           _("on the frame") if FRAME in (p.i, p.j) else _("between moving links")) for p in structure.pairs],
     )  # fmt: skip
     yield table_of_words(
@@ -88,7 +88,7 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
     )
     if higher:
         kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
-        told = ", ".join(text.format(count=kinds[kind]) for kind, text in HIGHER.items() if kinds[kind])
+        told = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER.items() if kinds[kind])
         yield _("higher pairs p2"), f"{higher} ({told})"
         yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
     else:
@@ -103,5 +103,5 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("passive constraint"), told
     yield _("independent contours K = p - n"), str(structure.contours)
     yield _("formula of structure"), structure.formula
-    yield _("chain, and kind of structure"), ", ".join(CLASSES[word] for word in classification(structure))
+    yield _("chain, and kind of structure"), ", ".join(_(CLASSES[word]) for word in classification(structure))
     yield _("class of the mechanism"), ROMAN[min(structure.mechanism_class, 10)]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
@@ -24,11 +24,11 @@ ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as n
 DIGITS = 10  # on a terminal; files have 15
 # columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
 # what has no header is in result.json only
-VALUE = (("quantity", _("quantity"), "word"), ("value", _("value"), "mixed"), ("kind", _("unit"), "unit"))
+VALUE = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
 MEASURED = (
-    ("quantity", _("quantity"), "word"), ("asked", _("by"), "by"), ("wanted", _("wanted"), "mixed"),
-    ("measured", _("measured"), "mixed"), ("kind", _("unit"), "unit"),
-    ("difference", _("relative difference"), "share"), ("open", "", "share"), ("met", "", "by"),
+    ("quantity", N_("quantity"), "word"), ("asked", N_("by"), "by"), ("wanted", N_("wanted"), "mixed"),
+    ("measured", N_("measured"), "mixed"), ("kind", N_("unit"), "unit"),
+    ("difference", N_("relative difference"), "share"), ("open", "", "share"), ("met", "", "by"),
 )  # fmt: skip
 
 
@@ -45,9 +45,12 @@ def tables_of(
     """Asked, found, measured (None: there is no linkage)."""
     outcome = found.outcome
     bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else None
-    title, source = _("Asked: {task}").format(task=found.task), _("Source: {source}").format(source=outcome.source)
+    title, source = (
+        _("Asked: {task}").format(task=found.task),
+        _("Source: {source}").format(source=translated(outcome.source)),
+    )
     yield _table(_values("asked", title, outcome.asked, bounded), units, digits)
-    given = _values("found", _("Found"), outcome.found, found.names or None)
+    given = _values("found", N_("Found"), outcome.found, found.names or None)
     yield _table(given, units, digits, (*outcome.notes, source))
     for listing in outcome.listings:
         yield _table(listing, units, digits)
@@ -58,7 +61,7 @@ def tables_of(
 def parameters(found: Synthesised, units: UnitSystem) -> Table:
     """For `tmm explain`: the parameters that were found."""
     values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
-    listing, note = _values("", _("Parameters found by synthesis"), values, found.names or None), _("Asked: {task}")
+    listing, note = _values("", N_("Parameters found by synthesis"), values, found.names or None), _("Asked: {task}")
     return _table(listing, units, DIGITS, (note.format(task=found.task),))
 
 
@@ -68,11 +71,11 @@ def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[st
         if m.open:
             yield _(
                 "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open"
-            ).format(quantity=m.demand.text, by=f"{m.open:.2g}")
+            ).format(quantity=translated(m.demand.text), by=f"{m.open:.2g}")
         if not m.met:
             wanted, on = (_shown(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
             yield _("{quantity}: wanted {wanted}, measured {found}").format(
-                quantity=m.demand.text, wanted=f"{wanted} {_unit(m.demand.kind, units)}".rstrip(), found=on
+                quantity=translated(m.demand.text), wanted=f"{wanted} {_unit(m.demand.kind, units)}".rstrip(), found=on
             )
 
 
@@ -98,7 +101,7 @@ def _values(name: str, title: str, values: Sequence[Value], names: Mapping[str, 
     if names is None:
         return Listing(name, title, VALUE, rows)
     named = tuple((names.get(v.name), *row) for v, row in zip(values, rows, strict=True))
-    return Listing(name, title, (("name", _("parameter"), "word"), *VALUE), named)
+    return Listing(name, title, (("name", N_("parameter"), "word"), *VALUE), named)
 
 
 def _measured(measured: Sequence[MeasuredDemand]) -> Listing:
@@ -106,7 +109,7 @@ def _measured(measured: Sequence[MeasuredDemand]) -> Listing:
         (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
         for m in measured
     )
-    return Listing("measured", _("What was asked and foretold, measured on the mechanism"), MEASURED, rows)
+    return Listing("measured", N_("What was asked and foretold, measured on the mechanism"), MEASURED, rows)
 
 
 def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
@@ -124,10 +127,10 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
         elif kind == "share":
             values = [f"{0.0 if abs(value) < ROUNDING else value:.2g}" for value in values]
         else:
-            values = ["" if v is None else v for v in values]
+            values = ["" if v is None else translated(v) for v in values]
         columns += [Column(header, values, dimension)] if header else []
     name = f"synthesis-{listing.name}".rstrip("-")
-    return Table(name, listing.title, tuple(columns), listing.long, notes)
+    return Table(name, translated(listing.title), tuple(columns), listing.long, tuple(map(translated, notes)))
 
 
 def _records(listing: Listing) -> list[dict[str, Any]]:
@@ -147,7 +150,7 @@ def _kinds(listing: Listing) -> list[Kind]:
 
 def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
     if value is None or kind == "word":
-        return "" if value is None else value
+        return "" if value is None else translated(value)
     number = float(value)
     return _("none") if math.isnan(number) else f"{units.from_si(number, KINDS[kind].dimension):.{digits}g}"
 

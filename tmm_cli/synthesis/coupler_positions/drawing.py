@@ -7,19 +7,19 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses
 from tmm_cli.synthesis.coupler_positions.lines import frame, lines
 
 CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
 TITLES: Final = (  # by how many pivots were given
-    _("Pivots on the bisectors of the places of the pins"),
-    _("Pivot on the bisectors of the places of its pin; pin on those of its pivot, seen from the coupler"),
-    _("Pins on the bisectors of the places of the pivots, seen from the coupler in position 1"),
+    N_("Pivots on the bisectors of the places of the pins"),
+    N_("Pivot on the bisectors of the places of its pin; pin on those of its pivot, seen from the coupler"),
+    N_("Pins on the bisectors of the places of the pivots, seen from the coupler in position 1"),
 )
-BY_PIN: Final = _("dashed: bisectors of the places of the pin")
-BY_PIVOT: Final = _("dashed: bisectors of the pivot and its places ′, turned back with the coupler to position 1")
+BY_PIN: Final = N_("dashed: bisectors of the places of the pin")
+BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its places ′, turned back with the coupler to position 1")
 
 
 def construction(
@@ -75,15 +75,15 @@ def construction(
                              chain="four-bar", values=values),)  # fmt: skip
     found = lines(poses, [s.at for s in spots])
     curves = tuple(Curve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
-    note = _("red: centre points m (pivots); dashed: circle points k1 (pins), in position 1")
+    note = N_("red: centre points m (pivots); dashed: circle points k1 (pins), in position 1")
     near = Construction(
-        _("Four positions: pivots on the centre-point curve, pins on the circle-point curve"), tuple(segments),
+        N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"), tuple(segments),
         tuple(arcs), tuple(spots), (note,), curves, chain="four-bar", values=values,
     )  # fmt: skip
     few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
     links = [s for s in segments if s.style == "link"]
     wide = Construction(
-        _("Centre-point curve and circle-point curve of the four positions (Burmester)"), tuple(links), (), tuple(few),
+        N_("Centre-point curve and circle-point curve of the four positions (Burmester)"), tuple(links), (), tuple(few),
         (note,), curves, "curves", chain="four-bar",
         around=frame([s.at for s in few], [line for row in found for line in row]),
     )  # fmt: skip

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
 from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
@@ -22,12 +22,12 @@ FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are ref
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 DEFECTS: Final = {  # by their numbers in Marks
-    1: _("branch defect: some positions are on the other assembly of the four-bar"),
-    2: _("order defect: AB does not reach the positions in order by turning one way"),
-    3: _("circuit defect: AB locks on the way between the positions"),
+    1: N_("branch defect: some positions are on the other assembly of the four-bar"),
+    2: N_("order defect: AB does not reach the positions in order by turning one way"),
+    3: N_("circuit defect: AB locks on the way between the positions"),
 }
-POLE: Final = _("{point} does not move between these positions, or not against the coupler: it is the pole")
-NO_LINKS: Final = _("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
+POLE: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
+NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 
 
 def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
@@ -71,7 +71,7 @@ def dyad(task: Task, name: str) -> Dyads:
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
     if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_PLACES * task.size:
-        raise Infeasible(point, POLE.format(point=point))
+        raise Infeasible(point, _(POLE).format(point=point))
     if len(places) == 3:
         found = centre(places)
         if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_PLACES:

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, Phrase
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, by_turn
 from tmm_cli.synthesis.coupler_positions.drawing import construction
@@ -24,34 +24,34 @@ from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Side", "Task", "solve"]
 NAMES: Final = {
-    "Ax": _("pivot A: x"), "Ay": _("pivot A: y"), "Dx": _("pivot D: x"), "Dy": _("pivot D: y"),
-    "l1": _("driver l1 = AB"), "l2": _("coupler l2 = BC"), "l3": _("follower l3 = DC"), "l4": _("frame l4 = AD"),
-    "Px": _("P of the coupler, from B: x"), "Py": _("P of the coupler, from B: y"),
-    "Cx": _("pin C in position 1: x"), "Cy": _("pin C in position 1: y"), "phi1": _("angle of AB in position 1"),
+    "Ax": N_("pivot A: x"), "Ay": N_("pivot A: y"), "Dx": N_("pivot D: x"), "Dy": N_("pivot D: y"),
+    "l1": N_("driver l1 = AB"), "l2": N_("coupler l2 = BC"), "l3": N_("follower l3 = DC"), "l4": N_("frame l4 = AD"),
+    "Px": N_("P of the coupler, from B: x"), "Py": N_("P of the coupler, from B: y"),
+    "Cx": N_("pin C in position 1: x"), "Cy": N_("pin C in position 1: y"), "phi1": N_("angle of AB in position 1"),
 }  # fmt: skip
 PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
 GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by the fields of Side; places as x and y
-    "AB": {"pin": (_("B in the coupler: x"), _("B in the coupler: y")), "pivot": (NAMES["Ax"], NAMES["Ay"]),
-           "length": _("length AB"), "turn": _("turn of AB from position 1 to 2"),
-           "near": (_("A near to x"), _("A near to y"))},
-    "DC": {"pin": (_("C in the coupler: x"), _("C in the coupler: y")), "pivot": (NAMES["Dx"], NAMES["Dy"]),
-           "length": _("length DC"), "turn": _("turn of DC from position 1 to 2"),
-           "near": (_("D near to x"), _("D near to y"))},
+    "AB": {"pin": (N_("B in the coupler: x"), N_("B in the coupler: y")), "pivot": (NAMES["Ax"], NAMES["Ay"]),
+           "length": N_("length AB"), "turn": N_("turn of AB from position 1 to 2"),
+           "near": (N_("A near to x"), N_("A near to y"))},
+    "DC": {"pin": (N_("C in the coupler: x"), N_("C in the coupler: y")), "pivot": (NAMES["Dx"], NAMES["Dy"]),
+           "length": N_("length DC"), "turn": N_("turn of DC from position 1 to 2"),
+           "near": (N_("D near to x"), N_("D near to y"))},
 }  # fmt: skip
-BRANCH: Final = {"AB": _("branch of AB"), "DC": _("branch of DC")}
-AWAY: Final = {"AB": _("distance of A from the wanted place"), "DC": _("distance of D from the wanted place")}
+BRANCH: Final = {"AB": N_("branch of AB"), "DC": N_("branch of DC")}
+AWAY: Final = {"AB": N_("distance of A from the wanted place"), "DC": N_("distance of D from the wanted place")}
 DEFECTS: Final = (  # by their numbers in Marks
-    _("none: all positions on one assembly, reached in order"),
-    _("branch: some positions are on the other assembly"),
-    _("order: the driver must turn back between positions"),
-    _("circuit: the driver locks on the way"),
+    N_("none: all positions on one assembly, reached in order"),
+    N_("branch: some positions are on the other assembly"),
+    N_("order: the driver must turn back between positions"),
+    N_("circuit: the driver locks on the way"),
 )
 SOURCES: Final = {  # by the count of positions; 1: four of one angle
-    1: _("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
-    2: _("pivots on the bisector of the two places of a pin, at the link's length"),
-    3: _("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
+    1: N_("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
+    2: N_("pivots on the bisector of the two places of a pin, at the link's length"),
+    3: N_("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
          "coupler held (inversion)"),
-    4: _("pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
+    4: N_("pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
          "W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"),
 }  # fmt: skip
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
@@ -69,14 +69,14 @@ def solve(task: Task) -> Outcome:
     plain = np.longdouble if isinstance(task.angles[0], np.longdouble) else float
     values = [Value(name, plain(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
-        Value("", float(mark.least), "angle", _("least transmission angle on the way")),
-        Value("", float(mark.turn), "angle", _("turn of AB from the first to the last position")),
-        Value("", DEFECTS[int(mark.defect)], "word", _("defects")),
+        Value("", float(mark.least), "angle", N_("least transmission angle on the way")),
+        Value("", float(mark.turn), "angle", N_("turn of AB from the first to the last position")),
+        Value("", DEFECTS[int(mark.defect)], "word", N_("defects")),
     ]
     count = len(task.places)
     notes, listings = [], []
     if task.still:
-        notes.append(_(
+        notes.append(N_(
             "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
             "direction, taken across the arms in the middle of their way"
         ))  # fmt: skip
@@ -119,11 +119,11 @@ def _on_curve(task: Task, name: str, found: Dyads) -> Iterator[Value]:
 def _curve(task: Task) -> Listing:
     """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
     columns = (
-        ("branch", _("branch"), "name"), ("turn", _("turn from 1 to 2"), "angle"),
-        ("pivot_x", _("pivot, x"), "length"), ("pivot_y", _("pivot, y"), "length"),
-        ("pin_x", _("pin in the coupler, x"), "length"), ("pin_y", _("pin in the coupler, y"), "length"),
-        ("first_x", _("pin in position 1, x"), "length"), ("first_y", _("pin in position 1, y"), "length"),
-        ("length", _("length of the link"), "length"),
+        ("branch", N_("branch"), "name"), ("turn", N_("turn from 1 to 2"), "angle"),
+        ("pivot_x", N_("pivot, x"), "length"), ("pivot_y", N_("pivot, y"), "length"),
+        ("pin_x", N_("pin in the coupler, x"), "length"), ("pin_y", N_("pin in the coupler, y"), "length"),
+        ("first_x", N_("pin in position 1, x"), "length"), ("first_y", N_("pin in position 1, y"), "length"),
+        ("length", N_("length of the link"), "length"),
     )  # fmt: skip
     turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
     rows = []
@@ -134,15 +134,17 @@ def _curve(task: Task) -> Listing:
             a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
             places = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
             rows.append((str(branch + 1), float(turns[k]), *places, abs(b1 - a)))
-    title = _("Burmester's curves: pivots on the frame and their pins")
+    title = N_("Burmester's curves: pivots on the frame and their pins")
     return Listing("curve", title, columns, tuple(rows), long=True)
 
 
 def _position_names(k: int) -> tuple[str, str, str]:
     """What x, y and angle of a position are called."""
-    texts = _("position {number}: x of P"), _("position {number}: y of P"), _("position {number}: angle of the coupler")
-    x, y, angle = (text.format(number=k + 1) for text in texts)
-    return x, y, angle
+    return (
+        Phrase("position {number}: x of P", number=k + 1),
+        Phrase("position {number}: y of P", number=k + 1),
+        Phrase("position {number}: angle of the coupler", number=k + 1),
+    )
 
 
 def _demands(task: Task, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Demand]:
@@ -156,8 +158,8 @@ def _demands(task: Task, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Dema
         yield Demand(x, complex(place).real, "length", partial(_pose, "x", at), at=task.size)
         yield Demand(y, complex(place).imag, "length", partial(_pose, "y", at), at=task.size)
         yield Demand(turned, float(angle), "angle", partial(_pose, "angle", at), at=1.0)
-    measure = partial(_transmission, float(mark.worst))
-    name = _("least transmission angle on the way")
+    measure = partial(four_bar.transmission, float(mark.worst))
+    name = N_("least transmission angle on the way")
     yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
 
 
@@ -171,10 +173,6 @@ def _pose(part: str, at: dict[str, Any], results: Any) -> float:
     place = b + along * at["local"]
     turned = at["near"] + float(np.angle(complex(along) * np.exp(-1j * (at["near"] + at["slope"]))))
     return float({"x": place.real, "y": place.imag, "angle": turned}[part])
-
-
-def _transmission(phi: float, results: Any) -> float:
-    return float(four_bar.transmission(results, np.array([phi]))[0])
 
 
 def _given(task: Task) -> Iterator[Value]:
@@ -191,8 +189,8 @@ def _given(task: Task) -> Iterator[Value]:
             elif value is not None:
                 yield Value("", value, "length" if part == "length" else "angle", texts[part])
     if task.within is not None:
-        yield from _place(task.within[0], _("pivots within, x"), _("pivots within, y"))
-        yield from _place(task.within[1], _("pivots within, to x"), _("pivots within, to y"))
+        yield from _place(task.within[0], N_("pivots within, x"), N_("pivots within, y"))
+        yield from _place(task.within[1], N_("pivots within, to x"), N_("pivots within, to y"))
 
 
 def _place(place: Any, x: str, y: str) -> tuple[Value, Value]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def construction(found: Found) -> Construction:
     ]  # fmt: skip
     sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
     plain = Construction(
-        _("Extreme positions of the slider"), tuple(segments), tuple(arcs), tuple(spots), sizes=sizes,
+        N_("Extreme positions of the slider"), tuple(segments), tuple(arcs), tuple(spots), sizes=sizes,
         wishes=(box(o, r),), chain="crank-slider", values=(("r", r, "length"), ("l", l, "length")),
     )  # fmt: skip
     if not theta > DRAWN:
@@ -50,10 +50,10 @@ def construction(found: Found) -> Construction:
     arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
     return replace(
         plain,
-        title=_("Extreme positions of the slider, and the circle on which {B}1{B}2 is seen under theta"),
+        title=N_("Extreme positions of the slider, and the circle on which {B}1{B}2 is seen under theta"),
         segments=(*segments, Segment(b1, b2, "thin")), arcs=tuple(arcs),
         angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
         centres=(Centre(centre, radius, (b1, b2)),), wishes=(box(o, r), (centre,), box(centre, radius)),
         values=(*plain.values, ("θ", theta, "angle")),
-        notes=(_("red: where {O} may be, so that the crank turns fully"), _("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
+        notes=(N_("red: where {O} may be, so that the crank turns fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
     )  # fmt: skip

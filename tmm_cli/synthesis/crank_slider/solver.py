@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.crank_slider.drawing import construction
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
@@ -24,16 +24,16 @@ from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "stroke": ("length", _("stroke H")), "speed": ("speed", _("mean speed of the slider")),
-    "crank_speed": ("angular speed", _("speed of the crank")), "ratio": ("number", _("L = l/r")),
-    "nu": ("number", _("nu = e/r")), "k": ("number", _("k")), "pressure": ("angle", _("largest pressure angle lambda")),
-    "e": ("length", _("offset of the guide e")),
+    "stroke": ("length", N_("stroke H")), "speed": ("speed", N_("mean speed of the slider")),
+    "crank_speed": ("angular speed", N_("speed of the crank")), "ratio": ("number", N_("L = l/r")),
+    "nu": ("number", N_("nu = e/r")), "k": ("number", N_("k")),
+    "pressure": ("angle", N_("largest pressure angle lambda")), "e": ("length", N_("offset of the guide e")),
 }  # fmt: skip
 FOUND: Final = {
-    "r": ("length", _("crank r")), "l": ("length", _("connecting rod l")), "e": QUANTITIES["e"],
-    "h": ("number", _("h = H/r")), "theta": ("angle", _("theta, between the extreme cranks")),
-    "printed": ("number", _("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
-    "error": ("number", _("relative error of that")),
+    "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")), "e": QUANTITIES["e"],
+    "h": ("number", N_("h = H/r")), "theta": ("angle", N_("theta, between the extreme cranks")),
+    "printed": ("number", N_("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
+    "error": ("number", N_("relative error of that")),
 }  # fmt: skip
 
 
@@ -221,16 +221,16 @@ def solve(task: Task) -> Outcome:
         Value("", getattr(found, name), *(QUANTITIES | FOUND)[name])
         for name in ("h", *rest, "theta", "printed", "error")
     )
-    demands = [Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False)]
+    demands = [Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False)]
     if task.speed is not None:
-        demands.append(Demand(_("mean speed of the slider"), float(task.speed), "speed", mean_speed))
+        demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_speed))
     for name, measure in (("stroke", stroke), ("k", ratio), ("pressure", pressure)):
         kind, text = QUANTITIES[name]
         wanted = float(getattr(found, name))
         demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
     return Outcome(
         given(task, QUANTITIES), lengths + more,
-        _("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
+        N_("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
           "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
         tuple(demands), (construction(found),), output="slide",
     )  # fmt: skip

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Arc, Construction, Segment, Spot
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
 
@@ -42,10 +42,10 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
         before = here
     lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
     values = tuple((name, value, "length") for name, value in lengths)
-    title = _(
+    title = N_(
         "Pairs turned back about {A} to the first input: {B}1 is the centre of the circle through {C}1, {C}2′ ..."
     )
-    note = _("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
+    note = N_("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
     return Construction(
         title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
     )  # fmt: skip

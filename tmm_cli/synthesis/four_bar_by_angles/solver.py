@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, Phrase, _
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.four_bar_by_angles.drawing import construction
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
@@ -31,29 +31,29 @@ PARAMETERS: Final = {
     "phi0": "angle", "psi0": "angle", "phi1": "angle", "psi1": "angle",
 }  # fmt: skip
 NAMES: Final = {
-    "l1": _("input l1 = AB"), "l2": _("coupler l2 = BC"), "l3": _("output l3 = DC"), "l4": _("frame l4 = AD"),
-    "phi0": _("phi0, zero of the input angle, from AD"), "psi0": _("psi0, zero of the output angle, from AD"),
-    "phi1": _("angle of AB from AD in the first pair"), "psi1": _("angle of DC from AD in the first pair"),
+    "l1": N_("input l1 = AB"), "l2": N_("coupler l2 = BC"), "l3": N_("output l3 = DC"), "l4": N_("frame l4 = AD"),
+    "phi0": N_("phi0, zero of the input angle, from AD"), "psi0": N_("psi0, zero of the output angle, from AD"),
+    "phi1": N_("angle of AB from AD in the first pair"), "psi1": N_("angle of DC from AD in the first pair"),
 }  # fmt: skip
 DEFECTS: Final = {
-    "": _("none: all pairs on one assembly, reached in order"),
-    "branch": _("branch: some pairs are on the other assembly"),
-    "locks": _("order: the input locks on the way"),
+    "": N_("none: all pairs on one assembly, reached in order"),
+    "branch": N_("branch: some pairs are on the other assembly"),
+    "locks": N_("order: the input locks on the way"),
 }
-MEAN: Final = _("root mean square error of the output angle")
-SHORT_DEFECTS: Final = {"": _("none"), "branch": _("branch"), "locks": _("order")}
-NO_FOUR_BAR: Final = _("no four-bar passes through these pairs")
-NONE_NEAR: Final = _(
+MEAN: Final = N_("root mean square error of the output angle")
+SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
+NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs")
+NONE_NEAR: Final = N_(
     "no four-bar is the nearest to these pairs: errors get less as links grow, or as the input locks on the way"
 )
 EVERY_ONE_HAS: Final = {
-    "branch": _("branch defect: every four-bar through these pairs has some of them on its other assembly"),
-    "locks": _("order defect: the input of every four-bar through these pairs locks on the way"),
-    "branch and locks": _("every four-bar through these pairs has a branch defect, or its input locks on the way"),
+    "branch": N_("branch defect: every four-bar through these pairs has some of them on its other assembly"),
+    "locks": N_("order defect: the input of every four-bar through these pairs locks on the way"),
+    "branch and locks": N_("every four-bar through these pairs has a branch defect, or its input locks on the way"),
 }
 COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
-    ("transmission", _("least transmission angle"), "angle"),
+    ("transmission", N_("least transmission angle"), "angle"),
 )
 SHOWN: Final = 40  # pairs in a table
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
@@ -66,7 +66,7 @@ def solve(task: Task) -> Outcome:
     any_one = parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
     values, demands = _values(task, one, mark), _demands(task, one, mark)
     if not any_one:  # it has change points
-        demands.append(Demand(_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
+        demands.append(Demand(N_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
     drawings: list[Any] = []
     if not task.approximate:
         drawings.append(construction(one, task.phi, task.psi, float(_size(task, one))))
@@ -74,18 +74,18 @@ def solve(task: Task) -> Outcome:
         drawings.append(reached(one, task))
     listings = [_pairs(task, one)] if task.approximate else []
     if found.size > 1:
-        values.append(Value("", f"{at + 1} / {found.size}", "word", _("solution, of those below")))
+        values.append(Value("", f"{at + 1} / {found.size}", "word", N_("solution, of those below")))
         listings.append(_solutions(task, found, at))
     if task.free:
-        values.append(Value("", 1 / float(one.l1), "number", _("l4/l1, free with two pairs")))
+        values.append(Value("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs")))
         listings.append(_family(task))
     if task.function and not mark.defect:
         curve, error = errors(one, task)
-        values.append(Value("", error, "angle", _("largest structural error")))
+        values.append(Value("", error, "angle", N_("largest structural error")))
         largest = partial(_largest, one, task)
-        demands.append(Demand(_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
+        demands.append(Demand(N_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
         drawings.append(curve)
-    source = _(
+    source = N_(
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
@@ -145,8 +145,8 @@ def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
     plain = float if isinstance(next(iter(task.lengths.values())), float) else np.longdouble
     return [
         *(Value(key, plain(numbers[key]), kind, NAMES[key]) for key, kind in PARAMETERS.items()),
-        Value("", mark.least, "angle", _("least transmission angle over the range")),
-        Value("", DEFECTS[str(mark.defect)], "word", _("defects")),
+        Value("", mark.least, "angle", N_("least transmission angle over the range")),
+        Value("", DEFECTS[str(mark.defect)], "word", N_("defects")),
         *([Value("", _mean(one, task), "angle", MEAN)] if task.approximate else []),
     ]
 
@@ -160,7 +160,7 @@ def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
             Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
-    name, measure = _("least transmission angle over the range"), partial(_transmission, float(mark.worst))
+    name, measure = N_("least transmission angle over the range"), partial(four_bar.transmission, float(mark.worst))
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
 
 
@@ -168,25 +168,22 @@ def _mean(one: Bars, task: Task) -> float:
     return float(np.sqrt(np.mean(off(one, task) ** 2)))
 
 
+def _there(one: Bars, results: Any, phi: Any, near: Any) -> Any:
+    """Output angles of the mechanism, from their zero, at input angles; of all whole turns those nearest to `near`."""
+    return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
+
+
 def _measured_mean(one: Bars, task: Task, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    near = psi + off(one, task) + float(one.psi0)
-    there = four_bar.output_angles(results, phi + float(one.phi0), near) - float(one.psi0)
-    return float(np.sqrt(np.mean((there - psi) ** 2)))
+    return float(np.sqrt(np.mean((_there(one, results, phi, psi + off(one, task)) - psi) ** 2)))
 
 
 def _output_name(k: int) -> str:
-    return _("output angle {number}").format(number=k + 1)
+    return Phrase("output angle {number}", number=k + 1)
 
 
 def _output(one: Bars, phi: float, psi: float, results: Any) -> float:
-    """The output angle, from its zero, at an input angle."""
-    near = np.array([psi]) + float(one.psi0)
-    return float((four_bar.output_angles(results, np.array([phi]) + float(one.phi0), near) - float(one.psi0))[0])
-
-
-def _transmission(phi: float, results: Any) -> float:
-    return float(four_bar.transmission(results, np.array([phi]))[0])
+    return float(_there(one, results, np.array([phi]), np.array([psi]))[0])
 
 
 def _largest(one: Bars, task: Task, results: Any) -> float:
@@ -196,33 +193,32 @@ def _largest(one: Bars, task: Task, results: Any) -> float:
 
     def error(phi: Any) -> Any:
         wanted = function.wanted(phi)
-        there = four_bar.output_angles(results, phi + float(one.phi0), wanted + float(one.psi0)) - float(one.psi0)
-        return there - wanted
+        return _there(one, results, phi, wanted) - wanted
 
     return extremes(error, function)[1]
 
 
 def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
     if task.approximate and not any_one:
-        yield _(
+        yield N_(
             "more pairs than a four-bar can pass: the sum of squares of the errors of the output angle is the least"
         )
     if any_one and len(task.lengths) == 1:
-        yield _(
+        yield N_(
             "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its transmission "
             "angle is that of DC with AD; l1/l4 is free, 1/2 is taken"
         )
     if mark.reversed:
-        yield _("a zero angle is half a turn from the given one: in the given sense there is no such link")
+        yield N_("a zero angle is half a turn from the given one: in the given sense there is no such link")
     if task.choose == "crank" and not mark.crank:
-        yield _("no solution without defects has an input that turns fully: another was taken")
+        yield N_("no solution without defects has an input that turns fully: another was taken")
     if task.free and abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9:
-        yield _(
+        yield N_(
             "two pairs leave l1/l4 free: of 0.1 to 10 an end has the best transmission, and was taken; give two of "
             "l1, l3, l4 to take another"
         )
     elif task.free:
-        yield _(
+        yield N_(
             "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two of l1, l3, "
             "l4 to take another"
         )
@@ -231,29 +227,31 @@ def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]
 def _solutions(task: Task, found: Bars, at: int) -> Listing:
     """Every four-bar that was found, by the number by which it can be chosen."""
     columns = (
-        ("number_of", _("choose"), "name"), ("taken", _("taken"), "word"), *COLUMNS,
-        ("crank", _("input turns fully"), "word"), ("defect", _("defects"), "word"),
+        ("number_of", N_("choose"), "name"), ("taken", N_("taken"), "word"), *COLUMNS,
+        ("crank", N_("input turns fully"), "word"), ("defect", N_("defects"), "word"),
     )  # fmt: skip
     rows = []
     for k in range(found.size):
         mark = quality(found.at(k), task)
-        taken, crank = _("yes") if k == at else None, _("yes") if mark.crank else _("no")
+        taken, crank = N_("yes") if k == at else None, N_("yes") if mark.crank else N_("no")
         rows.append((str(k + 1), taken, *_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)]))
-    return Listing("solutions", _("Solutions; another is taken by choose: its number"), columns, tuple(rows))
+    return Listing("solutions", N_("Solutions; another is taken by choose: its number"), columns, tuple(rows))
 
 
 def _pairs(task: Task, one: Bars) -> Listing:
     """Every pair, and by how much the output is off."""
-    columns = (("phi", _("input angle"), "angle"), ("psi", _("output angle, wanted"), "angle"),
-               ("reached", _("reached"), "angle"), ("error", _("error"), "angle"))  # fmt: skip
+    columns = (("phi", N_("input angle"), "angle"), ("psi", N_("output angle, wanted"), "angle"),
+               ("reached", N_("reached"), "angle"), ("error", N_("error"), "angle"))  # fmt: skip
     error = off(one, task)
     rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
-    return Listing("pairs", _("Pairs, and by how much the output is off"), columns, tuple(rows), long=len(rows) > SHOWN)
+    return Listing(
+        "pairs", N_("Pairs, and by how much the output is off"), columns, tuple(rows), long=len(rows) > SHOWN
+    )
 
 
 def _family(task: Task) -> Listing:
     """Four-bars through two pairs for the ratios l1/l4 that are compared."""
-    columns = (("free", _("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", _("defects"), "word"))
+    columns = (("free", N_("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", N_("defects"), "word"))
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
     ratios = np.concatenate([ratios, -ratios])
     found = of_ratios(task, ratios)
@@ -261,7 +259,7 @@ def _family(task: Task) -> Listing:
     for k in np.flatnonzero(real(found)):
         mark = quality(found.at(k), task)
         rows.append((abs(float(ratios[k])), *_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
-    return Listing("family", _("Four-bars through both pairs"), columns, tuple(rows), long=True)
+    return Listing("family", N_("Four-bars through both pairs"), columns, tuple(rows), long=True)
 
 
 def _row(task: Task, one: Bars, mark: Quality) -> tuple[float, ...]:
@@ -273,17 +271,17 @@ def _row(task: Task, one: Bars, mark: Quality) -> tuple[float, ...]:
 def _given(task: Task) -> tuple[Value, ...]:
     values = [Value(name, value, "length", NAMES[name]) for name, value in task.lengths.items()]
     if task.function:
-        text = task.function.name.replace("x^1.5", "x^(3/2)") or _("table, straight between its rows")
+        text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table, straight between its rows")
         of_x = "angle" if task.function.name in ANGLES else "number"
         (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
         values += [
-            Value("", text, "word", _("y")),
-            Value("", x0, of_x, _("x, from")), Value("", x1, of_x, _("x, to")),
-            Value("", phi0, "angle", _("input angle, from")), Value("", phi1, "angle", _("input angle, to")),
-            Value("", psi0, "angle", _("output angle, from")), Value("", psi1, "angle", _("output angle, to")),
+            Value("", text, "word", N_("y")),
+            Value("", x0, of_x, N_("x, from")), Value("", x1, of_x, N_("x, to")),
+            Value("", phi0, "angle", N_("input angle, from")), Value("", phi1, "angle", N_("input angle, to")),
+            Value("", psi0, "angle", N_("output angle, from")), Value("", psi1, "angle", N_("output angle, to")),
         ]  # fmt: skip
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
-        name = _("input angle {number}").format(number=k + 1)
+        name = Phrase("input angle {number}", number=k + 1)
         values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]
     zeros = {"phi0": task.phi0, "psi0": task.psi0}
     return (*values, *(Value(key, value, "angle", NAMES[key]) for key, value in zeros.items() if value is not None))

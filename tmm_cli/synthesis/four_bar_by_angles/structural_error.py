@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.roots import least
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs
@@ -56,11 +56,11 @@ def reached(one: Bars, task: Task) -> Diagram:
     psi = np.asarray(task.psi, dtype=float)
     order = np.argsort(at_pairs)
     lines = (
-        Line(_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
-        Line(_("wanted"), at_pairs, psi, dots=True),
+        Line(N_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
+        Line(N_("wanted"), at_pairs, psi, dots=True),
     )
-    return Diagram("pairs", _("Output angles at the pairs"), (_("input angle phi"), "angle"),
-                   (_("output angle psi"), "angle"), lines)  # fmt: skip
+    return Diagram("pairs", N_("Output angles at the pairs"), (N_("input angle phi"), "angle"),
+                   (N_("output angle psi"), "angle"), lines)  # fmt: skip
 
 
 def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
@@ -74,13 +74,11 @@ def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
         return outputs(one, phi, wanted, side) - wanted
 
     places, largest = extremes(error, function)
-    phi = np.unique(
-        np.concatenate((np.linspace(min(function.phi), max(function.phi), ERRORS), function.corners(), places))
-    )
+    phi = np.unique(np.concatenate((_scan(function), places)))
     at_points = np.asarray(task.phi, dtype=float)
     lines = (
-        Line(_("structural error of the output angle"), phi, error(phi)),
-        Line(_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True),
+        Line(N_("structural error of the output angle"), phi, error(phi)),
+        Line(N_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True),
     )
-    axes = (_("input angle phi"), "angle"), (_("structural error of the output angle"), "angle")
-    return Diagram("error", _("Structural error over the range"), *axes, lines), largest
+    axes = (N_("input angle phi"), "angle"), (N_("structural error of the output angle"), "angle")
+    return Diagram("error", N_("Structural error over the range"), *axes, lines), largest

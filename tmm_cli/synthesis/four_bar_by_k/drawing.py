@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
 from tmm_cli.synthesis.four_bar_by_k.arcs import Found, Task
 from tmm_cli.synthesis.record import Listing
@@ -51,11 +51,11 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
     values = [(name, float(getattr(task if name == "l3" else found, name)), "length") for name in LINKS]
     values += [("ψ", float(task.swing), "angle"), ("θ", theta, "angle")]
     curves = [Curve(tuple(complex(z) for z in f.a), "bold") for f in family]
-    notes = [_("red: where {A} may be, so that the crank turns fully")]
+    notes = [N_("red: where {A} may be, so that the crank turns fully")]
     if theta > 0:
-        notes.append(_("{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|"))
+        notes.append(N_("{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|"))
     return Construction(
-        _("Extreme positions of the rocker, and the circles on which {C}1{C}2 is seen under theta"),
+        N_("Extreme positions of the rocker, and the circles on which {C}1{C}2 is seen under theta"),
         tuple(segments), tuple(arcs), tuple(spots), tuple(notes), tuple(curves), angles=tuple(angles),
         centres=tuple(centres), wishes=tuple(wishes), chain="four-bar", values=tuple(values),
     )  # fmt: skip
@@ -69,44 +69,46 @@ def diagrams(task: Task, found: Found, family: Sequence[Found]) -> tuple[Diagram
     pressures, lengths = [], []
     for f in family:
         if task.k == 1:
-            angle, frame = _("A on the line C2C1 beyond C1"), _("frame l4")
+            angle, frame = N_("A on the line C2C1 beyond C1"), N_("frame l4")
         elif int(f.side) > 0:
-            angle, frame = _("A beyond C1C2"), _("frame l4, A beyond C1C2")
+            angle, frame = N_("A beyond C1C2"), N_("frame l4, A beyond C1C2")
         else:
-            angle, frame = _("A on D's side of C1C2"), _("frame l4, A on D's side of C1C2")
+            angle, frame = N_("A on D's side of C1C2"), N_("frame l4, A on D's side of C1C2")
         x = np.asarray(f.l2)
         kept = x <= most
         pressures.append(Line(angle, x[kept], np.asarray(f.pressure)[kept]))
         lengths.append(Line(frame, x[kept], np.asarray(f.l4)[kept]))
     longest = max(family, key=lambda one: float(np.max(one.l2)))
     kept = np.asarray(longest.l2) <= most
-    lengths.append(Line(_("crank l1"), longest.l2[kept], longest.l1[kept]))
+    lengths.append(Line(N_("crank l1"), longest.l2[kept], longest.l1[kept]))
     dot = np.array([found.l2], dtype=float)
     both = np.array([found.l1, found.l4], dtype=float)
-    pressures.append(Line(_("chosen"), dot, np.array([found.pressure], dtype=float), dots=True))
-    lengths.append(Line(_("chosen"), np.repeat(dot, 2), both, dots=True))
-    across, title = (_("coupler l2"), "length"), _("Largest pressure angle along the admissible arcs")
-    drawn = Diagram("family-pressure", title, across, (_("largest pressure angle"), "angle"), tuple(pressures))
-    title = _("Lengths of the links along the admissible arcs")
-    return drawn, Diagram("family-lengths", title, across, (_("length"), "length"), tuple(lengths))
+    pressures.append(Line(N_("chosen"), dot, np.array([found.pressure], dtype=float), dots=True))
+    lengths.append(Line(N_("chosen"), np.repeat(dot, 2), both, dots=True))
+    across, title = (N_("coupler l2"), "length"), N_("Largest pressure angle along the admissible arcs")
+    drawn = Diagram("family-pressure", title, across, (N_("largest pressure angle"), "angle"), tuple(pressures))
+    title = N_("Lengths of the links along the admissible arcs")
+    return drawn, Diagram("family-lengths", title, across, (N_("length"), "length"), tuple(lengths))
 
 
 def listing(family: Sequence[Found]) -> Listing:
     """The family in numbers, from end to end of every arc, where the rocker is dead."""
     columns = (
-        ("side", _("arc"), "word"), ("beta", _("place on the arc, angle AC2C1"), "angle"),
-        ("xA", _("pivot A of the crank, x"), "length"), ("yA", _("pivot A of the crank, y"), "length"),
-        ("l1", _("crank l1"), "length"), ("l2", _("coupler l2"), "length"), ("l4", _("frame l4"), "length"),
-        ("pressure", _("largest pressure angle"), "angle"), ("transmission", _("least transmission angle"), "angle"),
+        ("side", N_("arc"), "word"), ("beta", N_("place on the arc, angle AC2C1"), "angle"),
+        ("xA", N_("pivot A of the crank, x"), "length"), ("yA", N_("pivot A of the crank, y"), "length"),
+        ("l1", N_("crank l1"), "length"), ("l2", N_("coupler l2"), "length"), ("l4", N_("frame l4"), "length"),
+        ("pressure", N_("largest pressure angle"), "angle"), ("transmission", N_("least transmission angle"), "angle"),
     )  # fmt: skip
     rows: list[tuple[Any, ...]] = []
     for f in family:
         across = (np.maximum(f.beta, 0.0), f.a.real, f.a.imag, f.l1, f.l2, f.l4, f.pressure, np.pi / 2 - f.pressure)
         values = np.stack([np.broadcast_to(np.asarray(x, dtype=float), np.shape(f.w)) for x in across], axis=-1)
         rows += [(side_name(f), *row) for row in values.tolist()]
-    return Listing("family", _("All pivots A of the admissible arcs, from end to end"), columns, tuple(rows), long=True)
+    return Listing(
+        "family", N_("All pivots A of the admissible arcs, from end to end"), columns, tuple(rows), long=True
+    )
 
 
 def side_name(found: Found) -> str:
     """Which of the two arcs it is on."""
-    return _("beyond C1C2") if int(found.side) > 0 else _("on D's side of C1C2")
+    return N_("beyond C1C2") if int(found.side) > 0 else N_("on D's side of C1C2")

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.roots import roots
 from tmm_cli.synthesis.four_bar_by_k.arcs import (
     ARC,
@@ -31,21 +31,21 @@ from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "l3": ("length", _("rocker l3")),
-    "psi1": ("angle", _("rocker at C1 (crank over the coupler) psi1")),
-    "psi2": ("angle", _("rocker at C2 (crank in line with the coupler) psi2")),
-    "k": ("number", _("k")),
-    "l1": ("length", _("crank l1")), "l2": ("length", _("coupler l2")), "l4": ("length", _("frame l4")),
-    "xA": ("length", _("pivot A of the crank, x")), "yA": ("length", _("pivot A of the crank, y")),
+    "l3": ("length", N_("rocker l3")),
+    "psi1": ("angle", N_("rocker at C1 (crank over the coupler) psi1")),
+    "psi2": ("angle", N_("rocker at C2 (crank in line with the coupler) psi2")),
+    "k": ("number", N_("k")),
+    "l1": ("length", N_("crank l1")), "l2": ("length", N_("coupler l2")), "l4": ("length", N_("frame l4")),
+    "xA": ("length", N_("pivot A of the crank, x")), "yA": ("length", N_("pivot A of the crank, y")),
 }  # fmt: skip
 NOT_THERE: Final = {  # by the choice
-    "level": _("no pivot of the admissible arcs is as high as D"),
-    "xA": _("no pivot of the admissible arcs has this x"),
-    "yA": _("no pivot of the admissible arcs is at this height"),
-    "l1": _("no pivot of the admissible arcs gives such a crank"),
-    "l2": _("no pivot of the admissible arcs gives such a coupler"),
-    "l4": _("no pivot of the admissible arcs is at this distance from D"),
-    "near": _("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
+    "level": N_("no pivot of the admissible arcs is as high as D"),
+    "xA": N_("no pivot of the admissible arcs has this x"),
+    "yA": N_("no pivot of the admissible arcs is at this height"),
+    "l1": N_("no pivot of the admissible arcs gives such a crank"),
+    "l2": N_("no pivot of the admissible arcs gives such a coupler"),
+    "l4": N_("no pivot of the admissible arcs is at this distance from D"),
+    "near": N_("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
 }
 ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
@@ -169,17 +169,17 @@ def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
     f = choose(task)
     demands = [
-        Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(_("k"), float(task.k), "number", ratio),
-        Demand(_("swing psi of the rocker"), float(task.swing), "angle", stroke),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(N_("k"), float(task.k), "number", ratio),
+        Demand(N_("swing psi of the rocker"), float(task.swing), "angle", stroke),
         *(Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
           for n, v in (("psi1", task.psi1), ("psi2", task.psi2))),
-        Demand(_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=False, of="pressure"),
+        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=False, of="pressure"),
     ]  # fmt: skip
     family = [at(task, whole(task, side), side) for side in arcs(task)]
-    source = _("circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
+    source = N_("circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
                "l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD")  # fmt: skip
-    notes = () if task.k > 1 else (_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
+    notes = () if task.k > 1 else (N_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
     return Outcome(
         _given(task), _found(task, f), source, tuple(demands),
         (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),), output="swing",
@@ -188,17 +188,17 @@ def solve(task: Task) -> Outcome:
 
 def _given(task: Task) -> tuple[Value, ...]:
     choice = {
-        "best": _("best transmission: the least largest pressure angle"),
-        "level": _("supports level: A as high as D"),
-        "l1": _("by the length of the crank"),
-        "l2": _("by the length of the coupler"),
-        "l4": _("by the length of the frame"),
-        "near": _("nearest to a given place"),
-        "xA": _("by its x"),
-        "yA": _("by its height"),
+        "best": N_("best transmission: the least largest pressure angle"),
+        "level": N_("supports level: A as high as D"),
+        "l1": N_("by the length of the crank"),
+        "l2": N_("by the length of the coupler"),
+        "l4": N_("by the length of the frame"),
+        "near": N_("nearest to a given place"),
+        "xA": N_("by its x"),
+        "yA": N_("by its height"),
     }[task.choose]
     given = [Value(n, getattr(task, n), *what) for n, what in QUANTITIES.items() if getattr(task, n) is not None]
-    return *given, Value("", choice, "word", _("choice of A"))
+    return *given, Value("", choice, "word", N_("choice of A"))
 
 
 def _found(task: Task, f: Found) -> tuple[Value, ...]:
@@ -210,26 +210,26 @@ def _found(task: Task, f: Found) -> tuple[Value, ...]:
         Value("l4", f.l4, *QUANTITIES["l4"]),
         Value("xA", np.real(f.a), *QUANTITIES["xA"]),
         Value("yA", np.imag(f.a), *QUANTITIES["yA"]),
-        Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", _("crank at C2, in line with the coupler")),
-        Value("", task.theta, "angle", _("theta = C1AC2")),
-        Value("", f.pressure, "angle", _("largest pressure angle")),
+        Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank at C2, in line with the coupler")),
+        Value("", task.theta, "angle", N_("theta = C1AC2")),
+        Value("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
-        found.append(Value("", np.abs(f.a - task.near), "length", _("distance of A from the place that was wanted")))
+        found.append(Value("", np.abs(f.a - task.near), "length", N_("distance of A from the place that was wanted")))
     if task.k == 1:
         return tuple(found)
-    turns = _("counterclockwise") if f.sense > 0 else _("clockwise")
+    turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
     found += [
-        Value("", f.beta, "angle", _("place on the arc, angle AC2C1")),
-        Value("", side_name(f), "word", _("arc")),
-        Value("", turns, "word", _("crank for a slow stroke from psi1 to psi2")),
+        Value("", f.beta, "angle", N_("place on the arc, angle AC2C1")),
+        Value("", side_name(f), "word", N_("arc")),
+        Value("", turns, "word", N_("crank for a slow stroke from psi1 to psi2")),
     ]
     for side in arcs(task):
-        beyond, inside = (_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
-                          _("admissible arc on D's side: angle AC2C1 from 0 to"))  # fmt: skip
+        beyond, inside = (N_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
+                          N_("admissible arc on D's side: angle AC2C1 from 0 to"))  # fmt: skip
         last = at(task, places(task, side)[-1], side)
         found += [
             Value("", widest(task, side), "angle", beyond if side > 0 else inside),
-            Value("", last.l4, "length", _("l4 at that end (l3 at the other)")),
+            Value("", last.l4, "length", N_("l4 at that end (l3 at the other)")),
         ]
     return tuple(found)

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.four_bar import CHANGE, TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
@@ -15,36 +15,36 @@ from tmm_cli.tolerances import SAME_RATIO
 
 PARAMETERS: Final[dict[str, str]] = {}
 LINKS: Final = {
-    "l1": _("link 1"), "l2": _("link 2"), "l3": _("link 3"), "l4": _("link 4"), "r": _("crank r"),
-    "l": _("connecting rod l"), "e": _("offset e"), "OA": _("crank OA"), "OC": _("frame OC"),
+    "l1": N_("link 1"), "l2": N_("link 2"), "l3": N_("link 3"), "l4": N_("link 4"), "r": N_("crank r"),
+    "l": N_("connecting rod l"), "e": N_("offset e"), "OA": N_("crank OA"), "OC": N_("frame OC"),
 }  # fmt: skip
 FOUR_BARS: Final = {
-    "GCCC": _("GCCC: crank-crank-crank (double crank, drag link)"),
-    "GCRR": _("GCRR: crank-rocker-rocker (crank-rocker)"),
-    "GRCR": _("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
-    "GRRC": _("GRRC: rocker-rocker-crank (rocker-crank)"),
-    "RRR1": _("RRR1: triple rocker, the frame longest"),
-    "RRR2": _("RRR2: triple rocker, the input longest"),
-    "RRR3": _("RRR3: triple rocker, the coupler longest"),
-    "RRR4": _("RRR4: triple rocker, the output longest"),
-    "SCCC": _("SCCC: crank-crank-crank with change points"),
-    "SCRR": _("SCRR: crank-rocker-rocker with change points"),
-    "SRCR": _("SRCR: rocker-crank-rocker with change points"),
-    "SRRC": _("SRRC: rocker-rocker-crank with change points"),
-    "S2X": _("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
-    "S3X": _("S3X: four equal links (rhombus), change points"),
+    "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
+    "GCRR": N_("GCRR: crank-rocker-rocker (crank-rocker)"),
+    "GRCR": N_("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
+    "GRRC": N_("GRRC: rocker-rocker-crank (rocker-crank)"),
+    "RRR1": N_("RRR1: triple rocker, the frame longest"),
+    "RRR2": N_("RRR2: triple rocker, the input longest"),
+    "RRR3": N_("RRR3: triple rocker, the coupler longest"),
+    "RRR4": N_("RRR4: triple rocker, the output longest"),
+    "SCCC": N_("SCCC: crank-crank-crank with change points"),
+    "SCRR": N_("SCRR: crank-rocker-rocker with change points"),
+    "SRCR": N_("SRCR: rocker-crank-rocker with change points"),
+    "SRRC": N_("SRRC: rocker-rocker-crank with change points"),
+    "S2X": N_("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
+    "S3X": N_("S3X: four equal links (rhombus), change points"),
 }
 SLIDERS: Final = {  # by the number of the kind
-    "crank": _("the crank turns fully"),
-    "rod": _("the crank rocks, the rod turns fully"),
-    "none": _("neither crank nor rod turns fully"),
-    "change": _("change point: the slider may leave its side"),
+    "crank": N_("the crank turns fully"),
+    "rod": N_("the crank rocks, the rod turns fully"),
+    "none": N_("neither crank nor rod turns fully"),
+    "change": N_("change point: the slider may leave its side"),
 }
 LEVERS: Final = {
-    "swings": _("the crank turns fully, the slotted link swings"),
-    "turns": _("the crank turns fully, and the slotted link with it"),
-    "none": _("the crank does not turn fully"),
-    "change": _("change point: the stone may pass the hinge of the slotted link"),
+    "swings": N_("the crank turns fully, the slotted link swings"),
+    "turns": N_("the crank turns fully, and the slotted link with it"),
+    "none": N_("the crank does not turn fully"),
+    "change": N_("change point: the stone may pass the hinge of the slotted link"),
 }
 
 
@@ -112,13 +112,13 @@ def solve(task: Task) -> Outcome:
     if isinstance(task, FourBar):
         return _four_bar(task, given)
     if isinstance(task, CrankSlider):
-        found, kinds, margin = crank_slider(task), SLIDERS, _("l - (r + e)")
-        source = _("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
+        found, kinds, margin = crank_slider(task), SLIDERS, N_("l - (r + e)")
+        source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
     else:
-        found, kinds, margin = slotted_lever(task), LEVERS, _("|OC - OA| - e")
-        source = _("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
+        found, kinds, margin = slotted_lever(task), LEVERS, N_("|OC - OA| - e")
+        source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
     name = list(kinds)[int(found.kind)]
-    values = (Value("", kinds[name], "word", _("type")), Value("", found.margin, "length", margin))
+    values = (Value("", kinds[name], "word", N_("type")), Value("", found.margin, "length", margin))
     return Outcome(given, values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
 
 
@@ -126,24 +126,24 @@ def _four_bar(task: FourBar, given: tuple[Value, ...]) -> Outcome:
     found = turning(task)
     change = int(found.kind) >= CHANGE
     at_change, fully, rocks = (
-        _("turns fully or rocks: decided in the change positions"), _("turns fully"), _("rocks"),
+        N_("turns fully or rocks: decided in the change positions"), N_("turns fully"), N_("rocks"),
     )  # fmt: skip
     given += (
-        Value("frame", f"l{task.frame}", "word", _("frame")),
-        Value("driver", f"l{task.driver}", "word", _("driver")),
+        Value("frame", f"l{task.frame}", "word", N_("frame")),
+        Value("driver", f"l{task.driver}", "word", N_("driver")),
     )
     values = [
-        Value("", FOUR_BARS[TYPES[int(found.kind)]], "word", _("type")),
-        Value("", found.excess, "length", _("(sum of the middle two) - (shortest + longest)")),
+        Value("", FOUR_BARS[TYPES[int(found.kind)]], "word", N_("type")),
+        Value("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
     ]
-    for role, turns in zip((_("input link"), _("coupler"), _("output link")), found.turns, strict=True):
+    for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
         values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
-    source = _("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
+    source = N_("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
                "four-bar linkages, Mechanism and Machine Theory 20 (1985)")  # fmt: skip
     return Outcome(given, tuple(values), source, _turning(bool(found.turns[0]), change))
 
 
 def _turning(turns: bool, change: bool) -> tuple[Demand, ...]:
     """Nothing is foretold of a change point."""
-    words = _("driver turns fully (1: yes, 0: no)")
+    words = N_("driver turns fully (1: yes, 0: no)")
     return () if change else (Demand(words, float(turns), "number", crank_turns, asked=False),)

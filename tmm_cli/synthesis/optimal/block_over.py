@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import _
 from tmm_cli.linkage import Driver
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.record import Problem

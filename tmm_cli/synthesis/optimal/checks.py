@@ -9,8 +9,9 @@ import numpy as np
 
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.errors import LinkageError, _
+from tmm_cli.errors import LinkageError
 from tmm_cli.kinematics.driver_range import cycle_of
+from tmm_cli.language import _
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.optimal.task import Task, near
 from tmm_cli.synthesis.record import Infeasible

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, Phrase
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.evolution import Evolved
@@ -35,24 +35,24 @@ def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, qu
     """
     objective, violation = evolved.history.T
     if evolved.every:
-        leading, found = _("candidate at the positions of the search"), _("the best of them, looked at closely")
-        across, title = _("candidate"), _("All candidates, one after another")
+        leading, found = N_("candidate at the positions of the search"), N_("the best of them, looked at closely")
+        across, title = N_("candidate"), N_("All candidates, one after another")
     else:
-        leading, found = _("leading candidate (a new population where it rises)"), _("after the polish")
-        across, title = _("generation"), _("Best candidate by generation")
+        leading, found = N_("leading candidate (a new population where it rises)"), N_("after the polish")
+        across, title = N_("generation"), N_("Best candidate by generation")
     number = np.arange(len(objective))
     there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
     kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
     lines = [Line(leading, number, shown(there), faint=True)]
     if np.any(np.isfinite(kept)):
-        lines.append(Line(_("best so far that keeps the constraints"), number, shown(kept)))
+        lines.append(Line(N_("best so far that keeps the constraints"), number, shown(kept)))
     lines.append(Line(found, np.array([len(number)]), np.array([polished]), dots=True))
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
-    violated = Line(_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
+    violated = Line(N_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
     return Diagram(
-        "history", title, (across, "number"), (_("objective: {quantity}").format(quantity=quantity), kind),
+        "history", title, (across, "number"), (Phrase("objective: {quantity}", quantity=quantity), kind),
         tuple(lines), lower=(violated,) if np.any(missed) and not evolved.every else (),
-        lower_y=(_("constraints missed, relative"), "number"),
+        lower_y=(N_("constraints missed, relative"), "number"),
     )  # fmt: skip
 
 
@@ -91,18 +91,18 @@ def _law(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Li
     kind = "angle" if swings else "length"
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
-        ("at", _("driver at"), place), ("wanted", _("wanted"), kind), ("reached", _("reached"), kind),
-        ("off", _("deviation"), kind),
+        ("at", N_("driver at"), place), ("wanted", N_("wanted"), kind), ("reached", N_("reached"), kind),
+        ("off", N_("deviation"), kind),
     )  # fmt: skip
     rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
     lines = (
-        Line(_("found mechanism"), q, run), Line(_("wanted"), at, wanted, dots=True),
-        Line(_("reached"), at, there, dots=True),
+        Line(N_("found mechanism"), q, run), Line(N_("wanted"), at, wanted, dots=True),
+        Line(N_("reached"), at, there, dots=True),
     )  # fmt: skip
-    up = (_("angle of the link") if swings else _("run of the link"), kind)
-    title = _("Law of motion over the whole way of the driver")
-    drawn = Diagram(_name(candidates, n), title, (_("driver"), place), up, lines)
-    return Listing(_name(candidates, n), _("Wanted law and what is reached"), columns, rows), drawn
+    up = (N_("angle of the link") if swings else N_("run of the link"), kind)
+    title = N_("Law of motion over the whole way of the driver")
+    drawn = Diagram(_name(candidates, n), title, (N_("driver"), place), up, lines)
+    return Listing(_name(candidates, n), N_("Wanted law and what is reached"), columns, rows), drawn
 
 
 def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Listing, Diagram]:
@@ -121,23 +121,23 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
     )
     columns: tuple[tuple[str, str, str], ...] = (
-        ("x", _("x"), "length"), ("y", _("y"), "length"), ("x_reached", _("x reached"), "length"),
-        ("y_reached", _("y reached"), "length"), ("off", _("deviation"), "length"),
+        ("x", N_("x"), "length"), ("y", N_("y"), "length"), ("x_reached", N_("x reached"), "length"),
+        ("y_reached", N_("y reached"), "length"), ("off", N_("deviation"), "length"),
     )  # fmt: skip
     if quantity.places:
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
-        columns = (("at", _("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
+        columns = (("at", N_("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
-        Line(_("path"), path.real, path.imag), Line(_("wanted"), wanted.real, wanted.imag, dots=True),
-        Line(_("reached"), there.real, there.imag, dots=True),
+        Line(N_("path"), path.real, path.imag), Line(N_("wanted"), wanted.real, wanted.imag, dots=True),
+        Line(N_("reached"), there.real, there.imag, dots=True),
     )  # fmt: skip
     drawn = Diagram(
-        _name(candidates, n), _("Path of the point over the whole way of the driver"), (_("x"), "length"),
-        (_("y"), "length"), lines, equal=True,
+        _name(candidates, n), N_("Path of the point over the whole way of the driver"), (N_("x"), "length"),
+        (N_("y"), "length"), lines, equal=True,
     )  # fmt: skip
     title = (
-        _("Wanted points and those that are reached at these places of the driver") if quantity.places
-        else _("Wanted points and the nearest that are reached")
+        N_("Wanted points and those that are reached at these places of the driver") if quantity.places
+        else N_("Wanted points and the nearest that are reached")
     )  # fmt: skip
     return Listing(_name(candidates, n), title, columns, rows), drawn
 

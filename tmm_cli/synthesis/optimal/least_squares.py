@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.groups.linear import solve
 from tmm_cli.vectors import Real
 
 STEP = 1e-6  # of a difference, in shares of the ranges
@@ -106,7 +107,8 @@ def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
     for __ in range(PASSES):
         pulled, held = (slopes.least * (weight * broken)).mT, weight * beyond
         pull = down - pulled @ rows.least[..., None] + held * edge
-        step = np.linalg.solve(square + pulled @ slopes.least + np.eye(n) * held, pull)
+        step = solve(square + pulled @ slopes.least + np.eye(n) * held, pull[..., 0])[..., None]
+        step = np.where(np.isfinite(step), step, 0.0)  # what is lost beside the weights takes no step here
         before, edge = (broken, beyond), np.clip(step, -x[..., None], 1 - x[..., None])
         broken, beyond = slopes.least @ step < -rows.least[..., None], edge != step
         if all(map(np.array_equal, before, (broken, beyond))):

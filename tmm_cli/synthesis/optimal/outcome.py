@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, Phrase
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
@@ -51,19 +51,22 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     sketch = candidates.sketch(found.x)
     notes = []
     if evolved.stopped:
-        notes.append(_("stopped by hand: the best candidate so far, polished"))
+        notes.append(N_("stopped by hand: the best candidate so far, polished"))
     elif found.ends is not None and not found.ends.agree:
-        notes.append(_("not sure to be the least: of {count} independent starts {same} ended at it and {near} within "
-                       "{share:g} % of it; try another seed, for example seed: {seed}").format(
-            count=found.ends.count, same=found.ends.same, near=found.ends.near, share=100 * many_starts.NEAR,
+        notes.append(Phrase(
+            "not sure to be the least: of {count} independent starts {same} ended at it and {near} within {share} % "
+            "of it; try another seed, for example seed: {seed}",
+            count=found.ends.count, same=found.ends.same, near=found.ends.near, share=f"{100 * many_starts.NEAR:g}",
             seed=task.seed + 1,
         ))  # fmt: skip
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
-        notes.append(_("the objective is the same for all candidates: what was found only keeps the constraints"))
+        notes.append(N_("the objective is the same for all candidates: what was found only keeps the constraints"))
     if sketch is not None:
-        notes.append(_("the file's sketch does not show the mechanism that was found: it is assembled as linkages near "
-                       "it are that the sketch does show"))  # fmt: skip
+        notes.append(N_(
+            "the file's sketch does not show the mechanism that was found: it is assembled as linkages near it are "
+            "that the sketch does show"
+        ))  # fmt: skip
     return Outcome(
         _given(candidates, ends), _found(candidates, found), _source(candidates, found), tuple(demands),
         tuple(drawings), tuple(notes), tuple(listings), sketch,
@@ -74,16 +77,16 @@ def _given(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[Va
     """Bounds of what varies, and of the driver."""
     given = []
     for p in candidates.task.parameters:
-        given.append(Value(p.name, p.low, p.kind, _("varies from")))
-        given.append(Value(p.name, p.high, p.kind, _("varies to")))
+        given.append(Value(p.name, p.low, p.kind, N_("varies from")))
+        given.append(Value(p.name, p.high, p.kind, N_("varies to")))
     given += [
-        Value(p.name, len(p.values), "number", _("number of values to choose from"))
+        Value(p.name, len(p.values), "number", N_("number of values to choose from"))
         for p in candidates.task.parameters if p.values
     ]  # fmt: skip
     if ends is not None:
         kind = "length" if candidates.linkage.driver.kind == "slide" else "angle"
-        given.append(Value("from", ends[0], kind, _("the driver goes from")))
-        given.append(Value("to", ends[1], kind, _("the driver goes to")))
+        given.append(Value("from", ends[0], kind, N_("the driver goes from")))
+        given.append(Value("to", ends[1], kind, N_("the driver goes to")))
     return tuple(given)
 
 
@@ -92,53 +95,57 @@ def _found(candidates: Candidates, found: Best) -> tuple[Value, ...]:
     numbers = []
     for p, number, share in zip(candidates.task.parameters, found.numbers.tolist(), found.x.tolist(), strict=True):
         if share < ACTIVE:
-            text = _("found at its lower bound")
+            text = N_("found at its lower bound")
         elif share > 1 - ACTIVE:
-            text = _("found at its upper bound")
+            text = N_("found at its upper bound")
         else:
-            text = _("found among its values") if p.values else _("found within its bounds")
+            text = N_("found among its values") if p.values else N_("found within its bounds")
         numbers.append(Value(p.name, number, p.kind, text))
     return tuple(numbers)
 
 
 def _source(candidates: Candidates, found: Best) -> str:
     if many_starts.fits(candidates):
-        return _("differential evolution (R. Storn, K. Price 1997) and random starts, then least squares (K. Levenberg "
-                 "1944, D. Marquardt 1963)")  # fmt: skip
+        return N_(
+            "differential evolution (R. Storn, K. Price 1997) and random starts, then least squares (K. Levenberg "
+            "1944, D. Marquardt 1963)"
+        )
     if not found.evolved.every:
-        return _("differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
-                 "quadratic programming on the exact peaks")  # fmt: skip
+        return N_(
+            "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential quadratic "
+            "programming on the exact peaks"
+        )
     if found.evolved.stopped:
-        return _("candidates one after another, as far as the search came")
-    return _("all candidates, one after another")
+        return N_("candidates one after another, as far as the search came")
+    return N_("all candidates, one after another")
 
 
 def _constraints(candidates: Candidates, found: Best, kinds: list[str]) -> Listing:
     """The objective and every constraint: bound, value, margin, whether it is active."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
-    side = _("near") if target is not None else _("largest") if objective.lowest else _("least")
-    first = objective.title(linkage), _of(objective), side, target, found.values[0], None, kinds[0], _("objective")
+    side = N_("near") if target is not None else N_("largest") if objective.lowest else N_("least")
+    first = objective.title(linkage), _of(objective), side, target, found.values[0], None, kinds[0], N_("objective")
     rows: list[tuple[Any, ...]] = [first]
     for n, constraint in enumerate(candidates.constraints[1:], 2):
         value, quantity = found.values[n], constraint.quantity
-        both = (_("at least"), constraint.least, 1), (_("at most"), constraint.most, -1)
+        both = (N_("at least"), constraint.least, 1), (N_("at most"), constraint.most, -1)
         for words, bound, sign in both[: 1 if constraint.equal else 2]:
             if bound is None:
                 continue
             margin = sign * (value - bound)
             active = margin <= ACTIVE * constraint.scale
             left: float | None = 0.0 if active else margin
-            state = _("active") if active else _("not active")
+            state = N_("active") if active else N_("not active")
             if constraint.equal:
-                words = state = _("equality, met")
+                words = state = N_("equality, met")
                 left = None
             rows.append((quantity.title(linkage), _of(quantity), words, bound, value, left, kinds[n], state))
     columns = (
-        ("quantity", _("quantity"), "word"), ("of", _("of"), "name"), ("limit", _("is to be"), "word"),
-        ("bound", _("bound"), "mixed"), ("value", _("value"), "mixed"), ("margin", _("margin"), "mixed"),
-        ("unit", _("unit"), "unit"), ("state", _("state"), "word"),
+        ("quantity", N_("quantity"), "word"), ("of", N_("of"), "name"), ("limit", N_("is to be"), "word"),
+        ("bound", N_("bound"), "mixed"), ("value", N_("value"), "mixed"), ("margin", N_("margin"), "mixed"),
+        ("unit", N_("unit"), "unit"), ("state", N_("state"), "word"),
     )  # fmt: skip
-    return Listing("constraints", _("Objective and constraints"), columns, tuple(rows))
+    return Listing("constraints", N_("Objective and constraints"), columns, tuple(rows))
 
 
 def _of(quantity: Goal) -> str:

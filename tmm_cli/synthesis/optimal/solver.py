@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.choices import Choices
@@ -26,7 +26,7 @@ STARTS = 3  # of the polish: the best that differ; one where candidates are move
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
 KEPT = 1e-7  # by so much of its scale a constraint may be missed
-NEVER: Final = _("no mechanism within these bounds can go the whole way of its driver; over: tells another way")
+NEVER: Final = N_("no mechanism within these bounds can go the whole way of its driver; over: tells another way")
 
 
 def solve(task: Task) -> Outcome:
@@ -109,9 +109,9 @@ def _best_of(candidates: Candidates, starts: Iterable[Real], evolved: Evolved) -
 def _none(candidates: Candidates, quantity: Goal) -> str:
     """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
     if quantity.forces and candidates.variant.accelerated:
-        return _("the driver does not come to all places of its way with this acceleration: it stops before, or they "
+        return N_("the driver does not come to all places of its way with this acceleration: it stops before, or they "
                  "lie before position 0")  # fmt: skip
-    return _("no mechanism within the bounds was found that has this quantity")
+    return N_("no mechanism within the bounds was found that has this quantity")
 
 
 def _missed(candidates: Candidates, found: Best) -> Infeasible:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
 from tmm_cli.synthesis.slotted_lever.drawing import lever_parts
 from tmm_cli.synthesis.slotted_lever.solver import Found as Lever
@@ -36,8 +36,8 @@ def construction(f: Found) -> Construction:
     sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
     lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
     return Construction(
-        _("Extreme positions of the shaper"), tuple(segments), tuple(arcs), tuple(spots),
-        (_("guide midway between {D}1{D}2 and the top of the arc"),), angles=tuple(angles), sizes=sizes,
+        N_("Extreme positions of the shaper"), tuple(segments), tuple(arcs), tuple(spots),
+        (N_("guide midway between {D}1{D}2 and the top of the arc"),), angles=tuple(angles), sizes=sizes,
         chain="shaper", wishes=((top,),),
         values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
     )  # fmt: skip

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_
 from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box
 from tmm_cli.synthesis.record import Listing
 
@@ -46,8 +46,8 @@ def construction(f: Found) -> Construction:
     b1, b2 = spots[-2].at, spots[-1].at
     segments.append(Segment(b1, b2, "dashed"))
     return Construction(
-        _("Extreme positions of the slotted lever"), tuple(segments), tuple(arcs), tuple(spots),
-        (_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),), angles=tuple(angles), chain="slotted-lever",
+        N_("Extreme positions of the slotted lever"), tuple(segments), tuple(arcs), tuple(spots),
+        (N_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),), angles=tuple(angles), chain="slotted-lever",
         wishes=(box(complex(f.o), float(f.crank)),),
         values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length"),
                 ("θ", float(f.theta), "angle")),
@@ -61,18 +61,18 @@ def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
     frame = np.linspace(low, high, FAMILY)
     crank = frame * float(np.sin(f.theta / 2))
     rows = (
-        ("OA", _("crank OA"), crank), ("nearest", _("stone from C, at least"), frame - crank),
-        ("farthest", _("stone from C, at most"), frame + crank),
+        ("OA", N_("crank OA"), crank), ("nearest", N_("stone from C, at least"), frame - crank),
+        ("farthest", N_("stone from C, at most"), frame + crank),
     )  # fmt: skip
     own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
         *(Line(text, frame, values) for __, text, values in rows),
-        Line(_("lever CB"), frame, np.full(FAMILY, float(f.lever))),
-        Line(_("chosen"), np.full(3, float(f.frame)), own, dots=True),
+        Line(N_("lever CB"), frame, np.full(FAMILY, float(f.lever))),
+        Line(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
     )  # fmt: skip
-    title = _("Crank OA and distance of the stone from C, over OC within its bounds")
-    drawn = Diagram("family-lengths", title, (_("frame OC"), "length"), (_("length"), "length"), lines)
-    columns = (("OC", _("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
+    title = N_("Crank OA and distance of the stone from C, over OC within its bounds")
+    drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
+    columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
     values = np.stack((frame, *(values for *__, values in rows)), axis=-1).tolist()
-    title = _("Slotted levers for OC within its bounds")
+    title = N_("Slotted levers for OC within its bounds")
     return drawn, Listing("family", title, columns, tuple(map(tuple, values)), long=True)

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
+from tmm_cli.language import N_, _
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
@@ -23,10 +23,10 @@ from tmm_cli.tolerances import DEAD_SWING
 from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
-QUICK_RETURN: Final = _(
+QUICK_RETURN: Final = N_(
     "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
 )
-HALF_A_TURN: Final = _("the lever of a crank that turns fully swings by less than 180 deg")
+HALF_A_TURN: Final = N_("the lever of a crank that turns fully swings by less than 180 deg")
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,14 @@ class Task:
 
     b1: Any = None
     b2: Any = None
-    length: Any = None
+    CB: Any = None
     c: Any = 0j
     axis: Any = 0.0
     side: int = -1
     k: Any = None
     swing: Any = None
-    frame: Any = None
-    crank: Any = None
+    OC: Any = None
+    OA: Any = None
     within: tuple[Any, Any] | None = None
     choose: str = "force"
 
@@ -75,21 +75,21 @@ def find(task: Task) -> Found:
     """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = task.theta
     sine = np.sin(theta / 2)
-    if task.length is None:
+    if task.CB is None:
         way = np.asarray(task.b2) - task.b1
         lever = np.abs(way) / 2 / sine
         c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * way / 2 / np.tan(theta / 2)
         along = -task.side * 1j * way / np.abs(way)
         psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
     else:
-        lever, c = np.asarray(task.length), task.c
+        lever, c = np.asarray(task.CB), task.c
         along = np.cos(task.axis) + 1j * np.sin(task.axis)
         psi1, psi2 = task.axis - task.side * theta / 2, task.axis + task.side * theta / 2
     longest = lever / (1 + sine)
-    if task.crank is not None:
-        frame = np.asarray(task.crank) / sine
+    if task.OA is not None:
+        frame = np.asarray(task.OA) / sine
     elif task.within is None:
-        frame = np.asarray(task.frame)
+        frame = np.asarray(task.OC)
     elif task.choose == "force":
         frame = np.minimum(task.within[1], longest)
     else:
@@ -107,7 +107,7 @@ def refuse(task: Task) -> None:
         raise Infeasible("swing", _("a lever that does not swing has no strokes"))
     if not np.pi - task.theta > DEAD_SWING:
         raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
-    if task.length is None and abs(task.b2 - task.b1) == 0:
+    if task.CB is None and abs(task.b2 - task.b1) == 0:
         raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
         raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
@@ -120,36 +120,36 @@ def solve(task: Task) -> Outcome:
     refuse(task)
     f = find(task)
     demands = (
-        Demand(_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
-        Demand(_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(N_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
+        Demand(N_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
         *(Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
-          for text, v in ((_("angle of CB1"), f.psi1), (_("angle of CB2"), f.psi2))),
+          for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))),
     )  # fmt: skip
-    notes = (_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
+    notes = (N_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
     free = family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
     drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
-    source = _("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
+    source = N_("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
                "on the bisector, OA = OC sin(theta/2)")  # fmt: skip
     return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
 
 
 def _given(task: Task) -> tuple[Value, ...]:
     given = []
-    if task.length is None:
-        for x, y, place in ((_("B1, x"), _("B1, y"), task.b1), (_("B2, x"), _("B2, y"), task.b2)):
+    if task.CB is None:
+        for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
             given += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
     kinds = {
-        "length": ("length", _("lever CB")), "k": ("number", _("k")), "swing": ("angle", _("swing of the lever")),
-        "frame": ("length", _("frame OC")), "crank": ("length", _("crank OA")),
+        "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
+        "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
     }  # fmt: skip
     given += [Value(n, getattr(task, n), *what) for n, what in kinds.items() if getattr(task, n) is not None]
     if task.within is not None:
-        force = _("least force: the longest that leaves the stone on CB")
+        force = N_("least force: the longest that leaves the stone on CB")
         given += [
-            Value("", task.within[0], "length", _("frame OC, at least")),
-            Value("", task.within[1], "length", _("frame OC, at most")),
-            Value("", force if task.choose == "force" else _("the shortest"), "word", _("choice of OC")),
+            Value("", task.within[0], "length", N_("frame OC, at least")),
+            Value("", task.within[1], "length", N_("frame OC, at most")),
+            Value("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
         ]
     return tuple(given)
 
@@ -157,20 +157,20 @@ def _given(task: Task) -> tuple[Value, ...]:
 def _found(task: Task, f: Found) -> tuple[Value, ...]:
     away = f.o - f.c
     return (
-        Value("OA", f.crank, "length", _("crank OA")),
-        Value("OC", f.frame, "length", _("frame OC")),
-        Value("CB", f.lever, "length", _("lever CB")),
-        Value("xO", np.real(f.o), "length", _("hinge O of the crank, x")),
-        Value("yO", np.imag(f.o), "length", _("hinge O of the crank, y")),
-        Value("xC", np.real(f.c), "length", _("hinge C of the lever, x")),
-        Value("yC", np.imag(f.c), "length", _("hinge C of the lever, y")),
+        Value("OA", f.crank, "length", N_("crank OA")),
+        Value("OC", f.frame, "length", N_("frame OC")),
+        Value("CB", f.lever, "length", N_("lever CB")),
+        Value("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
+        Value("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
+        Value("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
+        Value("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
         Value("phi", np.arctan2(np.imag(away), np.real(away)), "angle",
-              _("direction from C to O, of crank and lever when they are in line")),
-        Value("", f.theta, "angle", _("theta = B1CB2")),
-        Value("", f.frame - f.crank, "length", _("stone from C, at least")),
-        Value("", f.frame + f.crank, "length", _("stone from C, at most")),
-        Value("", f.longest, "length", _("longest OC that leaves the stone on CB")),
+              N_("direction from C to O, of crank and lever when they are in line")),
+        Value("", f.theta, "angle", N_("theta = B1CB2")),
+        Value("", f.frame - f.crank, "length", N_("stone from C, at least")),
+        Value("", f.frame + f.crank, "length", N_("stone from C, at most")),
+        Value("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
         # in the slow stroke the crank turns as the lever does
-        Value("", _("counterclockwise") if task.side > 0 else _("clockwise"), "word",
-              _("crank for a slow stroke from B1 to B2")),
+        Value("", N_("counterclockwise") if task.side > 0 else N_("clockwise"), "word",
+              N_("crank for a slow stroke from B1 to B2")),
     )  # fmt: skip

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_place
+from tmm_cli.language import N_
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.peaks import FIT, SIDE, peak, value
@@ -79,8 +79,8 @@ class Deviation(Goal):
 class Law(Deviation):
     """Of a link, metres or radians; relative: from the first place on."""
 
-    of, text = "law", _("root mean square deviation from the wanted law")
-    largest = _("largest deviation from the wanted law")
+    of, text = "law", N_("root mean square deviation from the wanted law")
+    largest = N_("largest deviation from the wanted law")
     keys, named, given = ("link", "values", "at", "relative", "norm"), "link", "values"
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
@@ -114,8 +114,8 @@ class Law(Deviation):
 class Path(Deviation):
     """Of a point from wanted points, metres; without places it is to pass through them in any of its positions."""
 
-    of, text = "path", _("root mean square distance from the wanted points")
-    largest = _("largest distance from the wanted points")
+    of, text = "path", N_("root mean square distance from the wanted points")
+    largest = N_("largest distance from the wanted points")
     keys, named, given = ("point", "through", "at", "norm"), "point", "through"
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

@@ -9,9 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import N_
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.synthesis.optimal.peaks import peak, peaks_of
 from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Constant, Over, Peak, Read, Windows
@@ -26,7 +26,7 @@ class Length(Constant):
     its hinges.
     """
 
-    of, text, keys = "length", _("sum of link lengths"), ("links",)
+    of, text, keys = "length", N_("sum of link lengths"), ("links",)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         linkage = motion.linkage
@@ -41,7 +41,7 @@ class Length(Constant):
 class Mass(Constant):
     """Of the moving links, kg."""
 
-    of, text, dimension = "mass", _("mass of the moving links"), "mass"
+    of, text, dimension = "mass", N_("mass of the moving links"), "mass"
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         linkage = motion.linkage
@@ -51,7 +51,7 @@ class Mass(Constant):
 class Box(Peak):
     """Width + height of the moving points, m. A curve to look at closely is a side and a point: its path is smooth."""
 
-    of, text = "box", _("box of the moving points, width + height")
+    of, text = "box", N_("box of the moving points, width + height")
     curves = ("y0", "y1", "y2", "y3")
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

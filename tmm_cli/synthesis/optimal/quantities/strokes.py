@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import output_place, output_slope
+from tmm_cli.language import N_
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.mean_ratio import ratio
@@ -31,9 +31,9 @@ class OfStrokes(Goal):
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if self.output(linkage, groups) is None:
-            return _("no link is the output, whose stroke this is: it slides or swings on the frame")
+            return N_("no link is the output, whose stroke this is: it slides or swings on the frame")
         if self.of_a_cycle and not closed:
-            return _("this belongs to a driver that turns on and on, and this one goes between two ends")
+            return N_("this belongs to a driver that turns on and on, and this one goes between two ends")
         return None
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -63,7 +63,7 @@ class OfStrokes(Goal):
 class Stroke(OfStrokes):
     """Metres, or radians; the longest of several."""
 
-    of, text = "stroke", _("stroke of the output")
+    of, text = "stroke", N_("stroke of the output")
 
     def kind(self, linkage: Linkage, groups: Any) -> str:
         return "length" if self.slides(linkage, groups) else "angle"
@@ -97,7 +97,7 @@ class Stroke(OfStrokes):
 class K(OfStrokes):
     """Coefficient of change of mean speed, the longer stroke over the shorter in time: 1 and more."""
 
-    of, text, dimension, of_a_cycle = "k", _("k, the longer stroke over the shorter"), "number", True
+    of, text, dimension, of_a_cycle = "k", N_("k, the longer stroke over the shorter"), "number", True
 
     def coarse(self, read: Read, over: Over) -> Real:
         return ratio_of(forward_share(read("slope")))
@@ -122,11 +122,11 @@ class K(OfStrokes):
 class Speed(OfStrokes):
     """Mean speed of a sliding output over a cycle, m/s; of an accelerated crank over its first from position 0 on."""
 
-    of, text, dimension, of_a_cycle = "speed", _("mean speed of the output"), "speed", True
+    of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output"), "speed", True
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if not self.slides(linkage, groups) and self.output(linkage, groups) is not None:
-            return _("the output swings: it has no mean speed in metres a second")
+            return N_("the output swings: it has no mean speed in metres a second")
         return super().unfit(linkage, groups, closed=closed)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

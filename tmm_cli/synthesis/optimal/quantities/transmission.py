@@ -9,10 +9,10 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.errors import _
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import followers, sides
+from tmm_cli.language import N_
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.quantities.base import Peak
@@ -26,7 +26,7 @@ class Assembles(Peak):
     Every candidate must have it in all positions.
     """
 
-    of, text, dimension, lowest = "assembles", _("driver goes its whole way (1: yes)"), "number", True
+    of, text, dimension, lowest = "assembles", N_("driver goes its whole way (1: yes)"), "number", True
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         both = list(zip(motion.kernels, motion.placements, strict=True))
@@ -39,7 +39,7 @@ class Assembles(Peak):
 class Margin(Peak):
     """Least distance of a group from a dead position, 1 at best."""
 
-    of, text, dimension, lowest = "margin", _("least distance from a dead position"), "number", True
+    of, text, dimension, lowest = "margin", N_("least distance from a dead position"), "number", True
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         return {"y": -reduce(np.minimum, [at.margin for at in motion.placements])}
@@ -48,7 +48,7 @@ class Margin(Peak):
 class Pressure(Peak):
     """Largest pressure angle on the output, rad; its curve is the tangent."""
 
-    of, text, dimension = "pressure", _("largest pressure angle"), "angle"
+    of, text, dimension = "pressure", N_("largest pressure angle"), "angle"
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         groups = tuple(kernel.group for kernel in motion.kernels)

@@ -1,0 +1,190 @@
+"""Steady running of a machine that is given by its reduced inertia and moment, against sums and equations of motion."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+
+from tmm_cli import load, solve
+from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.analysis.running import reduced_machine, running
+from tmm_cli.dynamics.curves import fitted
+from tmm_cli.dynamics.motion import with_motor
+from tmm_cli.dynamics.motors import Constant, Kloss, Linear
+from tmm_cli.dynamics.reduced import reduced
+from tmm_cli.dynamics.steady import fluctuation, steady
+from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.errors import NoFlywheelError, StandstillError
+from tmm_cli.forces.loads import applied
+from tmm_cli.forces.plan import react
+
+PROBLEMS = Path(__file__).parents[1] / "problems"
+TURN = 2 * np.pi
+
+
+@cache
+def solved(name):
+    return solve(load(PROBLEMS / f"{name}.yaml"))
+
+
+def machine(load=-100.0, swing=20.0, ripple=0.5, until=np.pi):
+    """A reduced inertia that changes twice in a turn, and a load on a part of the turn, which jumps at its end."""
+
+    def sample(x):
+        inertia, slope = 2 + ripple * np.cos(2 * x), -2 * ripple * np.sin(2 * x)
+        return inertia, slope, np.where(x < until, load, 0.0) + swing * np.sin(x)
+
+    return reduced(sample, [0, until, TURN])
+
+
+MACHINES = st.builds(
+    machine, st.floats(-500, -10), st.floats(-50, 50), st.floats(0.01, 1.5), st.floats(0.3, 6.0)
+)  # fmt: skip
+
+
+def test_a_sum_of_a_function_with_a_jump_is_exact():
+    curve = fitted(lambda x: (np.where(x < 2, np.exp(np.sin(x)), 3 - x),), [0, 2, TURN])[0]
+    exact = quad(lambda x: np.exp(np.sin(x)), 0, 2, epsabs=1e-14)[0] + 3 * (TURN - 2) - (TURN**2 - 4) / 2
+    assert curve.total == pytest.approx(exact, rel=1e-14)
+    assert curve.summed()(np.array([2.0]))[0] == pytest.approx(quad(lambda x: np.exp(np.sin(x)), 0, 2)[0], rel=1e-14)
+
+
+@given(MACHINES, st.floats(0.005, 0.2), st.floats(3, 40))
+@settings(max_examples=20)
+def test_the_flywheel_keeps_the_fluctuation(own, delta, mean):
+    try:
+        found = steady(own, SteadyTask(mean, delta))
+    except NoFlywheelError as small:
+        assert small.own < delta
+        return
+    low, high = found.speeds
+    assert found.delta == pytest.approx(delta, rel=1e-10)
+    assert (low + high) / 2 == pytest.approx(mean, rel=1e-10)
+    assert found.own > delta or np.isnan(found.own)
+
+
+@given(MACHINES, st.floats(0.01, 0.1))
+@settings(max_examples=5)
+def test_speed_is_that_of_the_equation_of_motion(own, delta):
+    try:
+        found = steady(own, SteadyTask(10.0, delta))
+    except NoFlywheelError:
+        return
+    law, flywheel = found.law, found.law.flywheel
+
+    def acceleration(x, state):
+        at = np.array([x])
+        total = flywheel + own.inertia(at)[0]
+        moment = found.moment + own.moment(at)[0] - own.slope(at)[0] * state[0] ** 2 / 2
+        return [moment / total / state[0], 1 / state[0]]
+
+    state = [law.speed(np.zeros(1))[0], 0.0]
+    for start, end in zip(own.moment.edges[:-1], own.moment.edges[1:], strict=True):
+        way = (start, np.nextafter(end, start))
+        state = solve_ivp(acceleration, way, state, "DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+    assert state[0] == pytest.approx(law.speed(np.zeros(1))[0], rel=1e-9)
+    assert state[1] == pytest.approx(law.period, rel=1e-9)
+    x = np.linspace(0.01, TURN - 0.01, 50)
+    step = 1e-5
+    slope = (law.speed(x + step) - law.speed(x - step)) / (2 * step)
+    smooth = np.abs(x - own.moment.edges[:, None]).min(axis=0) > 2 * step
+    assert law.acceleration(x)[smooth] == pytest.approx((law.speed(x) * slope)[smooth], rel=1e-5, abs=1e-4)
+
+
+def test_energy_comes_back_after_a_cycle():
+    found = steady(machine(), SteadyTask(10.0, 1 / 30))
+    ends = found.law.energy(np.array([0.0, TURN]))
+    assert ends[1] - ends[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(ends)))
+
+
+@pytest.mark.parametrize("motor", [Linear(500.0, 12.0), Kloss.rated(12.0, 11.6, 60.0, 2.2)])
+@pytest.mark.parametrize("flywheel", [0.0, 5.0, 30.0])
+def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
+    own = machine()
+    law = with_motor(own, flywheel, motor, 11.0)
+
+    def rate(x, energy):
+        speed = np.sqrt(2 * energy / (flywheel + own.inertia(np.array([x]))))
+        return motor.moment(speed)[0] + own.moment(np.array([x]))
+
+    begin = energy = law.energy(np.zeros(1))
+    for start, end in ((0, np.nextafter(np.pi, 0)), (np.pi, np.nextafter(TURN, 0))):
+        energy = solve_ivp(rate, (start, end), energy, "DOP853", rtol=1e-12, atol=1e-9).y[:, -1]
+    assert energy == pytest.approx(begin, rel=1e-10)
+    x = np.linspace(0, 6, 100)
+    assert law.driving(x) == pytest.approx(motor.moment(law.speed(x))[0], rel=1e-10)
+
+
+def test_a_flywheel_is_found_for_a_motor_too():
+    motor = Kloss.rated(12.0, 11.6, 60.0, 2.2)
+    found = steady(machine(), SteadyTask(11.0, 0.05, motor))
+    assert found.delta == pytest.approx(0.05, rel=1e-10)
+    assert fluctuation(with_motor(machine(), found.law.flywheel, motor, 11.0)) == pytest.approx(0.05, rel=1e-9)
+
+
+@pytest.mark.parametrize("motor", [Linear(500.0, 12.0), Kloss(12.0, 130.0, 0.14), Constant(50.0)])
+def test_slopes_of_characteristics_are_their_derivatives(motor):
+    speed, step = np.linspace(0.1, 13, 40), 1e-6
+    slope = (motor.moment(speed + step)[0] - motor.moment(speed - step)[0]) / (2 * step)
+    assert motor.moment(speed)[1] == pytest.approx(slope, rel=1e-6, abs=1e-6)
+
+
+def test_an_asynchronous_motor_has_its_rated_and_its_breakdown_moment():
+    motor = Kloss.rated(157.0, 150.0, 20.0, 2.2)
+    assert motor.moment(np.array([150.0]))[0] == pytest.approx(20.0)
+    assert motor.moment(157.0 * (1 - np.array([motor.slip])))[0] == pytest.approx(44.0)
+    assert motor.moment(np.array([157.0]))[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_motor_that_cannot_carry_the_load_stands_still():
+    with pytest.raises(StandstillError) as stands:
+        steady(machine(load=-800.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
+    assert 0 <= stands.value.place <= np.pi
+
+
+def test_a_fluctuation_that_is_small_enough_needs_no_flywheel():
+    with pytest.raises(NoFlywheelError) as none:
+        steady(machine(load=-10.0), SteadyTask(100.0, 0.9))
+    assert none.value.own < 0.9
+
+
+def test_ways_of_a_course_are_near_to_the_exact_one():
+    found = steady(machine(), SteadyTask(10.0, 1 / 30))
+    assert found.wittenbauer == pytest.approx(found.law.flywheel, rel=1e-3)  # w^2 (1 + delta) for w^2 (1 + delta/2)^2
+    assert found.mertsalov == pytest.approx(found.law.flywheel, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "name", ["shaper", "engine-four", "press-class-iii", "course-3", "six-bar", "planetary-dwell-press"]
+)
+def test_a_mechanism_with_its_flywheel_keeps_the_energy_of_the_cycle(name):
+    results = solved(name)
+    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
+    assert found.delta == pytest.approx(1 / 30, rel=1e-10)
+    gone = found.law.energy(np.array([0.0, found.machine.length]))
+    assert gone[1] - gone[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(found.law.energy.coefficients[0])))
+
+
+def test_a_constant_force_on_a_stroke_works_its_length():
+    results = solved("shaper")
+    machine = reduced_machine(results.mechanism, results.start)
+    assert machine.work_of_cycle == pytest.approx(-1500 * results.strokes.travel, rel=1e-12)
+
+
+def test_powers_balance_in_every_position_of_the_law_of_motion():
+    """Balancing moment at omega, epsilon of the law: that of the driver less what speeds the flywheel up."""
+    results = solved("shaper")
+    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
+    x = np.linspace(0.1, 6.2, 37)
+    law, sense = found.law, results.linkage.driver.sense
+    q = results.start + sense * x
+    motion = at_positions(results, q)
+    motion = replace(motion, rate=sense * law.speed(x), acceleration=sense * law.acceleration(x))
+    loads = applied(motion, results.strokes)
+    balance = react(motion, results.structure, loads).balance.moment
+    assert sense * balance == pytest.approx(found.moment - law.flywheel * law.acceleration(x), rel=1e-10, abs=1e-9)

@@ -1,0 +1,1 @@
+"""The law of motion: what drives the machine, the flywheel, balancing."""

@@ -1,0 +1,127 @@
+"""Steady running: what drives the machine, the flywheel for a fluctuation of speed, and the law of motion with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.dynamics.curves import Curve, fitted
+from tmm_cli.dynamics.flywheel import Flywheel, at_mean, exact, lowest, mertsalov, wittenbauer
+from tmm_cli.dynamics.motion import Law, under_constant_moment, with_motor
+from tmm_cli.dynamics.motors import Motor
+from tmm_cli.dynamics.reduced import Reduced
+from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.errors import NoFlywheelError, StandstillError
+from tmm_cli.roots import roots
+from tmm_cli.vectors import Real
+
+STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
+DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
+
+
+@dataclass(frozen=True)
+class Steady:
+    """moment: mean of what drives over the cycle (N m, or N). own: fluctuation with the given flywheel alone, nan where
+    the machine comes to rest then. work: of all moments from the beginning of the cycle (J).
+
+    found: the flywheel by tangents, beside the given one; wittenbauer, mertsalov: inertia (kg m2) as by these; of a
+    motor there are none.
+    """
+
+    task: SteadyTask
+    machine: Reduced
+    moment: float
+    work: Curve
+    law: Law
+    own: float
+    found: Flywheel | None = None
+    wittenbauer: float = float("nan")
+    mertsalov: float = float("nan")
+
+    @property
+    def on_shaft(self) -> float:
+        """Inertia of the flywheel on its own shaft, kg m2: what is found, and a given one where nothing is."""
+        return self.law.flywheel / self.task.ratio**2
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """The least and the largest speed of the driver, rad/s or m/s."""
+        return extremes(self.law)
+
+    @property
+    def delta(self) -> float:
+        """The fluctuation that there is."""
+        return fluctuation(self.law)
+
+
+def extremes(law: Law) -> tuple[float, float]:
+    """The least and the largest speed over the cycle."""
+    places = law.energy.places()
+    return lowest(law.speed, places)[1], -lowest(lambda x: -law.speed(x), places)[1]
+
+
+def fluctuation(law: Law) -> float:
+    """The largest speed less the least, over the mean of both."""
+    low, high = extremes(law)
+    return 2 * (high - low) / (high + low)
+
+
+def steady(machine: Reduced, task: SteadyTask) -> Steady:
+    """Steady running of a machine. Raises StandstillError, NoFlywheelError."""
+    if task.motor is not None:
+        return _driven(machine, task, task.motor)
+    moment = -machine.work_of_cycle / machine.length
+    work = fitted(lambda x: (machine.work(x) + moment * x,), machine.work.edges)[0]
+    energy, own = at_mean(machine, work, task.mean, task.flywheel)
+    if task.delta is None:
+        if np.isnan(energy):
+            raise StandstillError(lowest(work, work.places())[0])
+        law = under_constant_moment(machine, task.flywheel, energy, moment)
+        return Steady(task, machine, moment, work, law, own)
+    given = (machine, work, task.mean, task.delta)
+    found = exact(*given)
+    if found.inertia <= task.flywheel:
+        raise NoFlywheelError(task.delta, own)
+    law = under_constant_moment(machine, found.inertia, found.energy, moment)
+    return Steady(task, machine, moment, work, law, own, found, wittenbauer(*given).inertia, mertsalov(*given))
+
+
+def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
+    """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
+
+    def delta_of(flywheel: float) -> float:
+        try:
+            return fluctuation(with_motor(machine, flywheel, motor, task.mean))
+        except StandstillError:
+            return STANDS
+
+    own = delta_of(task.flywheel)
+    flywheel = task.flywheel
+    if task.delta is not None:
+        if own <= task.delta:
+            raise NoFlywheelError(task.delta, own)
+        flywheel = _searched(
+            task.delta, delta_of, task.flywheel, float(np.max(machine.inertia(machine.inertia.places())))
+        )
+    law = with_motor(machine, flywheel, motor, task.mean)
+    start = float(law.energy(np.zeros(1))[0])
+    work = fitted(lambda x: (law.energy(x) - start,), law.energy.edges)[0]
+    return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
+
+
+def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
+    """The inertia with which the fluctuation is delta: it falls as the flywheel grows."""
+    high = low + unit
+    for _ in range(DOUBLINGS):
+        if delta_of(high) < delta:
+            break
+        low, high = high, 2 * high
+    else:
+        raise NoFlywheelError(delta, float("nan"))
+
+    def missed(flywheels: Real) -> Real:
+        return np.array([delta_of(float(flywheel)) - delta for flywheel in np.ravel(flywheels)])
+
+    return float(roots(missed, np.array([low]), np.array([high]))[0])

@@ -1,0 +1,106 @@
+"""The language in which people are spoken to: sentences marked for gettext, and who speaks which language.
+
+A sentence stands in English at the place that says it, as `_("...")`, and is said in the language that is spoken
+there and then. What must be named when a module is imported, or is kept in results, is a phrase, `N_("...")`, and
+translated where it is shown. Files for machines are written in English: `with spoken("en"): ...`. Translations are in
+`locale/`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+if TYPE_CHECKING:
+    from gettext import NullTranslations
+
+LANGUAGES: Final = ("en", "ru", "sr")
+ENGLISH: Final = LANGUAGES[0]
+LOCALE: Final = Path(__file__).with_name("locale")
+DOMAIN: Final = "tmm"
+CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by language
+
+Found = TypeVar("Found")
+
+_spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
+
+
+class Phrase(str):
+    """A marked sentence, perhaps with fields put in: English to all that read it, until it is `translated`."""
+
+    message: str
+    fields: dict[str, Any]
+
+    def __new__(cls, message: str, **fields: Any) -> Phrase:
+        phrase = super().__new__(cls, message.format(**fields) if fields else message)
+        phrase.message, phrase.fields = message, fields
+        return phrase
+
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
+        return (self.message,), self.fields
+
+
+N_ = Phrase  # as gettext's mark is called
+
+
+def translated(text: str) -> str:
+    """A phrase in the language that is spoken, with the phrases in its fields; a name or a title as it is."""
+    if not isinstance(text, Phrase) or _spoken.get() == ENGLISH:
+        return text
+    message = _(text.message)
+    return message.format(**{key: translated(own) for key, own in text.fields.items()}) if text.fields else message
+
+
+def _(message: str) -> str:
+    """The sentence in the language that is spoken; in English where it is not translated."""
+    language = _spoken.get()
+    return message if language == ENGLISH or not message else _catalogue(language).gettext(message)
+
+
+def symbol(letter: str) -> str:
+    """The letter that a course in this language writes: of a force of inertia U in English, Φ in Russian."""
+    return _in_context("symbol", letter)
+
+
+def _in_context(context: str, message: str) -> str:
+    language = _spoken.get()
+    return message if language == ENGLISH or not message else _catalogue(language).pgettext(context, message)
+
+
+def _catalogue(language: str) -> NullTranslations:
+    """The translations of a language, read once."""
+    if language not in CATALOGUES:
+        from gettext import GNUTranslations  # English needs none
+
+        with (LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.mo").open("rb") as stream:
+            CATALOGUES[language] = GNUTranslations(stream)
+    return CATALOGUES[language]
+
+
+def language() -> str:
+    """The language that is spoken here and now."""
+    return _spoken.get()
+
+
+@contextmanager
+def spoken(language: str) -> Iterator[None]:
+    """Speak a language inside; a sentence is said where it is made, so nothing may be left to be made later."""
+    before = _spoken.set(language)
+    try:
+        yield
+    finally:
+        _spoken.reset(before)
+
+
+def speak(language: str) -> None:
+    """Speak a language from here to the end of the `spoken` around."""
+    _spoken.set(language)
+
+
+def speaking(language: str, work: Callable[[], Found]) -> Found:
+    """What some work gives when it speaks this language; for work that goes to another process."""
+    with spoken(language):
+        return work()

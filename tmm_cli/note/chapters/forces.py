@@ -1,0 +1,57 @@
+"""The force analysis: loads, groups from the last to the driving link, lever, tables of all positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Heading, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.forces import lever, loads, sections, tables
+from tmm_cli.note.forces.parts import parts_of
+from tmm_cli.note.forces.words import at_position
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Of what has forces."""
+    results = subject.results
+    if not subject.acts or results.reactions is None:
+        return
+    yield Heading(_("Force analysis"))
+    yield said(
+        _("The reactions in the kinematic pairs, and what balances the driving link, are found by the method of "
+          "kinetostatics: when the forces of inertia are added to the forces that act (principle of d'Alembert), every "
+          "group of links is in equilibrium. The groups are taken in the order opposite to that of the kinematic "
+          "analysis, and the driving link last. Forces are in the senses of the figures, so what is found is positive.")
+    )  # fmt: skip
+    for k in subject.detail:
+        yield from _position(subject, k)
+    yield Heading(_("Forces in all positions"), 2)
+    yield from tables.reactions(subject)
+    yield from tables.balancing(subject)
+    yield from loads.losses(results)
+
+
+def _position(subject: Subject, k: int) -> Iterable[Block]:
+    """One of those in detail, each of its sections named after it where there are several."""
+    results, several, first = subject.results, len(subject.detail) > 1, k == subject.detail[0]
+
+    def heading(text: str) -> str:
+        if not several:
+            return text
+        return _("{section}, position {number}").format(section=text, number=results.numbers[k])
+
+    yield Heading(heading(_("Loads of the links")), 2)
+    if first:
+        yield from loads.weights(results)
+    yield from loads.inertia(results, k, explained=first)
+    yield from loads.springs(results, k)
+    yield from loads.friction(results, k, explained=first)
+    yield from loads.table(subject, k, _("Loads, {position}").format(position=at_position(subject, k)))
+    for number, part in enumerate(parts_of(subject, k)):
+        if part.forces is not None:
+            text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
+        else:
+            text = _("Driving link {links}")
+        yield from sections.written(part, heading(text.format(links=", ".join(part.links))), first=first and not number)
+    yield from lever.written(subject, k, heading(_("Zhukovsky lever")), explained=first)

@@ -1,0 +1,70 @@
+"""The synthesis: what was asked, the formulas of the task, what was found, and the same measured on the mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, Heading, paragraph
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.tables import rows_of
+from tmm_cli.plans.record import Symbol
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.results.reports.synthesis import tables_of
+from tmm_cli.synthesis.check import measured_on
+from tmm_cli.synthesis.mean_ratio import theta_of
+
+FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
+THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")
+USED = ("k", "stroke", "OA", "OC", "CD")  # values of tasks that are put into formulas
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Nothing where the file gives all sizes."""
+    results = subject.results
+    task = results.problem.synthesis
+    if task is None:
+        return
+    yield Heading(_("Synthesis of the mechanism"))
+    yield paragraph(_("The sizes of the mechanism are found from what it must do."))
+    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units)}
+    if "synthesis-asked" in tables:
+        yield rows_of(subject, tables.pop("synthesis-asked"), _("What is asked"), digits=FOUND)
+    yield paragraph(_("The way of the solution: {source}.").format(source=task.outcome.source.rstrip(".")))
+    yield from _formulas(task)
+    found = tables.pop("synthesis-found", None)
+    measured = tables.pop("synthesis-measured", None)
+    if found is not None:
+        yield rows_of(subject, found, _("What is found"), digits=FOUND)
+        yield from (paragraph(note) for note in task.outcome.notes)
+    yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
+    sentence, caption = _("The construction is shown in figure {figure}."), _("Synthesis of the mechanism")
+    yield from subject.figures("synthesis", sentence, caption)
+    if measured is not None:
+        yield paragraph(_("On the mechanism with these sizes the same quantities are measured."))
+        yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), digits=FOUND)
+
+
+def _formulas(task: Synthesised) -> Iterable[Block]:
+    """Those of the task that stand in one line each, with numbers put in."""
+    values = {
+        value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
+    }
+    if "k" in values:
+        theta = float(theta_of(values["k"]))
+        yield Found(_theta(values["k"], theta))
+        half = Function("sin", Quotient(Leaf(THETA, theta, angle=True), Constant(2)))
+        if task.task == "shaper":
+            length = Quotient(Leaf(H, values["stroke"]), Product((Constant(2), half)))
+            yield Found(Substitution(Symbol("l", "CD"), length, values["CD"], "m"))
+        if task.task in ("shaper", "slotted-lever"):
+            crank = Product((Leaf(Symbol("l", "OC"), values["OC"]), half))
+            yield Found(Substitution(Symbol("l", "OA"), crank, values["OA"], "m"))
+
+
+def _theta(k: float, theta: float) -> Substitution:
+    ratio = Leaf(K, k)
+    share = Quotient(Sum(((1, ratio), (-1, Constant(1)))), Sum(((1, ratio), (1, Constant(1)))))
+    return Substitution(THETA, Product((Constant(math.pi, "180°"), share)), theta, "°", angle=True)

@@ -1,0 +1,1 @@
+"""The force analysis in the note: loads of links, equations of moments, force plans, lever, tables."""

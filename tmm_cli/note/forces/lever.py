@@ -1,0 +1,156 @@
+"""The Zhukovsky lever in the note: couples replaced, moments about the pole, comparison with the force plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.forces.applied import Applied
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Constant, Expression, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.forces.equations import by_moments, moments
+from tmm_cli.note.forces.words import at_position
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.lever import LeverPlan, lever_plan
+from tmm_cli.plans.record import Symbol, balance_symbol
+from tmm_cli.tolerances import NO_DIFFERENCE
+
+
+def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
+    """All of a section. explained: what the lever is."""
+    results = subject.results
+    motion, reactions, lever = results.motion, results.reactions, results.lever
+    assert motion is not None and reactions is not None and lever is not None
+    plan = lever_plan(motion, reactions, lever, k)
+    if not plan.equation.terms:
+        return
+    yield Heading(heading, 2)
+    turns = turns_of(subject)
+    unit = _("N·m") if turns else _("N")
+    if explained:
+        yield said(_of_turning() if turns else _of_sliding(), p=Symbol("p"))
+    yield from _couples(subject, plan, k)
+    yield from subject.figures(
+        "lever", _("The lever is shown in figure {figure}."),
+        _("Zhukovsky lever, {position}").format(position=at_position(subject, k)), k,
+    )  # fmt: skip
+    yield said(_("The moments about the pole:"))
+    found = by_moments(plan.equation, unit)
+    if plan.equation.sought is None and found is not None:
+        yield Found(found)
+        yield from _of_several(subject, k, unit)
+        return
+    if found is None:
+        yield said(_("Nothing has a moment about the pole: nothing has to be balanced."))
+        return
+    yield from (Equation(moments(plan.equation)), Found(found))
+    yield from _compared(subject, k)
+
+
+def _of_turning() -> str:
+    return _(
+        "The balancing moment is checked by the lever of Zhukovsky: the velocity plan, drawn for 1 rad/s of the "
+        "driving link and turned by 90° clockwise, is taken for a rigid lever that can turn about its pole {p}. All "
+        "forces act on it at the ends of the velocities of their points, and it is in equilibrium."
+    )
+
+
+def _of_sliding() -> str:
+    return _(
+        "The balancing force is checked by the lever of Zhukovsky: the velocity plan, drawn for 1 m/s of the driving "
+        "link and turned by 90° clockwise, is taken for a rigid lever that can turn about its pole {p}. All forces act "
+        "on it at the ends of the velocities of their points, and it is in equilibrium."
+    )
+
+
+def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
+    """Couples as pairs of forces, or turned at the ratio of speeds."""
+    if plan.pairs:
+        yield said(
+            _("A couple on a link becomes a pair of forces, {P} and {Pp}, across the line of two of its points, "
+              "which are {l} apart:"),
+            P=Symbol("P"), Pp=Symbol("P").primed, l=Symbol("l"),
+        )  # fmt: skip
+    for pair in plan.pairs:
+        couple, apart = Leaf(pair.couple, abs(pair.moment)), Leaf(Symbol("l", "".join(pair.points)), pair.distance)
+        size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
+        yield Found(Substitution(pair.symbol, Quotient(couple, apart), size, _("N")))
+    acting = {one.symbol: one for one in plan.acting if one.couple}
+    loads = [load for load in subject.results.loads if load_symbols(load)[1].primed in acting]
+    turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
+    if turned:
+        yield said(
+            _("Another couple acts on the lever as {M}, in the ratio of the speed of its link to that of the driving "
+              "link:"),
+            M=Symbol("M").primed,
+        )  # fmt: skip
+    for load, size in turned:
+        symbol = load_symbols(load)[1]
+        couple = Leaf(symbol, abs(float(load.moment[k])))
+        own = Product((couple, *_ratio(subject, load, k)))
+        yield Found(Substitution(symbol.primed, own, size, _("N·m") if turns_of(subject) else _("N")))
+
+
+def turns_of(subject: Subject) -> bool:
+    """Whether the first driver turns."""
+    return subject.results.linkage.driver.kind == "turn"
+
+
+def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
+    """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
+    motion, driver = subject.results.motion, subject.results.linkage.driver
+    assert motion is not None
+    rate = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
+    if load.link == driver.link and turns_of(subject):
+        return ()
+    if not rate:
+        return (Leaf(Symbol("i", load.link), abs(float(motion.link(load.link).first[k]))),)
+    omega = Leaf(Symbol("ω", load.link), abs(float(motion.link(load.link).omega[k])))
+    return (Quotient(omega, Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate)),)
+
+
+def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
+    """What several drivers do together, each in the ratio of its speed to that of the first."""
+    results = subject.results
+    motion, reactions, lever = results.motion, results.reactions, results.lever
+    assert motion is not None and reactions is not None and lever is not None
+    first, terms = reactions.balance, list[tuple[int, Expression]]()
+    for balance in reactions.balances:
+        driver = balance.driver.link
+        symbol = balance_symbol(driver, several=True, turns=balance.moment is not None)
+        own = Leaf(symbol, float(balance.generalized[k]))
+        ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
+        terms.append((1, own if balance is first else Product((own, ratio))))
+    name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
+    yield said(
+        _("The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
+          "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"),
+        link=first.driver.link, i=Symbol("i"),
+    )  # fmt: skip
+    yield Found(Substitution(name, Sum(tuple(terms)), float(lever.balancing[k]), unit))
+
+
+def _compared(subject: Subject, k: int) -> Iterable[Block]:
+    """With what the force plan gave, in percent of the largest of all positions."""
+    results = subject.results
+    assert results.reactions is not None and results.lever is not None and results.motion is not None
+    balance, lever = results.reactions.balance, results.lever
+    moment = balance.kind == "moment"
+    name = balance_symbol(balance.driver.link, several=False, turns=moment)
+    arm = 1.0 if moment or balance.moment is None else balance.arm  # of a force on a crank's end
+    plan, own = float(balance.generalized[k]) / arm, float(lever.balancing[k]) / arm
+    largest = float(np.nanmax(np.abs(np.where(results.motion.moving, balance.generalized, 0.0)))) / arm
+    if not largest:
+        return
+    yield said(
+        _("The difference from the force plan, against the largest {name} of all positions; here {plan} is that of the "
+          "force plan:"),
+        name=name, plan=Symbol(name.letter, name.below, "R"),
+    )  # fmt: skip
+    gap = Function("abs", Sum(((1, Leaf(Symbol(name.letter, name.below, "R"), plan)), (-1, Leaf(name, own)))))
+    whole = Product((Quotient(gap, Leaf(Symbol(name.letter, "max"), largest)), Constant(100.0)))
+    percent = 100 * float(lever.difference[k])
+    yield Found(Substitution(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%"))

@@ -1,0 +1,179 @@
+"""What acts on the links besides reactions: weights, forces and couples of inertia, springs, friction, given loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.springs import twisted
+from tmm_cli.language import _
+from tmm_cli.linkage import Friction, Spring
+from tmm_cli.note.blocks import Block, Found, Line, Rows, line, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.forces.words import direction, listed, sense, shown
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import Symbol, reaction_symbol
+from tmm_cli.tolerances import NO_FORCE
+from tmm_cli.vectors import dot
+
+
+def weights(results: Results) -> Iterable[Block]:
+    """They are the same in every position."""
+    linkage = results.linkage
+    gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
+    own = [load for load in results.loads if load.kind == "weight"]
+    if not own or not gravity.value:
+        return
+    yield said(
+        _("The weight of a link is the product of its mass {m} and the acceleration of free fall {g}; it acts in the "
+          "centre of mass of the link:"),
+        m=Symbol("m"), g=gravity.symbol,
+    )  # fmt: skip
+    for load in own:
+        mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
+        size = float(np.abs(np.ravel(load.force)[0]))
+        yield Found(Substitution(load_symbols(load)[0], Product((mass, gravity)), size, _("N")))
+
+
+def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
+    """Of a position: the products, then in words those that are nothing."""
+    found = [one for load in results.loads if load.kind == "inertia" for one in _of_inertia(results, load, k)]
+    if not found:
+        return
+    explanation = (
+        _("The force of inertia of a link acts in its centre of mass against the acceleration of this point, and the "
+          "couple of the forces of inertia acts against the angular acceleration {epsilon} of the link; {J} is its "
+          "moment of inertia about the centre of mass:")
+        if explained
+        else _("Forces and couples of inertia:")
+    )  # fmt: skip
+    yield said(explanation, epsilon=Symbol("ε"), J=Symbol("J", "S"))
+    units = {one.unit for one in found}
+    largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
+    there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
+    yield from map(Found, there)
+    nothing = [one.name for one in found if one not in there]
+    if nothing:
+        yield said(_("There is no acceleration for these, which are zero: {names}."), names=listed(nothing))
+
+
+def _of_inertia(results: Results, load: Applied, k: int) -> Iterable[Substitution]:
+    motion, link = results.motion, results.linkage.links[load.link]
+    assert motion is not None
+    force, couple = load_symbols(load)
+    if np.any(link.mass != 0):
+        mass = Leaf(Symbol("m", load.link), float(link.mass))
+        a = Leaf(Symbol("a", f"S{load.link}"), abs(complex(motion.centre(load.link).a[k])))
+        yield Substitution(force, Product((mass, a)), abs(complex(load.force[k])), _("N"))
+    if np.any(link.inertia != 0):
+        moment = Leaf(Symbol("J", f"S{load.link}"), float(link.inertia))
+        epsilon = Leaf(Symbol("ε", load.link), abs(float(motion.link(load.link).epsilon[k])))
+        yield Substitution(couple, Product((moment, epsilon)), abs(float(load.moment[k])), _("N·m"))
+
+
+def springs(results: Results, k: int) -> Iterable[Block]:
+    """What each does: from its length, or its angle, and how fast that changes."""
+    for spring in results.linkage.springs:
+        load = next((one for one in results.loads if one.name == spring.name), None)
+        if load is not None:
+            yield from _spring(results, spring, load, k)
+
+
+def _spring(results: Results, spring: Spring, load: Applied, k: int) -> Iterable[Block]:
+    motion = results.motion
+    assert motion is not None
+    if spring.turns:
+        now, free = Leaf(Symbol("θ"), float(twisted(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
+        letter = "M"
+        omegas = [float(motion.link(n).omega[k]) if n in motion.linkage.moving else 0.0 for n in (spring.j, spring.i)]
+        rate, size, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
+        text = _("The moment of the spring {name} follows its angle {now} from the free one, {c} being its rate:")
+    else:
+        i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
+        apart, faster = complex((j.x - i.x)[k]), complex((j.v - i.v)[k])
+        letter, now, free = "F", Leaf(Symbol("l"), abs(apart)), Leaf(Symbol("l", "0"), float(spring.free))
+        rate = Leaf(Symbol("v"), float(dot(apart, faster)) / (abs(apart) or 1.0))
+        size, unit = abs(complex(load.force[k])), _("N")
+        text = _("The force of the spring {name} follows its length {now}; {c} is its rate, {free} its free length:")
+    c = Leaf(Symbol("c"), float(spring.rate))
+    stretch: Expression = Sum(((1, now), (-1, free))) if free.value else now
+    terms: list[tuple[int, Expression]] = [(1, Product((c, stretch)))]
+    if spring.preload:
+        terms = [(1, Leaf(Symbol(letter, "0"), float(spring.preload))), *terms]
+    if spring.damping:
+        terms.append((1, Product((Leaf(Symbol("b"), float(spring.damping)), rate))))
+    yield said(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
+    yield Found(Substitution(load_symbols(load)[0], Function("abs", Sum(tuple(terms))), size, unit))
+
+
+def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
+    """What rubs in each pair, of the reactions that are found with it."""
+    given, reactions = results.linkage.friction, results.reactions
+    if not given or reactions is None:
+        return
+    explanation = (
+        _("Friction acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a moment, on a "
+          "guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. Reactions and "
+          "friction are therefore found together, so that each friction is that of the reactions below:")
+        if explained
+        else _("Friction, of the reactions below:")
+    )  # fmt: skip
+    yield said(explanation, r=Symbol("r"), f=Symbol("f"))
+    for one in given:
+        yield from _rubbing(results, one, k)
+
+
+def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
+    assert results.reactions is not None
+    reaction = results.reactions.of(given.pair)
+    own = (f"T{given.pair}", f"T{given.pair}'")  # on the frame it is left out
+    load = next((one for one in results.loads if one.kind == "friction" and one.name in own), None)
+    if load is None:
+        return
+    f, r = Leaf(Symbol("f", given.pair), given.coefficient), Leaf(Symbol("r", given.pair), given.radius)
+    normal = Leaf(reaction_symbol(reaction.by, reaction.on), abs(complex(reaction.force[k])))
+    slides = reaction.pair.slide is not None
+    size = abs(complex(load.force[k])) if slides else abs(float(load.moment[k]))
+    if size:
+        factors = (f, normal) if slides else (f, r, normal)
+        yield Found(Substitution(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m")))
+
+
+def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
+    """All that acts in a position: sizes, and angles of forces or senses of couples."""
+    rows: list[tuple[Line, ...]] = []
+    loads = subject.results.loads
+    least = NO_FORCE * max((abs(complex(load.force[k])) for load in loads), default=0.0)
+    still = NO_FORCE * max((abs(float(load.moment[k])) for load in loads), default=0.0)
+    for load in loads:
+        (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
+        if abs(push) > least:
+            told = f"{shown(subject, abs(push))} {_('N')}"
+            rows.append((line(force), line(load.link), line(told), line(direction(subject, push))))
+        if abs(moment) > still:
+            told = f"{shown(subject, abs(moment))} {_('N·m')}"
+            rows.append((line(couple), line(load.link), line(told), line(sense(moment))))
+    if rows:
+        yield said(_("The table has all that acts on the links in this position but reactions."))
+        head = (line(_("acts")), line(_("on link")), line(_("size")), line(_("angle from x, or sense")))
+        yield Rows(caption, head, tuple(rows))
+
+
+def losses(results: Results) -> Iterable[Block]:
+    """What friction takes of the drivers' work over the cycle."""
+    lost = results.losses
+    if lost is None or lost.locked:
+        return
+    work = Leaf(Symbol("A", "d"), lost.drivers)
+    taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]
+    yield said(_("Over the cycle the drivers do the work {work}, and friction in the pairs does:"), work=work.symbol)
+    for one in (work, *taken):
+        yield Found(Substitution(one.symbol, one, one.value, _("J")))
+    if lost.efficiency is not None:
+        yield said(_("The efficiency of the mechanism is:"))
+        left = Sum(tuple((1, one) for one in (work, *taken)))
+        yield Found(Substitution(Symbol("η"), Quotient(left, work), lost.efficiency))

@@ -1,0 +1,251 @@
+"""The section of a group, or of a driving link: what is sought, equations of moments, force plan, whole reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import chain
+
+from tmm_cli.forces.plan import Reaction
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, Items, Line, filled, said
+from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.forces.equations import along_guide, by_moments, moments, polygon, value, vector_sum
+from tmm_cli.note.forces.parts import Part
+from tmm_cli.note.forces.words import direction, links_of, listed, sense
+from tmm_cli.plans.bodies import DRIVE, Acting
+from tmm_cli.plans.leads import Lead, leads_of
+from tmm_cli.plans.moments import MomentEquation
+from tmm_cli.plans.projections import ForceSum
+from tmm_cli.plans.record import Symbol, reaction_symbol
+from tmm_cli.tolerances import NO_FORCE
+
+SIZES = 2  # that a closed polygon gives
+
+
+def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
+    """All of a section. first: of the note, which says how to read the sum of vectors."""
+    yield Heading(heading, 2)
+    if not part.loaded.acting:
+        yield said(_("Nothing acts here ({links}): all reactions are zero."), links=links_of(part.links))
+        return
+    yield from _taken_apart(part)
+    if part.at_once:
+        yield said(
+            _("There is no point about which one unknown alone has a moment, so the equations of equilibrium of all "
+              "these links are solved together. As a check, the moments on each link come to nothing:")
+        )  # fmt: skip
+    ready, later = part.sums
+    equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
+    for equation in (e for e in equations if not e.special):
+        yield from _moments(equation)
+    yield from chain.from_iterable(map(_projections, ready))
+    for equation in (e for e in equations if e.special):  # what the sums give has moments there
+        yield from _moments(equation)
+    if part.inner_first:
+        yield from _guide_between(part)
+    yield from _force_plan(part, explained=first)
+    if not part.inner_first:
+        yield from _inner(part)
+    yield from chain.from_iterable(map(_projections, later))
+    for equation in part.loaded.equations:
+        if equation.sought is not None and equation.sought.arm:
+            yield from _place(equation)
+    yield from _balance(part)
+
+
+def _projections(forces: ForceSum) -> Iterable[Block]:
+    """A sum along a guide."""
+    node, found = along_guide(forces)
+    yield said(
+        _("The projections of the forces (link {link}) on the guide {guide} give {symbol}; {angles} are the acute "
+          "angles between the forces and the guide:"),
+        guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
+    )  # fmt: skip
+    yield from (Equation(node), Found(found))
+
+
+def _taken_apart(part: Part) -> Iterable[Block]:
+    """What acts, what is unknown of the outer reactions, and a figure."""
+    given = listed(dict.fromkeys(one.symbol for one in part.given))
+    if part.forces is None:
+        yield said(_("The driving link is taken last. Known on it: {given}. Sought:"), given=given or _("nothing"))
+    elif given:
+        yield said(
+            _("The group {group} is taken apart from the mechanism. Known on its links: {given}. Sought:"),
+            group=part.forces.group.title, given=given,
+        )  # fmt: skip
+    else:
+        yield said(_("The group {group} is taken apart from the mechanism. Sought:"), group=part.forces.group.title)
+    leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
+    unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
+    drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
+    yield Items((*unknown, *drives))
+    yield from part.subject.figures(
+        "group-loads",
+        _("All that acts is shown in figure {figure} without scale, each force with its arm, which is to scale."),
+        _("Loads and reactions: {links}; {position}").format(links=links_of(part.links), position=part.caption),
+        part.here.k, part.stem("group-loads"),
+    )  # fmt: skip
+
+
+def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
+    """Of an outer reaction; lead: of the hinge or guide."""
+    pair, names = reaction.pair, (reaction.by, reaction.on)
+    whole = reaction_symbol(*names)
+    if not pair.lower:
+        return filled(_("pair {pair}: size of the reaction {R}, whose line is known"), pair=pair.name, R=whole)
+    if pair.slide is not None:
+        return filled(
+            _("guide {guide}: size and place of the reaction {R}, which is across the guide"), guide=pair.name, R=whole
+        )
+    if lead is None or lead.axis is None:
+        return filled(_("hinge {point}: size and direction of the reaction {R}"), point=pair.point, R=whole)
+    parts = {"R": whole, "n": reaction_symbol(*names, "n"), "t": reaction_symbol(*names, "τ")}
+    if lead.rest is not None and lead.about is not None and len(lead.links) == 1:
+        return filled(
+            _("hinge {point}: the reaction {R} in two parts, {n} along the line {line} and {t} across it"),
+            point=pair.point, line=pair.point + lead.about, **parts,
+        )  # fmt: skip
+    return filled(
+        _("hinge {point}: the reaction {R} in two parts, {n} along the guide of the link {link} and {t} across it"),
+        point=pair.point, link=reaction.on, **parts,
+    )  # fmt: skip
+
+
+def _drive(one: Acting) -> Line:
+    """What balances a driver."""
+    if one.couple:
+        return filled(_("the balancing moment {symbol}"), symbol=one.symbol)
+    return filled(_("the balancing force {symbol}"), symbol=one.symbol)
+
+
+def _moments(equation: MomentEquation) -> Iterable[Block]:
+    """A sum of moments, and what it gives."""
+    found = by_moments(equation)
+    if equation.sought is None:
+        yield from () if found is None else (Found(found),)
+        return
+    point, links, symbol = equation.about, links_of(equation.links), equation.sought.symbol
+    if found is None:
+        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} = 0.")
+    elif equation.special:
+        text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
+                 "moments about it ({links}) gives {symbol}:")  # fmt: skip
+    else:
+        text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
+    yield said(text, point=point, links=links, symbol=symbol)
+    if found is not None:
+        yield from (Equation(moments(equation)), Found(found))
+
+
+def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
+    """The closed polygon, what is read off it, whole reactions."""
+    known = part.calculated | part.borne
+    if part.inner_first:
+        known |= {reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None}
+    vectors = [v for v in part.plan.plan.vectors if v.kind != "inner"]
+    lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
+    yield said(
+        _("The forces make a closed polygon. Two lines are under vectors that are known whole, one is under a vector "
+          "whose line is known:")
+        if explained
+        else _("The forces make a closed polygon:")
+    )  # fmt: skip
+    yield Equation(polygon(part.plan, known, lines))
+    yield from part.subject.figures(
+        "forces", _("The force plan is drawn to scale in figure {figure}."),
+        _("Force plan: {links}; {position}").format(links=links_of(part.links), position=part.caption),
+        part.here.k, part.stem("forces"),
+    )  # fmt: skip
+    unknown = [v for v in vectors if v.symbol not in known]
+    if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
+        yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
+    elif unknown:
+        yield said(_("The lengths of its sides times the scale {mu} give what is unknown yet:"), mu=Symbol("μ", "F"))
+    else:
+        yield said(_("All its vectors are known by now; that it closes is a check."))
+    least = NO_FORCE * part.plan.plan.size
+    for vector in unknown:
+        size = abs(vector.value)
+        yield Found(value(vector.symbol, size if size > least else 0.0, _("N")))
+    if part.plan.full:
+        yield said(_("The whole reactions are:"))
+    for reaction in part.outer:
+        yield from _whole(part, reaction)
+
+
+def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
+    """Of its parts."""
+    names = reaction.by, reaction.on
+    parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
+    along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
+    if along in parts and across in parts:
+        root = SquareRoot(Sum(tuple((1, Square(Leaf(s, parts[s]))) for s in (along, across))))
+        size = abs(complex(reaction.force[part.here.k]))
+        yield Found(Substitution(reaction_symbol(*names), root, size, _("N")))
+
+
+def _guide_between(part: Part) -> Iterable[Block]:
+    """The forces on the one of two links that both its guides push across."""
+    assert part.forces is not None
+    inner = part.forces.inner[0]
+    outer = next(r for r in part.outer if r.pair.slide is not None)
+    link = outer.on
+    own = reaction_symbol(inner.pair.other(link), link)
+    yield said(
+        _("The reaction in the inner pair {pair} is across this guide, so two sizes are unknown in the polygon of the "
+          "forces on one link ({links}), and it gives them:"),
+        pair=inner.pair.name, links=links_of([link]),
+    )  # fmt: skip
+    sought = {own: inner, reaction_symbol(outer.by, link): outer}
+    acting = part.here.acting([link], {})
+    symbols = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
+    yield Equation(vector_sum([*((s, 2) for s in symbols), *((s, 1) for s in sought)]))
+    for symbol, reaction in sought.items():
+        yield Found(value(symbol, abs(complex(reaction.force[part.here.k])), _("N")))
+
+
+def _inner(part: Part) -> Iterable[Block]:
+    """From the forces on one of the two links of each inner pair."""
+    inner = () if part.forces is None else part.forces.inner
+    if len(inner) == 1:
+        (reaction,) = inner
+        yield said(
+            _("The reaction in the inner pair {pair} closes the polygon of the forces on one of its links ({links}):"),
+            pair=reaction.pair.name, links=links_of([reaction.on]),
+        )  # fmt: skip
+        acting = part.here.acting([reaction.on], {})
+        own = reaction_symbol(reaction.by, reaction.on)
+        symbols = [one.symbol for one in acting if not one.couple and one.symbol != own]
+        yield Equation(vector_sum([*((s, 2) for s in symbols), (own, 0)]))
+    elif inner:
+        yield said(_("The reactions in the inner pairs follow from the equilibrium of the links one by one:"))
+    for reaction in inner:
+        size = abs(complex(reaction.force[part.here.k]))
+        yield Found(value(reaction_symbol(reaction.by, reaction.on), size, _("N")))
+
+
+def _place(equation: MomentEquation) -> Iterable[Block]:
+    """Where the reaction of a guide acts."""
+    assert equation.sought is not None
+    found, symbol = by_moments(equation), equation.sought.symbol
+    if found is None:
+        text = _("No other force has a moment about the point {point} ({links}), so {symbol} goes through this point.")
+    elif equation.found is not None and equation.found.acting.couple:
+        text = _("The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
+                 "beside the reaction {symbol}:")  # fmt: skip
+    else:
+        text = _("The equation of moments about the point {point} ({links}) gives how far from it the line of the "
+                 "reaction {symbol} is:")  # fmt: skip
+    yield said(text, point=equation.about, links=links_of(equation.links), symbol=symbol)
+    if found is not None:
+        yield from (Equation(moments(equation)), Found(found))
+
+
+def _balance(part: Part) -> Iterable[Block]:
+    """Which way what balances a driver acts."""
+    for one in part.loaded.acting:
+        if one.pair == DRIVE:
+            way = sense(one.moment) if one.couple else direction(part.subject, one.force)
+            text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} from the axis x.")
+            yield said(text, symbol=one.symbol, way=way)

@@ -1,0 +1,84 @@
+"""Tables of all positions: reactions, what balances the drivers by both ways."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Line, Rows, filled, line, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.forces.words import angle, shown
+from tmm_cli.plans.record import balance_symbol, reaction_symbol
+from tmm_cli.tolerances import NO_DIFFERENCE
+from tmm_cli.vectors import Real
+
+PAIRS = 4  # reactions in one table
+NONE = "—"  # of what there is not in a position
+
+
+def reactions(subject: Subject) -> Iterable[Block]:
+    """Sizes and angles, a few pairs to a table."""
+    found = subject.results.reactions
+    assert found is not None
+    yield said(_("The tables have the reactions of all positions, and the angles from the axis x at which they act."))
+    for first in range(0, len(found.directed), PAIRS):
+        some = found.directed[first : first + PAIRS]
+        head: list[Line] = [line(_("position"))]
+        for r in some:
+            head += [line(reaction_symbol(r.by, r.on), ", ", _("N")), line(_("angle, °"))]
+        caption = _("Reactions in the pairs {pairs}").format(pairs=", ".join(r.pair.name for r in some))
+        columns: list[Real] = []
+        for r in some:
+            assert r.angle is not None
+            columns += [np.where(np.isnan(r.angle), 0.0, np.abs(r.force)), r.angle]
+        yield _table(subject, caption, head, columns, angles=True)
+
+
+def balancing(subject: Subject) -> Iterable[Block]:
+    """Of every driver by the force plan, and what the lever gives for all of them, per unit of the first."""
+    results = subject.results
+    assert results.reactions is not None and results.lever is not None
+    balances, lever = results.reactions.balances, results.lever
+    several = len(balances) > 1
+    symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
+    units = [_("N·m") if b.moment is not None else _("N") for b in balances]
+    told = _("{symbol}, {unit}, by the force plan")
+    head = [line(_("position")), *(filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True))]
+    of_all = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
+    head.append(filled(_("{symbol}, {unit}, by the lever"), symbol=of_all, unit=units[0]))
+    columns = [*(b.generalized for b in balances), lever.balancing]
+    if several:
+        yield said(
+            _("The lever gives what all drivers do together, reduced to the driving link {link}."),
+            link=balances[0].driver.link,
+        )  # fmt: skip
+    else:
+        percent = 100 * lever.difference
+        head.append(line(_("difference, %")))
+        columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
+    caption = _("What balances the driving link") if not several else _("What balances the driven links")
+    yield said(_("Moments that are positive turn counterclockwise."))
+    yield _table(subject, caption, head, columns)
+
+
+def _table(
+    subject: Subject, caption: str, head: Sequence[Line], columns: Sequence[Real], *, angles: bool = False
+) -> Rows:
+    """A row a position. angles: every second column is one."""
+    results = subject.results
+    assert results.motion is not None
+    moving = results.motion.moving
+    rows = []
+    for k, number in enumerate(results.numbers):
+        cells = [line(str(number))]
+        for place, column in enumerate(columns):
+            value = float(column[k]) if moving[k] else np.nan
+            if not np.isfinite(value):
+                text = NONE
+            else:
+                text = angle(subject, value) if angles and place % 2 else shown(subject, value)
+            cells.append(line(text))
+        rows.append(tuple(cells))
+    return Rows(caption, tuple(head), tuple(rows))

@@ -1,0 +1,54 @@
+"""How forces and couples are told: sizes, angles, senses, lists of letters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from tmm_cli.draw.sheets.mechanism import place_of_driver
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Inline, Line
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import FIGURES, fixed
+
+
+def shown(subject: Subject, value: float) -> str:
+    """With as many figures as a result has."""
+    return subject.figures_of(fixed(value, FIGURES))
+
+
+def angle(subject: Subject, radians: float) -> str:
+    """Of a force from x, 0 to 360, in degrees."""
+    return subject.figures_of(f"{round(float(np.degrees(radians)), 1) % 360:.1f}")
+
+
+def direction(subject: Subject, force: complex) -> str:
+    """The same with the sign of degrees."""
+    return f"{angle(subject, float(np.angle(force)))}°"
+
+
+def sense(moment: float) -> str:
+    """Which way a couple turns."""
+    return _("counterclockwise") if moment > 0 else _("clockwise")
+
+
+def listed(parts: Iterable[Inline]) -> Line:
+    """One after another with commas."""
+    found: list[Inline] = []
+    for part in parts:
+        found += [", ", part] if found else [part]
+    return tuple(found)
+
+
+def links_of(names: Sequence[str]) -> str:
+    """Link 4; links 4, 5."""
+    return (_("links {links}") if len(names) > 1 else _("link {links}")).format(links=", ".join(names))
+
+
+def at_position(subject: Subject, k: int) -> str:
+    """Which position, and where the driver stands."""
+    results = subject.results
+    assert results.motion is not None
+    place = place_of_driver(results, float(results.motion.q[k]))
+    return _("position {number}, {place}").format(number=results.numbers[k], place=place)

@@ -1,0 +1,27 @@
+"""Tables of the results as tables of a note: fewer digits, in the note's language."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tmm_cli.note.blocks import Line, Rows
+from tmm_cli.note.context import Subject, printed_unit
+from tmm_cli.results.table import Table
+from tmm_cli.results.terminal import cells
+
+DIGITS = 4
+
+
+def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", digits: int = DIGITS) -> Rows:
+    """The same table in the units of the file; columns in which nothing stands are left out."""
+    units, every = subject.results.problem.units, range(table.rows)
+    columns = [
+        (printed_unit(c.heading(units)), cells(replace(c, digits=digits), units, every), c.dimension)
+        for c in table.columns
+    ]
+    kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
+    shown = [texts if dimension is None else [subject.figures_of(t) for t in texts] for __, texts, dimension in kept]
+    head: Sequence[Line] = [(text,) for text, *__ in kept]
+    rows = tuple(tuple((texts[k],) for texts in shown) for k in every)
+    return Rows(caption or table.title, tuple(head), rows, key)
