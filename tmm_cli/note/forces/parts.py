@@ -13,7 +13,8 @@ from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.moments import LoadedPart, loaded_parts
 from tmm_cli.plans.projections import ForceSum
-from tmm_cli.plans.record import Symbol, reaction_symbol
+from tmm_cli.plans.record import NamedVector, Symbol, reaction_symbol
+from tmm_cli.tolerances import NO_FORCE
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,14 @@ class Part:
     def caption(self) -> str:
         """Of its position."""
         return at_position(self.subject, self.here.k)
+
+    @property
+    def vectors(self) -> list[NamedVector]:
+        """Of the plan without the inner reaction, and without loads that are nothing here."""
+        least = NO_FORCE * self.plan.plan.size
+        return [
+            v for v in self.plan.plan.vectors if v.kind != "inner" and (v.symbol in self.sought or abs(v.value) > least)
+        ]
 
     def stem(self, name: str) -> str:
         """Of its drawing."""
