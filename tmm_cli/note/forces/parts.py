@@ -70,10 +70,13 @@ class Part:
     @property
     def sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
         """Sums along guides of what is known before the force plan is drawn, and the others."""
+        inner = () if self.forces is None else self.forces.inner
+        both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
+        unknown = (self.sought | both) - self.by_moments
         found: tuple[list[ForceSum], list[ForceSum]] = [], []
         for one in self.loaded.sums:
             others = {part.acting.symbol for part in one.parts if part is not one.found}
-            found[bool(others & self.sought - self.by_moments)].append(one)
+            found[bool(others & unknown)].append(one)
         return found
 
     @property

@@ -127,14 +127,16 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
         return
     point, links, symbol = equation.about, links_of(equation.links), equation.sought.symbol
     if found is None:
-        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} = 0.")
+        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
                  "moments about it ({links}) gives {symbol}:")  # fmt: skip
     else:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=point, links=links, symbol=symbol)
-    if found is not None:
+    if found is None:
+        yield Found(value(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N")))
+    else:
         yield from (Equation(moments(equation)), Found(found))
 
 
