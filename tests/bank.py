@@ -1,4 +1,4 @@
-"""Problems of the bank that have dimensions, read, solved and drawn once for all tests of a process."""
+"""Problems of the bank that have dimensions: read, solved, drawn and told in notes once for all tests of a process."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw import sheets
 from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.note import note
+from tmm_cli.note.blocks import Note
 
 NAMES = [  # chains given by pairs alone have no dimensions: test_spatial
     path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "\nstructure:" not in path.read_text(encoding="utf-8")
@@ -39,3 +41,9 @@ def solved(name: str) -> Results:
 def drawn(name: str) -> dict[str, Drawing]:
     """Its sheets by their stems."""
     return dict(sheets(solved(name)))
+
+
+@cache
+def written(name: str) -> Note:
+    """Its note without drawings, which have tests of their own."""
+    return note(solved(name), drawn=False)

@@ -14,7 +14,7 @@ from covering import covered
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pypdf import PdfReader
-from test_commands import SHAPER, tmm
+from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli.draw import sheets
 from tmm_cli.draw.formats import FORMATS
