@@ -164,8 +164,8 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
 
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
-    """Of its force and of its couple: of weights and inertia with the number of the link below the line."""
+    """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
     names = load.name, load.couple_name or load.name
-    if load.kind in ("weight", "inertia"):
+    if load.kind != "load":
         return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
     return Symbol(names[0]), Symbol(names[1])
