@@ -9,7 +9,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.record import Kind, Symbol, balance_symbol, lettered, reaction_symbol
 from tmm_cli.structure.assur import Pair
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import cross, dot, unit
@@ -165,7 +165,7 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
     """Of its force and of its couple: of weights and inertia with the number of the link below the line."""
-    names = load.name, load.couple_name or load.name
     if load.kind in ("weight", "inertia"):
-        return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
-    return Symbol(names[0]), Symbol(names[1])
+        force = lettered("G", load.link) if load.kind == "weight" else lettered("U", load.link)
+        return force, lettered("M", load.link)
+    return Symbol(load.name), Symbol(load.couple_name or load.name)
