@@ -110,7 +110,8 @@ def read(language: str) -> dict[tuple[str | None, str], str]:
 
 def translations(catalog: Catalog) -> dict[tuple[str | None, str], str]:
     """What is translated, by context and message."""
-    return {(m.context, str(m.id)): str(m.string) for m in catalog if m.id and m.string and not m.fuzzy}
+    found = ((m.context, str(m.id), str(m.string)) for m in catalog if m.id and m.string and not m.fuzzy)
+    return {(c.decode() if isinstance(c, bytes) else c, text): said for c, text, said in found}
 
 
 def fields(text: str) -> list[str]:

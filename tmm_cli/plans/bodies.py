@@ -164,8 +164,12 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
 
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
-    """Of its force and of its couple: of weights and inertia with the number of the link below the line."""
-    if load.kind in ("weight", "inertia"):
-        force = lettered("G", load.link) if load.kind == "weight" else lettered("U", load.link)
-        return force, lettered("M", load.link)
-    return Symbol(load.name), Symbol(load.couple_name or load.name)
+    """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
+    if load.kind == "weight":
+        return lettered("G", load.link), lettered("M", load.link)
+    if load.kind == "inertia":
+        return lettered("U", load.link), lettered("M", load.link)
+    names = load.name, load.couple_name or load.name
+    if load.kind != "load":
+        return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
+    return Symbol(names[0]), Symbol(names[1])
