@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import solved
 
-from tmm_cli import load, solve
 from tmm_cli.results.reports.energy import tables
 
 PROBLEMS = Path(__file__).parent.parent / "problems"
@@ -15,6 +15,6 @@ PROBLEMS = Path(__file__).parent.parent / "problems"
 
 @pytest.mark.parametrize("name, header", [("crank-slider", "dJ/dphi, SI"), ("cylinder", "dm/ds, SI")])
 def test_its_derivative_by_the_driver_stands_beside_the_reduced_inertia(name, header):
-    results = solve(load(PROBLEMS / f"{name}.yaml"))
+    results = solved(name)
     column = next(column for column in next(iter(tables(results))).columns if column.header == header)
     assert np.array_equal(column.array, results.energy.slope)
