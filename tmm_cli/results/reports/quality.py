@@ -97,5 +97,5 @@ def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
     return (
         Column(N_("what"), [name for name, __, __ in rows]),
         Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
-        Column(N_("unit"), [units.symbol(dim) for __, __, dim in rows]),
+        Column(N_("unit"), [units.spelt(dim) for __, __, dim in rows]),
     )
