@@ -44,7 +44,7 @@ def _groups(results: Results) -> Drawn:
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (_scheme, 100), "groups": (_groups, 60), "synthesis": (synthesised, 110),
+    "structure": (_scheme, 100), "groups": (_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {

@@ -36,6 +36,8 @@ from tmm_cli.note.math import Letter, Node
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
+WHOLE = 13  # rows of a table that is not parted between pages
+
 
 def html(note: Note) -> bytes:
     """The page in UTF-8."""
@@ -132,8 +134,9 @@ class Writer:
             ) + "</tr>\n"
             for row in rows.rows
         )  # fmt: skip
+        whole = ' class="whole"' if len(rows.rows) <= WHOLE else ""
         return (
-            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table>\n<thead><tr>{head}</tr></thead>\n'
+            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n<thead><tr>{head}</tr></thead>\n'
             f"<tbody>{body}</tbody></table>"
         )
 
