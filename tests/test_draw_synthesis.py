@@ -51,7 +51,7 @@ CASES = {
        for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.2, 3.0), (1.8, 1.5))},
     **{f"shaper {k}": (lambda k: drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=0.4), (k,))
        for k in (1.1, 1.5, 2.0)},
-    **{f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, frame=0.2), (k,))
+    **{f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, OC=0.2), (k,))
        for k in (1.1, 1.5, 2.0)},
     "pivots": (lambda: drawn(
         coupler_positions, places=(0j, 0.06 + 0.06j, 0.09 + 0.14j), angles=tuple(np.radians([0.0, 20, 60])),

@@ -1,12 +1,22 @@
 """Sentences are said in the language of who reads them, and files for machines in English."""
 
 import ast
+import re
 from collections.abc import Iterator
+from gettext import NullTranslations
+from pathlib import Path
 
 import pytest
+import typer
 
 from tests import messages
-from tmm_cli.language import N_, Phrase, _, language, spoken, translated
+from tmm_cli import load, solve
+from tmm_cli.cli.common import each
+from tmm_cli.cli.opening import opened
+from tmm_cli.cli.reporting import bounds_of
+from tmm_cli.cli.talk import speaking
+from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, spoken, translated
+from tmm_cli.results.output import write_results
 
 
 def said_at_import(tree: ast.AST) -> Iterator[int]:
@@ -54,3 +64,50 @@ def test_a_translation_has_the_fields_of_its_message(tongue):
 @pytest.mark.parametrize("tongue", messages.TRANSLATED)
 def test_what_the_program_reads_is_made_of_the_catalogue(tongue):
     assert messages.read(tongue) == messages.translations(messages.catalogue(tongue))
+
+
+class Cyrillic(NullTranslations):
+    """Translates everything that is marked: each Latin letter into a Cyrillic one, fields as they are."""
+
+    def gettext(self, message):
+        return "".join(
+            part if part.startswith("{") else re.sub("[A-Za-z]", "ж", part) for part in re.split(r"({[^{}]*})", message)
+        )
+
+    def pgettext(self, context, message):
+        return self.gettext(message)
+
+
+@pytest.fixture
+def all_translated(monkeypatch):
+    """Russian in which nothing that is marked stays English."""
+    monkeypatch.setitem(CATALOGUES, "ru", Cyrillic())
+
+
+@pytest.mark.parametrize("problem", ["shaper", "crank-rocker-synthesis", "planetary-dwell-press"])
+def test_files_for_machines_are_the_same_in_every_language(problem, tmp_path, all_translated):
+    found = {}
+    for tongue in ("en", "ru"):
+        with spoken(tongue):
+            results = solve(load(f"problems/{problem}.yaml"))
+            folder = write_results(results, tmp_path / tongue, digits=bounds_of(results, True)).folder
+        found[tongue] = {file.name: file.read_bytes() for file in folder.iterdir()}
+    assert len(found["en"]) > 5
+    assert found["en"] == found["ru"]
+
+
+def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tmp_path, capfd):
+    file = tmp_path / "press.yaml"
+    text = Path("problems/crank-slider.yaml").read_text().replace("tmm: 1", "tmm: 1\nlang: ru", 1)
+    file.write_text(text, encoding="utf-8")
+    heard = []
+
+    def work(name):
+        heard.append((opened(name), language())[1])
+        return 0
+
+    for asked, files in (None, [str(file), "problems/crank-slider.yaml"]), ("sr", [str(file)]):
+        with pytest.raises(typer.Exit):
+            speaking(lambda files=files: each(files, work))(lang=asked)
+    assert heard == ["ru", "en", "sr"]
+    assert language() == "en"

@@ -107,9 +107,9 @@ def test_k_and_two_places_of_the_end_come_back(side):
     a = random(1, 7)
     k = k_of(0.05 + 2.5 * a[0])
     b1, b2 = a[1] - 0.5 + 1j * a[2], a[3] + 1 + 1j * a[4]
-    task = slotted_lever.Task(b1=b1, b2=b2, k=k, side=side, frame=1.0)
+    task = slotted_lever.Task(b1=b1, b2=b2, k=k, side=side, OC=1.0)
     longest = slotted_lever.find(task).longest
-    found = slotted_lever.find(replace(task, frame=longest * (0.05 + 0.94 * a[5])))
+    found = slotted_lever.find(replace(task, OC=longest * (0.05 + 0.94 * a[5])))
     places = lever_comes_back(found, k, side)
     for place, wanted in zip(places[:: -1 if side > 0 else 1], (b1, b2), strict=True):
         assert np.max(np.abs(place - wanted) / (found.lever + np.abs(found.c))) < MET
@@ -119,7 +119,7 @@ def test_swing_and_length_come_back_with_the_frame_within_bounds():
     a = random(2, 6)
     swing, length = 0.05 + 2.5 * a[0], 0.02 * 100 ** a[1]
     within = (length * 0.1, length * (0.2 + a[2]))
-    task = slotted_lever.Task(length=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within)
+    task = slotted_lever.Task(CB=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within)
     found = slotted_lever.find(task)
     assert np.all((found.frame >= within[0]) & (found.frame <= within[1]))
     assert np.all(found.frame + found.crank <= length * (1 + 1e-15))
@@ -178,7 +178,7 @@ def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
 def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
     # OA = 110, OC = 350, CD = 650 mm: sin(theta/2) = OA/OC, H = 2 CD OA/OC
     theta = 2 * math.asin(110 / 350)
-    f = shaper.find(shaper.Task(stroke=1.3 * 110 / 350, k=float(k_of(theta)), frame=0.35, rod=0.21))
+    f = shaper.find(shaper.Task(stroke=1.3 * 110 / 350, k=float(k_of(theta)), OC=0.35, DE=0.21))
     assert (f.crank, f.lever) == (pytest.approx(0.11, rel=1e-14), pytest.approx(0.65, rel=1e-14))
 
 

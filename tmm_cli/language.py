@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 if TYPE_CHECKING:
-    from gettext import GNUTranslations
+    from gettext import NullTranslations
 
 LANGUAGES: Final = ("en", "ru", "sr")
 ENGLISH: Final = LANGUAGES[0]
 LOCALE: Final = Path(__file__).with_name("locale")
 DOMAIN: Final = "tmm"
+CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by language
 
 Found = TypeVar("Found")
 
@@ -70,13 +70,14 @@ def _in_context(context: str, message: str) -> str:
     return message if language == ENGLISH or not message else _catalogue(language).pgettext(context, message)
 
 
-@cache
-def _catalogue(language: str) -> GNUTranslations:
+def _catalogue(language: str) -> NullTranslations:
     """The translations of a language, read once."""
-    from gettext import GNUTranslations  # English needs none
+    if language not in CATALOGUES:
+        from gettext import GNUTranslations  # English needs none
 
-    with (LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.mo").open("rb") as stream:
-        return GNUTranslations(stream)
+        with (LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.mo").open("rb") as stream:
+            CATALOGUES[language] = GNUTranslations(stream)
+    return CATALOGUES[language]
 
 
 def language() -> str:

@@ -7,6 +7,8 @@ from importlib import import_module
 
 import typer
 
+from tmm_cli.cli.talk import speaking
+
 
 def add_commands(app: typer.Typer, package: str, lines: Mapping[str, str], words: Sequence[str]) -> None:
     """Of the commands of a package, each with its line of help, the one that the words of a command line ask for.
@@ -24,7 +26,7 @@ def add_commands(app: typer.Typer, package: str, lines: Mapping[str, str], words
     if hasattr(module, "group"):
         app.add_typer(module.group(further))
     else:
-        app.command(name)(getattr(module, name))
+        app.command(name)(speaking(getattr(module, name)))
 
 
 def _listed() -> None:

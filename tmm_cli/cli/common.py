@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import Progress, track
 
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
-from tmm_cli.language import _
+from tmm_cli.language import _, language, spoken
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import folder_name
 
@@ -68,7 +68,7 @@ def each(
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")
         try:
-            with refusing(as_json):
+            with spoken(language()), refusing(as_json):
                 code = work(file)
         except typer.Exit as refused:
             code = refused.exit_code

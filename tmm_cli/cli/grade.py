@@ -14,7 +14,7 @@ import typer
 
 from tmm_cli.cli.common import bars, console, refusing
 from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say, speak_as
 from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
@@ -64,7 +64,7 @@ def grade(
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
     """
     with refusing():
-        task = read_task(read_file(file))
+        task = read_task(speak_as(read_file(file)))
         if template is not None:
             write_template(task, template)
             say(_("written: {files}").format(files=template))

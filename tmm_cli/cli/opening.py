@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import say, speak_as
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
@@ -22,7 +22,7 @@ def opened(
 
     positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
     """
-    problem = problem_of(with_settings(read_file(file), settings or ()))
+    problem = problem_of(with_settings(speak_as(read_file(file)), settings or ()))
     introduce(problem)
     if digits:
         afford(problem.whole, positions, digits=True)
@@ -40,7 +40,7 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
     from tmm_cli.grading.task import read_task
 
     try:
-        values = variant_in(read_table(variants, read_task(read_file(file))), variant)
+        values = variant_in(read_table(variants, read_task(speak_as(read_file(file)))), variant)
     except ProblemError as error:
         raise (error if error.file else error.located(variants)) from None
     return [*(f"{name}={text}" for name, text in values.items()), *given]

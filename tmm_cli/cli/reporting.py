@@ -10,8 +10,8 @@ from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, introduce
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say
-from tmm_cli.language import _
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say, speak_as
+from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import count, problem_of, redrive, solve, structure_of
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.build_chain import build_chain
@@ -46,7 +46,7 @@ def computed(
     drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
     settings: other values of parameters; digits, drawings: what will be asked of the results.
     """
-    tree = with_settings(read_file(file), settings or ())
+    tree = with_settings(speak_as(read_file(file)), settings or ())
     if is_chain(tree):
         return count(build_chain(tree))
     problem = problem_of(tree)
@@ -100,7 +100,8 @@ def checked(results: Results | ChainResults) -> int:
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
     """The content of result.json on standard output, as it comes."""
-    sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
+    with spoken(ENGLISH):
+        sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 
 def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say
-from tmm_cli.language import _
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say, speak_as
+from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
@@ -45,8 +45,9 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
 
         folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
-            for table in tables_of(found, measured, units, 15):
-                staged.write(f"{table.name}.csv", csv_text(table, units))
+            with spoken(ENGLISH):
+                for table in tables_of(found, measured, units, 15):
+                    staged.write(f"{table.name}.csv", csv_text(table, units))
             for drawing, picture in drawings(sheets(title, found.outcome, results, units, found.names), say):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
@@ -58,7 +59,7 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
 
 def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    tree = with_settings(read_file(file), settings or ())
+    tree = with_settings(speak_as(read_file(file)), settings or ())
     if "synthesis" not in tree.data:
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)

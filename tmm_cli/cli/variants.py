@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import console, progress, refusing
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import say, speak_as
 from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
 from tmm_cli.grading.choices import with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
@@ -45,7 +45,7 @@ def variants(
 ) -> None:  # fmt: skip
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
-        task = read_task(with_vary(read_file(file), vary or ()))
+        task = read_task(with_vary(speak_as(read_file(file)), vary or ()))
         variety = Variety(task)
         if students is None:
             table = draw(variety, seed, count)

@@ -17,6 +17,7 @@ from typing import Any
 import tmm_cli
 from tmm_cli.grading.record import Mark, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.task import Task
+from tmm_cli.language import language
 
 NAMES = tuple(field.name for field in fields(Mark))
 
@@ -24,13 +25,13 @@ NAMES = tuple(field.name for field in fields(Mark))
 def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
     """A digest of all that the marks of a student come from: program, task, variant, what was handed in."""
     row = table.rows.get(submission.student)
-    return _digest(_program(), task.tree.data, table.names, row, submission)
+    return _digest(_program(), language(), task.tree.data, table.names, row, submission)
 
 
 @cache
 def _program() -> str:
     """Other marks may come from another version of it."""
-    files = sorted(Path(tmm_cli.__file__).parent.rglob("*.py"))
+    files = sorted(Path(tmm_cli.__file__).parent.rglob("*.[pm][yo]"))
     return _digest(*(file.read_bytes() for file in files))
 
 

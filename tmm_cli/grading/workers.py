@@ -12,7 +12,7 @@ from importlib import import_module
 from multiprocessing import get_context
 from typing import Any
 
-from tmm_cli.language import _
+from tmm_cli.language import _, language, speaking
 from tmm_cli.problem.errors import ProblemError, quote
 
 RETRIES = 3  # of what a cluster failed at
@@ -42,7 +42,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         yield from here(jobs, stopped)
         return
     with ProcessPoolExecutor(count, get_context("spawn"), begin) as pool:
-        futures = {pool.submit(job): number for number, job in enumerate(jobs)}
+        futures = {pool.submit(speaking, language(), job): number for number, job in enumerate(jobs)}
         for future in as_completed(futures):
             if not future.cancelled():
                 try:
@@ -74,7 +74,10 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     except (OSError, ValueError):
         raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
     with client:
-        futures = {client.submit(job, retries=RETRIES, pure=False): number for number, job in enumerate(jobs)}
+        futures = {
+            client.submit(speaking, language(), job, retries=RETRIES, pure=False): number
+            for number, job in enumerate(jobs)
+        }
         for future in distributed.as_completed(futures, loop=client.loop):
             yield futures[future], future.result()
             if stopped():

@@ -248,13 +248,12 @@ def plain(value: float, figures: int) -> str:
 
 
 def fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """A result with so many figures, its zeros at the end kept: they are true. terms: what a zero is the sum of."""
+    """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
     power = math.floor(math.log10(abs(rounded(value, figures))))
     if -4 <= power < 7:
-        decimals = figures - 1 - power
-        return f"{value:.{max(decimals, 0)}f}"
+        return f"{value:.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
 
@@ -269,4 +268,4 @@ def result_node(text: str, unit: str, say: Callable[[str], str] = str) -> paper.
     """A result as it stands at the end of its formula, with its unit."""
     digits = text[1:] if text.startswith("-") else text
     shown = paper.row("−", _figures(digits, say)) if text.startswith("-") else _figures(digits, say)
-    return paper.row(shown, paper.Words(f" {unit}" if unit not in ("", "°") else unit))
+    return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown

@@ -264,6 +264,7 @@ class File(Strict):
     """A problem of planar lever mechanisms."""
 
     tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")

@@ -54,6 +54,7 @@ class SpatialFile(Strict):
     """A chain in space without dimensions: only its structure is counted."""
 
     tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     structure: SpatialStructure

@@ -69,12 +69,16 @@ class ValueReader:
                 allowed=_("zero or more") if zero else _("more than zero"),
             )  # fmt: skip
         if 0 < number < SMALLEST and not (zero and want == NUMBER):  # a share that may be zero divides nothing
-            least = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
-            raise ProblemError(
-                _("this is too small for a mechanism"), path=path, found=quote(value),
-                allowed=_("{least} or more").format(least=least),
-            )  # fmt: skip
+            raise self.too_small(value, SMALLEST, want, path)
         return number
+
+    def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
+        """Of a value below the least (SI) that a mechanism can have."""
+        shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
+        return ProblemError(
+            _("this is too small for a mechanism"), path=path, found=quote(value),
+            allowed=_("{least} or more").format(least=shown),
+        )  # fmt: skip
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
         """Two coordinates."""

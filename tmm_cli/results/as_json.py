@@ -12,6 +12,7 @@ from typing import Any
 from tmm_cli.analysis.checks import checks
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
@@ -70,7 +71,8 @@ LARGE = ("positions", "kinematics", "forces", "lever", "energy")
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
     """The whole content of result.json as plain data."""
-    return {key: plain(part) for key, part in sections(results)}
+    with spoken(ENGLISH):
+        return {key: plain(part) for key, part in sections(results)}
 
 
 def sections(results: Results | ChainResults, digits: dict[str, Any] | None = None) -> Iterator[tuple[str, Any]]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.digits import AccuracyReport
 from tmm_cli.results.files import Staged, folder_of
@@ -55,11 +56,13 @@ def write_results(
     folder, kept = folder_of(out, results.problem.name, part)
     shown = walk(results) if digits is None else digits.with_bounds(walk(results))
     with Staged(folder) as staged:
-        for table in shown:
-            staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
+        with spoken(ENGLISH):
+            for table in shown:
+                staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
         for name, picture in drawings or ():
             staged.write(name, (picture,))
         names = sorted(staged.names)
         content = sections(results, None if digits is None else digits.json())
-        staged.write("result.json", json_text(chain(content, [("part", part)] if part else [], [("files", names)])))
+        with spoken(ENGLISH):
+            staged.write("result.json", json_text(chain(content, [("part", part)] if part else [], [("files", names)])))
     return Written(folder, staged.removed, kept)

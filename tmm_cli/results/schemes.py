@@ -23,16 +23,16 @@ Written = Sequence[tuple[Path, bool] | None]
 def schemes_table(found: Sequence[Scheme], links: int, mobility: int, written: Written | None) -> Table:
     """Number, formula, groups, links and pairs, file."""
     columns = [
-        Column(_("scheme"), [str(k + 1) for k in range(len(found))]),
-        Column(_("formula of structure"), [s.formula for s in found]),
-        Column(_("groups"), [", ".join(s.types) for s in found]),
-        Column(_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
-        Column(_("turning pairs"), [_pairs(s, "R") for s in found]),
-        Column(_("sliding pairs"), [_pairs(s, "P") for s in found]),
+        Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
+        Column(N_("formula of structure"), [s.formula for s in found]),
+        Column(N_("groups"), [", ".join(s.types) for s in found]),
+        Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
+        Column(N_("turning pairs"), [_pairs(s, "R") for s in found]),
+        Column(N_("sliding pairs"), [_pairs(s, "P") for s in found]),
     ]
     if written is not None:
         none = _("none: no pose was found that assembles")
-        columns.append(Column(_("file"), [one[0].name if one else none for one in written]))
+        columns.append(Column(N_("file"), [one[0].name if one else none for one in written]))
     title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
     return Table("schemes", title, tuple(columns), notes=(_("{count} schemes").format(count=len(found)),))
 
@@ -47,8 +47,8 @@ def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> 
     most = max((len(assortment) for assortment in counts), default=0)
     names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
     columns = [Column(name, [a[k] if k < len(a) else 0 for a in counts], NUMBER) for k, name in enumerate(names)]
-    columns.append(Column(_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
-    columns.append(Column(_("of them fractionated"), [parts for __, parts in counts.values()], NUMBER))
+    columns.append(Column(N_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
+    columns.append(Column(N_("of them fractionated"), [parts for __, parts in counts.values()], NUMBER))
     title = _("Kinematic chains of {links} links, W = {mobility}: {count}").format(
         links=links, mobility=mobility, count=len(found)
     )

@@ -4,7 +4,7 @@ tmm_cli.synthesis).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError, WithJsonSchema
@@ -15,6 +15,8 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import VALUE, Name, Strict, Value, checked_value
 from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Tree
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import Dimension
 from tmm_cli.synthesis import TASKS, block
 
 
@@ -38,19 +40,27 @@ class Block(Strict):
     )
 
 
-def one_of(shape: Block, sets: Sequence[tuple[str, ...]], what: str) -> tuple[str, ...]:
-    """Which of these sets of keys is given, and no more of them. Raises ProblemError, which says that they do not
-    determine `what`.
+def one_of(
+    shape: Block, sets: Sequence[tuple[str, ...]], what: str, others: Sequence[str] = ()
+) -> tuple[str, ...]:  # fmt: skip
+    """Which of these sets of keys is given, and none else of them, nor of others. Raises ProblemError, which says that
+    they do not determine `what`.
     """
-    keys = dict.fromkeys(key for one in sets for key in one)
+    keys = dict.fromkeys([*(key for one in sets for key in one), *others])
     here = tuple(key for key in keys if getattr(shape, key) is not None)
     for one in sets:
         if set(one) == set(here):
             return one
     raise ProblemError(
         _("these keys do not determine {what}").format(what=what), found=", ".join(here) or "none of them",
-        allowed="; or ".join(" and ".join(one) for one in sets), key=True,
+        allowed="; or ".join(" and ".join(one) or "nothing" for one in sets), key=True,
     )  # fmt: skip
+
+
+def numbers(shape: Block, values: ValueReader, wants: Mapping[str, Dimension]) -> dict[str, Any]:
+    """The values in SI of those of these keys that are given. Raises ProblemError."""
+    given = {key: value for key in wants if (value := getattr(shape, key)) is not None}
+    return {key: values.number(value, wants[key], (key,)) for key, value in given.items()}
 
 
 class OfTheFile(Exception):  # noqa: N818  it says whose the error is
@@ -65,6 +75,7 @@ class SynthesisFile(Strict):
     """A problem file without a linkage, for `tmm synthesis` alone."""
 
     tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import ValueReader
@@ -50,12 +48,7 @@ class Bounded(ValueReader):
         sized = isinstance(key, str) and key not in PLACES and (want in SIZED or key in SHARES)
         if not sized or _exempt(path) or found >= SMALLEST:
             return found
-        low = f"{self.units.from_si(SMALLEST, want):.6g} {self.units.symbol(want)}".rstrip()
-        raise ProblemError(
-            _("this is too small for a mechanism"), path=path,
-            found=quote(value) if isinstance(value, str) else str(value),
-            allowed=_("{least} or more").format(least=low),
-        )  # fmt: skip
+        raise self.too_small(value, SMALLEST, want, path)
 
 
 def _exempt(path: Path) -> bool:

@@ -154,11 +154,11 @@ def output_angles(results: Results, phi: Any, near: Any) -> Any:
     return near + np.angle((c - d) / (d - a) * np.exp(-1j * np.asarray(near)))
 
 
-def transmission(results: Results, phi: Any) -> Any:
-    """Transmission angles (rad, acute) at those phi of AB."""
-    found = pins(results, phi)
+def transmission(phi: float, results: Results) -> float:
+    """The transmission angle (rad, acute) where AB stands at phi from AD."""
+    found = pins(results, np.array([phi]))
     if found is None:
-        return np.full(np.shape(phi), np.nan)
+        return float("nan")
     _, b, c, d = found
-    turned = (c - b) * np.conj(c - d)
-    return np.arctan2(np.abs(turned.imag), np.abs(turned.real))
+    turned = ((c - b) * np.conj(c - d))[0]
+    return float(np.arctan2(np.abs(turned.imag), np.abs(turned.real)))

@@ -41,9 +41,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     found = by_moments(plan.equation, unit)
     if plan.equation.sought is None and found is not None:
         yield Found(found)
-        yield said(
-            _("What all drivers do at their speeds is in it as the force plan gives it: the lever is in equilibrium.")
-        )
+        yield from _of_several(subject, k, unit)
         return
     if found is None:
         yield said(_("Nothing has a moment about the pole: nothing has to be balanced."))
@@ -91,7 +89,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         )  # fmt: skip
     for load, size in turned:
         symbol = load_symbols(load)[1]
-        own = Product((Leaf(symbol, abs(float(load.moment[k]))), _ratio(subject, load, k)))
+        couple = Leaf(symbol, abs(float(load.moment[k])))
+        own = Product((couple, *_ratio(subject, load, k)))
         yield Found(Substitution(symbol.primed, own, size, _("N·m") if turns_of(subject) else _("N")))
 
 
@@ -100,18 +99,38 @@ def turns_of(subject: Subject) -> bool:
     return subject.results.linkage.driver.kind == "turn"
 
 
-def _ratio(subject: Subject, load: Applied, k: int) -> Expression:
-    """ω of the link over that of the driver; a number where that is at rest."""
+def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
+    """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
     motion, driver = subject.results.motion, subject.results.linkage.driver
     assert motion is not None
-    first, rate = (
-        abs(float(motion.link(load.link).first[k])),
-        abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k])),
-    )
-    if load.link == driver.link or not rate:
-        return Leaf(Symbol("i", load.link + driver.link), first)
+    rate = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
+    if load.link == driver.link and turns_of(subject):
+        return ()
+    if not rate:
+        return (Leaf(Symbol("i", load.link), abs(float(motion.link(load.link).first[k]))),)
     omega = Leaf(Symbol("ω", load.link), abs(float(motion.link(load.link).omega[k])))
-    return Quotient(omega, Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate))
+    return (Quotient(omega, Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate)),)
+
+
+def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
+    """What several drivers do together, each in the ratio of its speed to that of the first."""
+    results = subject.results
+    motion, reactions, lever = results.motion, results.reactions, results.lever
+    assert motion is not None and reactions is not None and lever is not None
+    first, terms = reactions.balance, list[tuple[int, Expression]]()
+    for balance in reactions.balances:
+        driver = balance.driver.link
+        symbol = balance_symbol(driver, several=True, turns=balance.moment is not None)
+        own = Leaf(symbol, float(balance.generalized[k]))
+        ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
+        terms.append((1, own if balance is first else Product((own, ratio))))
+    name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
+    yield said(
+        _("The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
+          "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"),
+        link=first.driver.link, i=Symbol("i"),
+    )  # fmt: skip
+    yield Found(Substitution(name, Sum(tuple(terms)), float(lever.balancing[k]), unit))
 
 
 def _compared(subject: Subject, k: int) -> Iterable[Block]:

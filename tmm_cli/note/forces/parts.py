@@ -12,6 +12,7 @@ from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.moments import LoadedPart, loaded_parts
+from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import Symbol, reaction_symbol
 
 
@@ -44,10 +45,40 @@ class Part:
         return [one for one in self.loaded.acting if one.symbol not in self.sought and one.pair != DRIVE]
 
     @property
+    def by_moments(self) -> frozenset[Symbol]:
+        """What equations of moments give."""
+        return frozenset(e.sought.symbol for e in self.loaded.equations if e.sought and not e.sought.arm)
+
+    @property
     def calculated(self) -> frozenset[Symbol]:
-        """What equations of moments and of projections give."""
-        found = {e.sought.symbol for e in self.loaded.equations if e.sought and not e.sought.arm}
-        return frozenset(found | {s.found.acting.symbol for s in self.loaded.sums})
+        """What is found before the force plan is drawn."""
+        return self.by_moments | {s.found.acting.symbol for s in self.sums[0]}
+
+    @property
+    def borne(self) -> frozenset[Symbol]:
+        """Vectors of the plan that are known before it; not what balances a driver."""
+        drives = {one.symbol for one in self.loaded.acting if one.pair == DRIVE}
+        return frozenset(v.symbol for v in self.plan.plan.vectors) - self.sought - drives
+
+    @property
+    def guided(self) -> frozenset[Symbol]:
+        """What acts along a line that is known: reactions of guides and teeth, forces of drivers."""
+        outer = {reaction_symbol(r.by, r.on) for r in self.outer if r.pair.slide is not None or not r.pair.lower}
+        return frozenset(outer | {one.symbol for one in self.loaded.acting if one.pair == DRIVE})
+
+    @property
+    def sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
+        """Sums along guides of what is known before the force plan is drawn, and the others."""
+        found: tuple[list[ForceSum], list[ForceSum]] = [], []
+        for one in self.loaded.sums:
+            others = {part.acting.symbol for part in one.parts if part is not one.found}
+            found[bool(others & self.sought - self.by_moments)].append(one)
+        return found
+
+    @property
+    def inner_first(self) -> bool:
+        """Whether a guide between its two links and one that holds it leave a third unknown to a plan of both."""
+        return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 
     @property
     def at_once(self) -> bool:

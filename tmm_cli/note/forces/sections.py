@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _
@@ -14,8 +15,11 @@ from tmm_cli.note.forces.words import direction, links_of, listed, sense
 from tmm_cli.plans.bodies import DRIVE, Acting
 from tmm_cli.plans.leads import Lead, leads_of
 from tmm_cli.plans.moments import MomentEquation
+from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import Symbol, reaction_symbol
 from tmm_cli.tolerances import NO_FORCE
+
+SIZES = 2  # that a closed polygon gives
 
 
 def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
@@ -30,30 +34,41 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
             _("There is no point about which one unknown alone has a moment, so the equations of equilibrium of all "
               "these links are solved together. As a check, the moments on each link come to nothing:")
         )  # fmt: skip
-    for equation in part.loaded.equations:
-        if equation.sought is None or not equation.sought.arm:
-            yield from _moments(equation)
-    for forces in part.loaded.sums:
-        node, found = along_guide(forces)
-        yield said(
-            _("The projections of the forces (link {link}) on the guide {guide} give {symbol}; {angles} are the acute "
-              "angles between the forces and the guide:"),
-            guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
-        )  # fmt: skip
-        yield from (Equation(node), Found(found))
+    ready, later = part.sums
+    equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
+    for equation in (e for e in equations if not e.special):
+        yield from _moments(equation)
+    yield from chain.from_iterable(map(_projections, ready))
+    for equation in (e for e in equations if e.special):  # what the sums give has moments there
+        yield from _moments(equation)
+    if part.inner_first:
+        yield from _guide_between(part)
     yield from _force_plan(part, explained=first)
-    yield from _inner(part)
+    if not part.inner_first:
+        yield from _inner(part)
+    yield from chain.from_iterable(map(_projections, later))
     for equation in part.loaded.equations:
         if equation.sought is not None and equation.sought.arm:
             yield from _place(equation)
     yield from _balance(part)
 
 
+def _projections(forces: ForceSum) -> Iterable[Block]:
+    """A sum along a guide."""
+    node, found = along_guide(forces)
+    yield said(
+        _("The projections of the forces (link {link}) on the guide {guide} give {symbol}; {angles} are the acute "
+          "angles between the forces and the guide:"),
+        guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
+    )  # fmt: skip
+    yield from (Equation(node), Found(found))
+
+
 def _taken_apart(part: Part) -> Iterable[Block]:
     """What acts, what is unknown of the outer reactions, and a figure."""
     given = listed(dict.fromkeys(one.symbol for one in part.given))
     if part.forces is None:
-        yield said(_("The driving link is taken last. Known on it: {given}."), given=given or _("nothing"))
+        yield said(_("The driving link is taken last. Known on it: {given}. Sought:"), given=given or _("nothing"))
     elif given:
         yield said(
             _("The group {group} is taken apart from the mechanism. Known on its links: {given}. Sought:"),
@@ -125,10 +140,11 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
 
 def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     """The closed polygon, what is read off it, whole reactions."""
+    known = part.calculated | part.borne
+    if part.inner_first:
+        known |= {reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None}
     vectors = [v for v in part.plan.plan.vectors if v.kind != "inner"]
-    known = frozenset(v.symbol for v in vectors if v.symbol not in part.sought) | part.calculated
-    guided = (reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None or not r.pair.lower)
-    lines = frozenset(guided) | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
+    lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield said(
         _("The forces make a closed polygon. Two lines are under vectors that are known whole, one is under a vector "
           "whose line is known:")
@@ -142,8 +158,8 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
         part.here.k, part.stem("forces"),
     )  # fmt: skip
     unknown = [v for v in vectors if v.symbol not in known]
-    if unknown and part.at_once:
-        yield said(_("It closes with the reactions that were found together:"))
+    if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
+        yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
     elif unknown:
         yield said(_("The lengths of its sides times the scale {mu} give what is unknown yet:"), mu=Symbol("μ", "F"))
     else:
@@ -167,6 +183,26 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
         root = SquareRoot(Sum(tuple((1, Square(Leaf(s, parts[s]))) for s in (along, across))))
         size = abs(complex(reaction.force[part.here.k]))
         yield Found(Substitution(reaction_symbol(*names), root, size, _("N")))
+
+
+def _guide_between(part: Part) -> Iterable[Block]:
+    """The forces on the one of two links that both its guides push across."""
+    assert part.forces is not None
+    inner = part.forces.inner[0]
+    outer = next(r for r in part.outer if r.pair.slide is not None)
+    link = outer.on
+    own = reaction_symbol(inner.pair.other(link), link)
+    yield said(
+        _("The reaction in the inner pair {pair} is across this guide, so two sizes are unknown in the polygon of the "
+          "forces on one link ({links}), and it gives them:"),
+        pair=inner.pair.name, links=links_of([link]),
+    )  # fmt: skip
+    sought = {own: inner, reaction_symbol(outer.by, link): outer}
+    acting = part.here.acting([link], {})
+    symbols = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
+    yield Equation(vector_sum([*((s, 2) for s in symbols), *((s, 1) for s in sought)]))
+    for symbol, reaction in sought.items():
+        yield Found(value(symbol, abs(complex(reaction.force[part.here.k])), _("N")))
 
 
 def _inner(part: Part) -> Iterable[Block]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import Assemblies, GroupAssemblies, listed
-from tmm_cli.language import _
+from tmm_cli.language import N_, Phrase, _
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table
@@ -57,15 +57,15 @@ def _table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results
     every = group.assemblies
     names = list(every[0].points) if every else []
     columns = [
-        Column(_("group"), [group.group.title] * len(every)),
-        Column(_("assembly"), [str(k + 1) for k in range(len(every))]),
-        Column(_("that of"), [_("sketch") if a.of_sketch else "" for a in every]),
-        Column(_("margin"), [a.margin for a in every], NUMBER, digits=3),
-        *(Column(_("angle of {link}").format(link=n), [a.angles[n] for a in every], ANGLE) for n in group.group.links),
+        Column(N_("group"), [group.group.title] * len(every)),
+        Column(N_("assembly"), [str(k + 1) for k in range(len(every))]),
+        Column(N_("that of"), [_("sketch") if a.of_sketch else "" for a in every]),
+        Column(N_("margin"), [a.margin for a in every], NUMBER, digits=3),
+        *(Column(Phrase("angle of {link}", link=n), [a.angles[n] for a in every], ANGLE) for n in group.group.links),
     ]
     for name in names:
-        columns.append(Column(_("{point} x").format(point=name), [a.points[name].real for a in every], LENGTH))
-        columns.append(Column(_("{point} y").format(point=name), [a.points[name].imag for a in every], LENGTH))
+        columns.append(Column(Phrase("{point} x", point=name), [a.points[name].real for a in every], LENGTH))
+        columns.append(Column(Phrase("{point} y", point=name), [a.points[name].imag for a in every], LENGTH))
     title = _("Real assemblies of {group}, {place}: {count}").format(
         group=group.group.title, count=len(every), place=place(results.problem, here.q, here.number)
     )

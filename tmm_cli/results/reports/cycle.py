@@ -69,7 +69,7 @@ def tables(results: Results) -> Iterable[Table]:
         columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(_("state"), states(results)))
+        columns.append(Column(N_("state"), states(results)))
     yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage),))
 
 
@@ -93,11 +93,11 @@ def _balance(results: Results) -> Iterable[Column]:
     if len(reactions.balances) == 1:
         balance = reactions.balance
         if balance.kind == "moment":
-            yield Column(_("M_b, force plan"), balance.moment, MOMENT)
-            yield Column(_("M_b, lever"), lever.balancing, MOMENT)
+            yield Column(N_("M_b, force plan"), balance.moment, MOMENT)
+            yield Column(N_("M_b, lever"), lever.balancing, MOMENT)
         else:
-            yield Column(_("F_b, force plan"), balance.force, FORCE)
-            yield Column(_("F_b, lever"), lever.balancing / balance.arm, FORCE)
+            yield Column(N_("F_b, force plan"), balance.force, FORCE)
+            yield Column(N_("F_b, lever"), lever.balancing / balance.arm, FORCE)
         yield difference
         return
     for balance in reactions.balances:
@@ -106,8 +106,8 @@ def _balance(results: Results) -> Iterable[Column]:
         yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
     first = results.linkage.driver
     size = MOMENT if first.kind == "turn" else FORCE
-    yield Column(_("reduced to {link}, force plan").format(link=first.link), power(motion, reactions), size)
-    yield Column(_("reduced to {link}, lever").format(link=first.link), lever.balancing, size)
+    yield Column(Phrase("reduced to {link}, force plan", link=first.link), power(motion, reactions), size)
+    yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
     yield difference
 
 

@@ -46,10 +46,10 @@ def _friction(results: Results) -> Table:
     return Table(
         "friction", _("Friction"),
         (
-            Column(_("pair"), [f.pair for f in given]),
-            Column(_("mu"), [f.coefficient for f in given], NUMBER),
-            Column(_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+            Column(N_("pair"), [f.pair for f in given]),
+            Column(N_("mu"), [f.coefficient for f in given], NUMBER),
+            Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
+            Column(N_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
     )  # fmt: skip

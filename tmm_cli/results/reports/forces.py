@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import N_, Phrase, _
 from tmm_cli.linkage import FRAME
 from tmm_cli.quantities import FORCE, LOAD, MOMENT, REACTION, columns
 from tmm_cli.results.reports.cycle import driver_columns, signs
@@ -23,8 +23,8 @@ def tables(results: Results) -> Iterable[Table]:
     reactions = results.reactions
     assert reactions is not None
     words = {
-        _("pair"): [r.pair.name for r in reactions.all],
-        _("name"): [label(r.by, r.on) for r in reactions.all],
+        N_("pair"): [r.pair.name for r in reactions.all],
+        N_("name"): [label(r.by, r.on) for r in reactions.all],
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
     values = [columns(REACTION, reaction) for reaction in reactions.directed]
@@ -32,9 +32,9 @@ def tables(results: Results) -> Iterable[Table]:
     pins = reactions.pins(results.linkage)
     if pins:
         words = {
-            _("pin"): [pin.point for pin in pins],
-            _("link"): [pin.link for pin in pins],
-            _("pairs"): [", ".join(pin.pairs) for pin in pins],
+            N_("pin"): [pin.point for pin in pins],
+            N_("link"): [pin.link for pin in pins],
+            N_("pairs"): [", ".join(pin.pairs) for pin in pins],
         }
         title = _("Compound hinges: the force of the pin on each of its links")
         note = _(
@@ -43,7 +43,7 @@ def tables(results: Results) -> Iterable[Table]:
         yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
-        words = {_("link"): [x.link for x in loads], _("name"): [x.name for x in loads]}
+        words = {N_("link"): [x.link for x in loads], N_("name"): [x.name for x in loads]}
         title = _("Loads: weights G, inertia forces U and couples M, and those of the task")
         yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
     yield _balances(results)
@@ -65,6 +65,6 @@ def _balances(results: Results) -> Table:
             found.append(Column(name, balance.force, FORCE))
         for frame in (f for f in reactions.frames if f.on == link):
             name = label(frame.by, frame.on)
-            found.append(Column(_("{name} x").format(name=name), frame.force.real, FORCE))
-            found.append(Column(_("{name} y").format(name=name), frame.force.imag, FORCE))
+            found.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
+            found.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
     return Table("balance", _("Driving link"), tuple(found), notes=(signs(results.linkage),))

@@ -11,7 +11,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links as chosen_links
 from tmm_cli.analysis.selection import moving_centres, moving_points
 from tmm_cli.kinematics.motion import Turning
-from tmm_cli.language import _
+from tmm_cli.language import N_, _
 from tmm_cli.quantities import LINK, POINT, SLIDE, columns
 from tmm_cli.results.reports.cycle import signs
 from tmm_cli.results.reports.long import long_table
@@ -29,17 +29,17 @@ def tables(results: Results) -> Iterable[Table]:
         points = {name: points[name] for name in of if name in points}
     if points:
         values = [columns(POINT, point) for point in points.values()]
-        yield long_table(results, "points", _("Points and centres of mass"), {_("point"): list(points)}, values)
+        yield long_table(results, "points", _("Points and centres of mass"), {N_("point"): list(points)}, values)
     links = chosen_links(linkage, of)
     if links:
         values = [columns(LINK, _half_turned(motion.link(name))) for name in links]
-        table = long_table(results, "link-motion", _("Motion of links"), {_("link"): links}, values, signs(linkage))
+        table = long_table(results, "link-motion", _("Motion of links"), {N_("link"): links}, values, signs(linkage))
         yield _with_turns(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
     slides = () if of else linkage.slides
     if slides:
         values = [columns(SLIDE, motion.slide(slide)) for slide in slides]
         title = _("Sliding pairs: motion of the runner along the guide")
-        yield long_table(results, "slides", title, {_("pair"): [slide.name for slide in slides]}, values)
+        yield long_table(results, "slides", title, {N_("pair"): [slide.name for slide in slides]}, values)
 
 
 def _with_turns(table: Table) -> Table:

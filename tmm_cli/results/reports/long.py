@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.language import Phrase
 from tmm_cli.quantities import NamedValues
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
 
 
 def long_table(
-    results: Results, name: str, title: str, words: Mapping[str, Sequence[str]],
+    results: Results, name: str, title: str, words: Mapping[Phrase, Sequence[str]],
     things: Sequence[Sequence[NamedValues]], note: str = "",
 ) -> Table:  # fmt: skip
     """Position by position, a row for each thing. words: what tells the things apart, by header.

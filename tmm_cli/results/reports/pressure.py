@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import N_, _
 from tmm_cli.quantities import ANGLE, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.tolerances import NO_PRESSURE
@@ -29,16 +29,16 @@ def tables(results: Results) -> Iterable[Table]:
     yield Table(
         "pressure", _("Pressure angles"),
         (
-            Column(_("group"), [p.group for p in found]),
-            Column(_("driven link"), [p.link for p in found]),
-            Column(_("it"), [_("slides") if p.slides else _("turns") for p in found]),
-            Column(_("driven in pair"), [p.pair for p in found]),
-            Column(_("largest"), [p.largest for p in found], ANGLE),
-            Column(_("driver there at"), places, place_dimension(driver.kind)),
-            Column(_("least transmission angle"), [p.transmission for p in found], ANGLE),
-            Column(_("force increase"), [p.gain for p in found], NUMBER),
-            Column(_("allowed"), [p.allowed for p in found], ANGLE),
-            Column(_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
+            Column(N_("group"), [p.group for p in found]),
+            Column(N_("driven link"), [p.link for p in found]),
+            Column(N_("it"), [_("slides") if p.slides else _("turns") for p in found]),
+            Column(N_("driven in pair"), [p.pair for p in found]),
+            Column(N_("largest"), [p.largest for p in found], ANGLE),
+            Column(N_("driver there at"), places, place_dimension(driver.kind)),
+            Column(N_("least transmission angle"), [p.transmission for p in found], ANGLE),
+            Column(N_("force increase"), [p.gain for p in found], NUMBER),
+            Column(N_("allowed"), [p.allowed for p in found], ANGLE),
+            Column(N_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
         ),
         notes=(note,),
     )  # fmt: skip

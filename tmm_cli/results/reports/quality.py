@@ -92,7 +92,7 @@ def _mixed(rows: list[Row], results: Results) -> tuple[Column, ...]:
     """Rows of different dimensions: the unit stands in a column of its own."""
     units = results.problem.units
     return (
-        Column(_("what"), [name for name, __, __ in rows]),
-        Column(_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
+        Column(N_("what"), [name for name, __, __ in rows]),
+        Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
         Column(N_("unit"), [units.symbol(dim) for __, __, dim in rows]),
     )

@@ -8,11 +8,12 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader, planar
 from tmm_cli.quantities import ANGLE, LENGTH
-from tmm_cli.synthesis.blocks import Block
+from tmm_cli.synthesis.blocks import Block, one_of
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
 from tmm_cli.tolerances import SAME_POSITION
 
@@ -96,28 +97,16 @@ def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) 
 def _side(shape: Shape, values: ValueReader, name: str, count: int) -> Side | None:
     """What is given of a dyad, which must be just what the count of positions needs."""
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
-    given = {key for key in (pivot, pin, name, turn, near) if getattr(shape, key) is not None}
-    good = {
-        2: ({pivot, name}, {pin, name}), 3: ({pivot}, {pin}), 4: ({turn}, {near}, set[str]()),
-    }[count]  # fmt: skip
-    if given not in good:
-        wanted = {
-            2: f"{pin} and {name}; or {pivot} and {name}",
-            3: f"{pin}; or {pivot}",
-            4: f"{turn}; or {near}; or nothing",
-        }
-        raise ProblemError(
-            f"these keys do not determine {name} with {count} positions", found=", ".join(sorted(given)) or "none",
-            allowed=wanted[count], key=True,
-        )  # fmt: skip
+    sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
+    what = _("{link} with {count} positions").format(link=name, count=count)
+    given = one_of(shape, sets, what, (pivot, pin, name, turn, near))
     if not given:
         return None
     found: dict[str, Any] = {
         field: values.vector(getattr(shape, key), LENGTH, (key,))
         for field, key in (("pivot", pivot), ("pin", pin), ("near", near)) if key in given
     }  # fmt: skip
-    if name in given:
-        found["length"] = values.number(getattr(shape, name), LENGTH, (name,))
-    if turn in given:
-        found["turn"] = values.number(getattr(shape, turn), ANGLE, (turn,))
+    for field, key, want in (("length", name, LENGTH), ("turn", turn, ANGLE)):
+        if key in given:
+            found[field] = values.number(getattr(shape, key), want, (key,))
     return Side(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)

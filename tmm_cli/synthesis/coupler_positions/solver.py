@@ -158,7 +158,7 @@ def _demands(task: Task, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Dema
         yield Demand(x, complex(place).real, "length", partial(_pose, "x", at), at=task.size)
         yield Demand(y, complex(place).imag, "length", partial(_pose, "y", at), at=task.size)
         yield Demand(turned, float(angle), "angle", partial(_pose, "angle", at), at=1.0)
-    measure = partial(_transmission, float(mark.worst))
+    measure = partial(four_bar.transmission, float(mark.worst))
     name = N_("least transmission angle on the way")
     yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
 
@@ -173,10 +173,6 @@ def _pose(part: str, at: dict[str, Any], results: Any) -> float:
     place = b + along * at["local"]
     turned = at["near"] + float(np.angle(complex(along) * np.exp(-1j * (at["near"] + at["slope"]))))
     return float({"x": place.real, "y": place.imag, "angle": turned}[part])
-
-
-def _transmission(phi: float, results: Any) -> float:
-    return float(four_bar.transmission(results, np.array([phi]))[0])
 
 
 def _given(task: Task) -> Iterator[Value]:

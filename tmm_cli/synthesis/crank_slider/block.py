@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED
-from tmm_cli.synthesis.blocks import Block, one_of
+from tmm_cli.synthesis.blocks import Block, numbers, one_of
 from tmm_cli.synthesis.crank_slider.solver import Task
 
 WANTS = {
@@ -38,6 +38,6 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
-    keys = (*one_of(shape, STROKES, "a crank-slider"), *one_of(shape, PAIRS, "a crank-slider"))
-    found: dict[str, Any] = {key: values.number(getattr(shape, key), WANTS[key], (key,)) for key in keys}
-    return Task(**found)
+    for sets in (STROKES, PAIRS):
+        one_of(shape, sets, "a crank-slider")
+    return Task(**numbers(shape, values, WANTS))

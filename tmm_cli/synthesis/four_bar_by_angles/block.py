@@ -12,7 +12,7 @@ from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.blocks import Block, Range
+from tmm_cli.synthesis.blocks import Block, Range, numbers
 from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES, FUNCTIONS, Function
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task
 
@@ -21,7 +21,8 @@ DOMAINS = {
     "1/x": "x on one side of 0",
 }  # fmt: skip
 MOST = 361  # pairs of angles
-LENGTHS = ("l1", "l2", "l3", "l4")
+LENGTHS = dict.fromkeys(("l1", "l2", "l3", "l4"), LENGTH)
+ZEROS = dict.fromkeys(("phi0", "psi0"), ANGLE)
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
 
@@ -59,9 +60,7 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
-    lengths = {
-        key: values.number(value, LENGTH, (key,)) for key in LENGTHS if (value := getattr(shape, key)) is not None
-    }
+    lengths = numbers(shape, values, LENGTHS)
     function = None
     if shape.pairs is None:
         function = _function(shape, values)
@@ -78,10 +77,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
         ]
     count = len(pairs)
     _lengths(lengths, count)
-    zeros: dict[str, Any] = {
-        key: None if (value := getattr(shape, key)) is None else values.number(value, ANGLE, (key,))
-        for key in ("phi0", "psi0")
-    }
+    zeros = {"phi0": None, "psi0": None} | numbers(shape, values, ZEROS)
     _zeros(zeros, count, lengths)
     phi, psi = zip(*pairs, strict=True)
     choose, keep = str(shape.choose), shape.defects == "keep"

@@ -160,7 +160,7 @@ def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
             Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
-    name, measure = N_("least transmission angle over the range"), partial(_transmission, float(mark.worst))
+    name, measure = N_("least transmission angle over the range"), partial(four_bar.transmission, float(mark.worst))
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
 
 
@@ -168,11 +168,14 @@ def _mean(one: Bars, task: Task) -> float:
     return float(np.sqrt(np.mean(off(one, task) ** 2)))
 
 
+def _there(one: Bars, results: Any, phi: Any, near: Any) -> Any:
+    """Output angles of the mechanism, from their zero, at input angles; of all whole turns those nearest to `near`."""
+    return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
+
+
 def _measured_mean(one: Bars, task: Task, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    near = psi + off(one, task) + float(one.psi0)
-    there = four_bar.output_angles(results, phi + float(one.phi0), near) - float(one.psi0)
-    return float(np.sqrt(np.mean((there - psi) ** 2)))
+    return float(np.sqrt(np.mean((_there(one, results, phi, psi + off(one, task)) - psi) ** 2)))
 
 
 def _output_name(k: int) -> str:
@@ -180,13 +183,7 @@ def _output_name(k: int) -> str:
 
 
 def _output(one: Bars, phi: float, psi: float, results: Any) -> float:
-    """The output angle, from its zero, at an input angle."""
-    near = np.array([psi]) + float(one.psi0)
-    return float((four_bar.output_angles(results, np.array([phi]) + float(one.phi0), near) - float(one.psi0))[0])
-
-
-def _transmission(phi: float, results: Any) -> float:
-    return float(four_bar.transmission(results, np.array([phi]))[0])
+    return float(_there(one, results, np.array([phi]), np.array([psi]))[0])
 
 
 def _largest(one: Bars, task: Task, results: Any) -> float:
@@ -196,8 +193,7 @@ def _largest(one: Bars, task: Task, results: Any) -> float:
 
     def error(phi: Any) -> Any:
         wanted = function.wanted(phi)
-        there = four_bar.output_angles(results, phi + float(one.phi0), wanted + float(one.psi0)) - float(one.psi0)
-        return there - wanted
+        return _there(one, results, phi, wanted) - wanted
 
     return extremes(error, function)[1]
 

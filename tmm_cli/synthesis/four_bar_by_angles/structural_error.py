@@ -74,9 +74,7 @@ def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
         return outputs(one, phi, wanted, side) - wanted
 
     places, largest = extremes(error, function)
-    phi = np.unique(
-        np.concatenate((np.linspace(min(function.phi), max(function.phi), ERRORS), function.corners(), places))
-    )
+    phi = np.unique(np.concatenate((_scan(function), places)))
     at_points = np.asarray(task.phi, dtype=float)
     lines = (
         Line(N_("structural error of the output angle"), phi, error(phi)),

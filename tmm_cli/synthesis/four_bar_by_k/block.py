@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -10,11 +10,12 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.blocks import Block
+from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar_by_k.arcs import Task
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
-LENGTHS = ("l1", "l2", "l4", "xA", "yA")
+WANTS = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER,
+         **dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), LENGTH)}  # fmt: skip
 WAYS = ("choose", "l1", "l2", "l4", "near", "xA", "yA")
 
 
@@ -48,11 +49,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
         raise ProblemError(
             "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of " + ", ".join(WAYS), key=True
         )
-    wants = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER, **dict.fromkeys(LENGTHS, LENGTH)}
-    found: dict[str, Any] = {
-        key: values.number(getattr(shape, key), want, (key,))
-        for key, want in wants.items() if getattr(shape, key) is not None
-    }  # fmt: skip
+    found = numbers(shape, values, WANTS)
     for key in ("support", "near"):
         if getattr(shape, key) is not None:
             found[key] = values.vector(getattr(shape, key), LENGTH, (key,))

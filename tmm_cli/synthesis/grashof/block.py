@@ -10,11 +10,12 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import LENGTH
-from tmm_cli.synthesis.blocks import Block
+from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar import FourBar
 from tmm_cli.synthesis.grashof.solver import CrankSlider, SlottedLever, Task
 
 Link = Literal["l1", "l2", "l3", "l4"]
+LENGTHS = dict.fromkeys(("l1", "l2", "l3", "l4", "r", "l", "e", "OA", "OC"), LENGTH)
 SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record, keys that it needs, keys that it may have
     (FourBar, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
     (CrankSlider, ("r", "l"), ("e",)),
@@ -41,17 +42,14 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The lengths in m. Raises ProblemError."""
-    given = {key: value for key in Shape.model_fields if key not in ("task", "names")
-             and (value := getattr(shape, key)) is not None}  # fmt: skip
-    fitting = [one for one, needed, more in SETS if set(needed) <= set(given) <= {*needed, *more}]
+    found = numbers(shape, values, LENGTHS)
+    given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
+    fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
-            "these keys do not make a mechanism", found=", ".join(given) or "none",
+            "these keys do not make a mechanism", found=", ".join(sorted(given)) or "none",
             allowed="; or ".join(f"{', '.join(needed)} (and {', '.join(more)})" for _, needed, more in SETS), key=True,
         )  # fmt: skip
-    found: dict[str, Any] = {
-        key: values.number(value, LENGTH, (key,)) for key, value in given.items() if key not in ("frame", "driver")
-    }
     record = fitting[0]
     if record is FourBar:
         frame = int((shape.frame or "l4")[1])

@@ -16,7 +16,7 @@ from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import Sketch
 from tmm_cli.synthesis.optimal.checks import check, first_of, one_sense
-from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over
+from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over, Read
 from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
 from tmm_cli.synthesis.optimal.task import Constraint, Task, near
 from tmm_cli.variants.one_by_one import OneByOne, variants_of
@@ -157,13 +157,16 @@ class Candidates:
             wanted = self.wanted(values[0])
             return np.where(np.isnan(wanted), np.inf, wanted), violation
 
+    def coarsely(self, x: Real) -> tuple[Mapping[str, Real], list[tuple[Goal, Read, Over]]]:
+        """Outputs at the places of the search, and of every quantity what reads its own of them."""
+        found = self.coarse(self.numbers(x), self.places)
+        own = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
+        return found, [(quantity, reader(found, n, where), over) for n, (quantity, where, over) in own]
+
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
-        found = self.coarse(self.numbers(x), self.places)
-        values = [
-            quantity.coarse(reader(found, n, self.exact[n]), self.overs[n])
-            for n, quantity in enumerate(self.quantities)
-        ]  # fmt: skip
+        found, parts = self.coarsely(x)
+        values = [quantity.coarse(read, over) for quantity, read, over in parts]
         values[1] = np.where(self.turned_over(found, self.count), -1.0, values[1])
         return values
 

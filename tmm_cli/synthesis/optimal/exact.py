@@ -141,14 +141,11 @@ def _local(candidates: Candidates, found: list[Real], top: float) -> Local:
     """What the polish needs of the pieces of some candidates."""
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
-        value = _value(candidates, n, pieces)[:, None]
-        if constraint.equal:
-            equal.append((value - constraint.least) / constraint.scale)
-            continue
-        each, lowest = isinstance(constraint.quantity, Peak), constraint.quantity.lowest
-        if constraint.least is not None:
-            least.append(((pieces if each and lowest else value) - constraint.least) / constraint.scale)
-        if constraint.most is not None:
-            least.append((constraint.most - (pieces if each and not lowest else value)) / constraint.scale)
+        low = high = _value(candidates, n, pieces)[:, None]
+        if isinstance(constraint.quantity, Peak) and not constraint.equal:  # every piece keeps the bound then
+            low, high = (pieces, high) if constraint.quantity.lowest else (low, pieces)
+        above, even = constraint.rows(low, high)
+        least += above
+        equal += even
     none = np.zeros((len(found[0]), 0))
     return Local(_objective(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))

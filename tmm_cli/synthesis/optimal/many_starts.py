@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
+from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.least_squares import WEIGHT, Evaluate, Rows, descend
 from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
 from tmm_cli.synthesis.optimal.settling import Settling
@@ -153,21 +153,13 @@ def residuals(candidates: Candidates) -> Evaluate:
     unit = objective.spread * np.sqrt(len(objective.wanted))
 
     def block(x: Real, each: int) -> Rows:
-        found = candidates.coarse(candidates.numbers(x), candidates.places)
-        parts = [
-            (quantity, reader(found, n, candidates.exact[n]), candidates.overs[n])
-            for n, quantity in enumerate(candidates.quantities)
-        ]  # fmt: skip
-        off, least = [objective.residuals(parts[0][1], parts[0][2], each) / unit], []
-        for constraint, (quantity, read, over) in zip(constraints, parts[1:], strict=True):
+        (__, read, over), *others = candidates.coarsely(x)[1]
+        off, least = [objective.residuals(read, over, each) / unit], []
+        for constraint, (quantity, read, over) in zip(constraints, others, strict=True):
             value = quantity.coarse(read, over)[:, None]
-            if constraint.equal:
-                off.append(WEIGHT * (value - constraint.least) / constraint.scale)
-                continue
-            if constraint.least is not None:
-                least.append((value - constraint.least) / constraint.scale)
-            if constraint.most is not None:
-                least.append((constraint.most - value) / constraint.scale)
+            above, even = constraint.rows(value, value)
+            least += above
+            off += [WEIGHT * row for row in even]
         return Rows(np.hstack(off), np.hstack(least))
 
     def evaluate(x: Real, each: int) -> Rows:

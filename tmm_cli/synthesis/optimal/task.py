@@ -53,6 +53,15 @@ class Constraint:
         missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
         return np.where(np.isnan(missed), np.inf, missed)
 
+    def rows(self, low: Any, high: Any) -> tuple[list[Any], list[Any]]:
+        """What must not be below zero, and what must be zero, in shares of the scale; low, high: what its bounds are
+        compared with.
+        """
+        if self.equal:
+            return [], [(low - self.least) / self.scale]
+        least = [] if self.least is None else [(low - self.least) / self.scale]
+        return [*least, *([] if self.most is None else [(self.most - high) / self.scale])], []
+
     def broken(self, value: float) -> tuple[float, Keys]:
         """The bound that a value lies beyond, and where it stands."""
         low = self.least is not None and value < self.least

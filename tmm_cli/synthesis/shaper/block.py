@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.blocks import Block, one_of
+from tmm_cli.synthesis.blocks import Block, numbers, one_of
 from tmm_cli.synthesis.shaper.solver import Task
 
-FRAMES = {"OC": ("frame", LENGTH), "frame_ratio": ("frame_ratio", NUMBER), "OA": ("crank", LENGTH)}
-RODS = {"DE": ("rod", LENGTH), "rod_ratio": ("rod_ratio", NUMBER), "pressure": ("pressure", ANGLE)}
+FRAMES = {"OC": LENGTH, "frame_ratio": NUMBER, "OA": LENGTH}
+RODS = {"DE": LENGTH, "rod_ratio": NUMBER, "pressure": ANGLE}
 
 
 class Shape(Block):
@@ -34,11 +34,6 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
-    found: dict[str, Any] = {
-        "stroke": values.number(shape.stroke, LENGTH, ("stroke",)), "k": values.number(shape.k, NUMBER, ("k",)),
-    }  # fmt: skip
     for ways in (FRAMES, RODS):
-        (key,) = one_of(shape, [(key,) for key in ways], "a shaper")
-        name, want = ways[key]
-        found[name] = values.number(getattr(shape, key), want, (key,))
-    return Task(**found)
+        one_of(shape, [(key,) for key in ways], "a shaper")
+    return Task(**numbers(shape, values, {"stroke": LENGTH, "k": NUMBER, **FRAMES, **RODS}))

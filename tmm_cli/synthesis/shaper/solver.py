@@ -8,7 +8,6 @@ D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -24,12 +23,12 @@ from tmm_cli.tolerances import DEAD_SWING
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "stroke": ("length", N_("stroke H of the ram")), "k": ("number", N_("k")), "frame": ("length", N_("frame OC")),
-    "frame_ratio": ("number", N_("OC/CD")), "crank": ("length", N_("crank OA")), "rod": ("length", N_("rod DE")),
+    "stroke": ("length", N_("stroke H of the ram")), "k": ("number", N_("k")), "OC": ("length", N_("frame OC")),
+    "frame_ratio": ("number", N_("OC/CD")), "OA": ("length", N_("crank OA")), "DE": ("length", N_("rod DE")),
     "rod_ratio": ("number", N_("DE/CD")), "pressure": ("angle", N_("largest pressure angle of the ram")),
 }  # fmt: skip
-FRAMES: Final = {"frame": "OC", "frame_ratio": "frame_ratio", "crank": "OA"}  # and their keys in the block
-RODS: Final = {"rod": "DE", "rod_ratio": "rod_ratio", "pressure": "pressure"}
+FRAMES: Final = ("OC", "frame_ratio", "OA")
+RODS: Final = ("DE", "rod_ratio", "pressure")
 
 
 @dataclass(frozen=True)
@@ -38,10 +37,10 @@ class Task:
 
     stroke: Any
     k: Any
-    frame: Any = None
+    OC: Any = None
     frame_ratio: Any = None
-    crank: Any = None
-    rod: Any = None
+    OA: Any = None
+    DE: Any = None
     rod_ratio: Any = None
     pressure: Any = None
 
@@ -64,15 +63,15 @@ def find(task: Task) -> Found:
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
     lever = np.asarray(task.stroke) / (2 * sine)
-    if task.crank is not None:
-        frame = np.asarray(task.crank) / sine
+    if task.OA is not None:
+        frame = np.asarray(task.OA) / sine
     else:
-        frame = lever * task.frame_ratio if task.frame is None else np.asarray(task.frame)
+        frame = lever * task.frame_ratio if task.OC is None else np.asarray(task.OC)
     rise = lever * half_height
     if task.pressure is not None:
         rod = rise / np.sin(task.pressure)
     else:
-        rod = lever * task.rod_ratio if task.rod is None else np.asarray(task.rod)
+        rod = lever * task.rod_ratio if task.DE is None else np.asarray(task.DE)
     level = lever * (1 - half_height) - frame
     return Found(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
 
@@ -86,15 +85,15 @@ def refuse(task: Task) -> None:
         raise Infeasible("k", HALF_A_TURN)
     f = find(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
-        raise Infeasible(_key(task, FRAMES), _("the stone would pass the hinge D of the rod"))
+        raise Infeasible(_given_of(task, FRAMES), _("the stone would pass the hinge D of the rod"))
     steepest = f.pressure if task.pressure is None else task.pressure
     if not steepest < np.pi / 2 - half:  # where the lever turns back, half its swing from the middle
-        raise Infeasible(_key(task, RODS), _("the ram would turn back before the lever does: the rod is too steep"))
+        reason = _("the ram would turn back before the lever does: the rod is too steep")
+        raise Infeasible(_given_of(task, RODS), reason)
 
 
-def _key(task: Task, names: Mapping[str, str]) -> str:
-    """In the block, of the one that is given."""
-    return next(key for name, key in names.items() if getattr(task, name) is not None)
+def _given_of(task: Task, keys: tuple[str, ...]) -> str:
+    return next(key for key in keys if getattr(task, key) is not None)
 
 
 def solve(task: Task) -> Outcome:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -10,12 +10,13 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
-from tmm_cli.synthesis.blocks import Block, Range, one_of
+from tmm_cli.synthesis.blocks import Block, Range, numbers, one_of
 from tmm_cli.synthesis.slotted_lever.solver import Task
 
 ENDS = (("B1", "B2"), ("CB",))
 SWINGS = (("k",), ("swing",))
 FRAMES = (("OC",), ("OA",), ("within",))
+WANTS = {"k": NUMBER, "swing": ANGLE, "CB": LENGTH, "OC": LENGTH, "OA": LENGTH}
 
 
 class Shape(Block):
@@ -43,23 +44,15 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
-    ends, swing, frame = (one_of(shape, sets, "a slotted lever") for sets in (ENDS, SWINGS, FRAMES))
+    ends, *__ = (one_of(shape, sets, "a slotted lever") for sets in (ENDS, SWINGS, FRAMES))
     _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
-    found: dict[str, Any] = {
-        swing[0]: values.number(getattr(shape, swing[0]), NUMBER if swing == ("k",) else ANGLE, swing)
-    }
+    found = numbers(shape, values, WANTS)
     if ends == ("CB",):
-        found["length"] = values.number(shape.CB, LENGTH, ("CB",))
         found["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
         found["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
     else:
         found |= {name.lower(): values.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
-    if frame == ("OC",):
-        found["frame"] = values.number(shape.OC, LENGTH, ("OC",))
-    elif frame == ("OA",):
-        found["crank"] = values.number(shape.OA, LENGTH, ("OA",))
-    else:
-        assert shape.within is not None
+    if shape.within is not None:
         low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
         found["within"] = (low, high)
     choose = "shortest" if shape.choose == "shortest" else "force"

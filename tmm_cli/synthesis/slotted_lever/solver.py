@@ -40,14 +40,14 @@ class Task:
 
     b1: Any = None
     b2: Any = None
-    length: Any = None
+    CB: Any = None
     c: Any = 0j
     axis: Any = 0.0
     side: int = -1
     k: Any = None
     swing: Any = None
-    frame: Any = None
-    crank: Any = None
+    OC: Any = None
+    OA: Any = None
     within: tuple[Any, Any] | None = None
     choose: str = "force"
 
@@ -75,21 +75,21 @@ def find(task: Task) -> Found:
     """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = task.theta
     sine = np.sin(theta / 2)
-    if task.length is None:
+    if task.CB is None:
         way = np.asarray(task.b2) - task.b1
         lever = np.abs(way) / 2 / sine
         c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * way / 2 / np.tan(theta / 2)
         along = -task.side * 1j * way / np.abs(way)
         psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
     else:
-        lever, c = np.asarray(task.length), task.c
+        lever, c = np.asarray(task.CB), task.c
         along = np.cos(task.axis) + 1j * np.sin(task.axis)
         psi1, psi2 = task.axis - task.side * theta / 2, task.axis + task.side * theta / 2
     longest = lever / (1 + sine)
-    if task.crank is not None:
-        frame = np.asarray(task.crank) / sine
+    if task.OA is not None:
+        frame = np.asarray(task.OA) / sine
     elif task.within is None:
-        frame = np.asarray(task.frame)
+        frame = np.asarray(task.OC)
     elif task.choose == "force":
         frame = np.minimum(task.within[1], longest)
     else:
@@ -107,7 +107,7 @@ def refuse(task: Task) -> None:
         raise Infeasible("swing", _("a lever that does not swing has no strokes"))
     if not np.pi - task.theta > DEAD_SWING:
         raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
-    if task.length is None and abs(task.b2 - task.b1) == 0:
+    if task.CB is None and abs(task.b2 - task.b1) == 0:
         raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
         raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
@@ -136,12 +136,12 @@ def solve(task: Task) -> Outcome:
 
 def _given(task: Task) -> tuple[Value, ...]:
     given = []
-    if task.length is None:
+    if task.CB is None:
         for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
             given += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
     kinds = {
-        "length": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
-        "frame": ("length", N_("frame OC")), "crank": ("length", N_("crank OA")),
+        "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
+        "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
     }  # fmt: skip
     given += [Value(n, getattr(task, n), *what) for n, what in kinds.items() if getattr(task, n) is not None]
     if task.within is not None:

@@ -1,0 +1,178 @@
+"""The note: every formula with numbers put in is true, every number is one of the results or of the file."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+from bank import NAMES
+from formulas import formula, formulas, maths
+from models import PROBLEMS
+
+from tmm_cli import load, solve
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.note import note
+from tmm_cli.note.blocks import Found, Note
+from tmm_cli.note.expression import Sum
+from tmm_cli.note.formats.html import html
+from tmm_cli.quantities import KINDS
+from tmm_cli.results.as_json import sections
+from tmm_cli.results.text import json_text
+
+FIGURES = r"(?<![\w.,′'])[−-]?\d+(?:\.\d+)?(?![\w.]*\w)"
+COUNTED = 100  # whole numbers below it count or name something
+
+
+@cache
+def solved(name: str) -> Results:
+    return solve(load(str(PROBLEMS / f"{name}.yaml")))
+
+
+@cache
+def written(name: str) -> Note:
+    """Without drawings, which have tests of their own."""
+    return note(solved(name), drawn=False)
+
+
+@cache
+def page(name: str) -> str:
+    return html(written(name)).decode()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_formula_gives_its_printed_result_within_its_last_digit(name):
+    read = formulas(page(name))
+    wrong = ["".join(re.sub(r"<[^>]+>", " ", one.source).split()) for one in read if not one.true]
+    assert not wrong
+    alone = [one for one in maths(page(name)) if formula(one) is None and re.search(r"<mo>=</mo><mn>[^=]*</math>", one)]
+    substituted = [block for block in written(name).blocks if isinstance(block, Found)]
+    assert len(read) + len(alone) >= len(substituted) > 0, "each of them was read, or has a result only"
+
+
+def test_a_formula_with_a_sign_changed_is_not_written():
+    changed = [
+        block.substitution for block in written("shaper").blocks
+        if isinstance(block, Found) and isinstance(block.substitution.expression, Sum)
+    ]  # fmt: skip
+    assert changed
+    for found in changed:
+        (sign, first), *others = found.expression.terms
+        wrong = replace(found, expression=Sum(((-sign, first), *others)))
+        with pytest.raises(ValueError, match="is not"):
+            wrong.printed()
+
+
+def test_a_sign_changed_in_the_page_is_seen():
+    text = next(one for one in maths(page("shaper")) if formula(one))
+    changed = re.sub(r"(.*)<mo>−</mo>(<mn>[1-9])", r"\1<mo>+</mo>\2", text)
+    assert changed != text and formula(text).true and not formula(changed).true
+
+
+def leaves(content: Any) -> Iterator[float]:
+    """Numbers of nested content, of its texts and names too."""
+    match content:
+        case dict():
+            for key, value in content.items():
+                yield from leaves(key)
+                yield from leaves(value)
+        case list() | tuple():
+            for value in content:
+                yield from leaves(value)
+        case str():
+            yield from (float(text) for text in re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?", content))
+        case int() | float():
+            yield float(content)
+
+
+def vectors(content: Any) -> Iterator[float]:
+    """Sizes and directions (0 to 2π) of what has two components, each an array, one a position."""
+    if isinstance(content, dict) and isinstance(content.get("x"), list):
+        pair = np.array([content["x"], content["y"]], dtype=float)
+        yield from np.hypot(*pair)
+        yield from np.arctan2(*pair[::-1]) % (2 * np.pi)
+    for value in content.values() if isinstance(content, dict) else content if isinstance(content, list) else ():
+        yield from vectors(value)
+
+
+def known(results: Results) -> np.ndarray:
+    """Numbers of result.json, of the file and of what was read from it; in SI, units of the file, percent and rpm."""
+    found = list(leaves(json.loads("".join(json_text(sections(results))))))
+    found += vectors(json.loads("".join(json_text(sections(results)))))
+    found += leaves(results.problem.source.data)
+    found += [abs(results.linkage.gravity), np.angle(results.linkage.gravity)]
+    for link in results.linkage.links.values():
+        found += [float(np.ravel(abs(a - b))[0]) for a, b in combinations(link.points.values(), 2)]
+        found += [float(np.ravel(link.mass)[0]), float(np.ravel(link.inertia)[0])]
+        places = [*link.points.values(), link.centre, *(s.through for s in results.linkage.slides)]
+        found += [float(np.ravel(part)[0]) for z in places for part in (np.real(z), np.imag(z))]
+    for mesh in results.linkage.meshes:
+        if mesh.law is not None:  # where its pieces begin and end
+            found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]
+            found += [*np.cumsum([mesh.offset, *(piece.rise for piece in mesh.law.pieces)])]
+    units = results.problem.units
+    own = {float(units.from_si(1.0, kind.dimension)) for kind in KINDS.values()}
+    every = np.outer(found, sorted(own | {1.0, 100.0, 180 / np.pi, 30 / np.pi}))
+    return np.unique(np.abs(every[np.isfinite(every)]))
+
+
+def printed(text: str) -> list[str]:
+    """Figures in sentences, lists and tables; not in formulas, headings, contents and literature."""
+    body = text.partition("<body>")[2]
+    for apart in ("nav", "header", "ol", "h1", "h2", "svg", "caption", "figcaption", 'math display="block"'):
+        body = re.sub(rf"<{apart}[ >].*?</{apart.partition(' ')[0]}>", " ", body, flags=re.S)
+    return re.findall(FIGURES, re.sub(r"<[^>]+>", " ", body))
+
+
+def half_a_digit(figures: str) -> float:
+    """Half of the last digit; zeros at the end of a whole number may be no figures of it."""
+    digits = figures.lstrip("−-")
+    if "." in digits:
+        return 0.5 * 10.0 ** -len(digits.partition(".")[2])
+    return 0.5 * 10.0 ** (len(digits) - len(digits.rstrip("0")))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_number_in_a_sentence_or_table_is_one_of_the_results_or_of_the_file(name):
+    truths, unknown = known(solved(name)), []
+    for figures in printed(page(name)):
+        value = abs(float(figures.replace("−", "-")))
+        slack = half_a_digit(figures) + 1e-9 * value
+        low, high = np.searchsorted(truths, [value - slack, value + slack])
+        if low == high and not ("." not in figures and value < COUNTED):
+            unknown.append(figures)
+    assert not unknown
+
+
+HOSTILE = '<script>alert(1)</script><img src=x onerror="alert(1)">&amp;{title}\\frac{1}{2}=1+1'
+
+
+def hostile() -> Results:
+    """The shaper with markup in every text that a file can give."""
+    problem = load(str(PROBLEMS / "shaper.yaml"))
+    texts = replace(
+        problem.title_texts, student=HOSTILE, group=HOSTILE, teacher=HOSTILE, department=HOSTILE, code=HOSTILE
+    )
+    links = {name: replace(link, label=HOSTILE) for name, link in problem.linkage.links.items()}
+    loads = tuple(replace(load, name=HOSTILE) for load in problem.linkage.loads)
+    return solve(
+        replace(
+            problem, title=HOSTILE, description=HOSTILE, title_texts=texts,
+            linkage=replace(problem.linkage, links=links, loads=loads), extended=None,
+        )
+    )  # fmt: skip
+
+
+def test_texts_of_the_file_are_data_in_the_page():
+    text = html(note(hostile())).decode()
+    assert "<script" not in text and "<img" not in text
+    assert text.count("&lt;script&gt;alert(1)&lt;/script&gt;&lt;img src=x onerror=&quot;alert(1)&quot;&gt;") > 8
+    assert "default-src 'none';style-src 'sha256-" in text, "and nothing could run or be loaded if it were not"
+    assert not re.search(r'(src|href|xlink:href)="(?!#)', text), "it opens without a network"
+    assert not re.search(r"<\w+[^>]*\son\w+=", text)
