@@ -36,13 +36,13 @@ def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
     for step in driving:
         yield from _driving(here, step)
-        known |= points_of(here.motion, step)
+        known |= points_of(step)
     for step in groups:
         yield from _before(here, step, known)
         if step == groups[0]:
             yield from _scale(here, [*driving, step])
         yield from _solved(here, step, known)
-        known |= points_of(here.motion, step)
+        known |= points_of(step)
     if not groups:
         yield from _scale(here, steps)
     yield from remaining(here, here.a, known)
@@ -59,7 +59,7 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
         else:
             text = _("The driving link {link} moves evenly, so that {a} = 0.")
             yield said(text, link=step.links[0], a=a.symbol)
-    turned = further(here.motion, step)
+    turned = further(step)
     if turned and here.first:
         even = _("Driving link {link} turns evenly: the accelerations of its points are normal ones, towards its axis.")
         uneven = _(
@@ -189,8 +189,8 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         yield here.a.read(here.a.of(spot))
     yield from _rates(here, together)
     yield from turning_as_one(step, here.epsilon, "ε")
-    found = {*known, *points_of(here.motion, step)}
-    for about in further(here.motion, step):
+    found = {*known, *points_of(step)}
+    for about in further(step):
         if here.first and not about.base.fixed:
             text = _("Point {point} is one of link {link}, whose rotation is known:")
             yield said(text, point=name_of(about.point), link=about.link)

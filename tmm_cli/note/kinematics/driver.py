@@ -140,7 +140,7 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     yield said(
         _("The output, {output}, is in its extreme positions at {phi} = {places}; between them it goes through "
           "{size}."),
-        output=_output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
+        output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
     )  # fmt: skip
     if not np.isfinite(strokes.k):
         return
@@ -160,7 +160,7 @@ def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:
     size = abs(travel.high - travel.low)
     value = f"{subject.text(size)} m" if slides else f"{subject.text(float(np.degrees(size)))}°"
     text = _("Over this way the output, {output}, goes through {size} in all.")
-    yield said(text, output=_output(subject, travel.link), size=value)
+    yield said(text, output=output(subject, travel.link), size=value)
 
 
 def _degrees(angle: float) -> float:
@@ -169,7 +169,7 @@ def _degrees(angle: float) -> float:
     return 0.0 if abs(found) < NO_VECTOR else found
 
 
-def _output(subject: Subject, link: str) -> str:
+def output(subject: Subject, link: str) -> str:
     """A link, or a coordinate of a point."""
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 

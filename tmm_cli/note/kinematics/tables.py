@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, line, said
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.kinematics.driver import output
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.cycle import output_motion, states
 from tmm_cli.tolerances import NO_VECTOR
@@ -39,7 +40,7 @@ def tables(subject: Subject) -> Iterable[Block]:
             columns.append(Column(line(Symbol(letter, link), f", {unit}"), own))
         key = f"output-{link}"
         yield said(_("The motion of the output in all positions is in table {table}."), table=Ref(key))
-        yield _table(subject, _("Motion of the output {link}").format(link=link), columns, key)
+        yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
     for letter, unit, what, caption, sentence in (
         (
             "ω",
@@ -60,9 +61,13 @@ def tables(subject: Subject) -> Iterable[Block]:
         if columns:
             yield said(sentence, table=Ref(what))
             yield _table(subject, caption, columns, what)
-    yield from subject.figures(
-        "diagrams", _("The diagrams over the cycle are shown in figure {figure}."), _("Diagrams over the cycle")
-    )
+    for stem, drawing in subject.drawings("diagrams").items():
+        if stem.startswith("diagrams"):
+            yield said(_("The diagrams of motion are shown in figure {figure}."), figure=Ref(stem))
+            yield Figure(_("Diagrams of motion over the cycle"), drawing, stem)
+        elif stem.startswith("pressure"):
+            yield said(_("The pressure angles are shown in figure {figure}."), figure=Ref(stem))
+            yield Figure(_("Pressure angles over the cycle"), drawing, stem)
 
 
 def _rates(subject: Subject, letter: str, unit: str, what: str) -> list[Column]:

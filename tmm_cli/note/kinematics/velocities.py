@@ -33,18 +33,18 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     for step in steps:
         if step.group is None:
             yield from _driving(here, step)
-            known |= points_of(here.motion, step)
+            known |= points_of(step)
     yield from _scale(here, steps)
     for step in steps:
         if step.group is not None:
             yield from _group(here, step, known)
-            known |= points_of(here.motion, step)
+            known |= points_of(step)
     yield from remaining(here, here.v, known)
 
 
 def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
-    turned = further(here.motion, step)
+    turned = further(step)
     if here.first and turned:
         one = _("The velocity of point {points} of the driving link is across {line}, in the sense of its rotation:")
         several = _(
@@ -122,7 +122,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
             yield here.v.read(here.v.relative(equation.point, equation.base))
     yield from _rates(here, together)
     yield from turning_as_one(step, here.omega, "ω")
-    for about in further(here.motion, step):
+    for about in further(step):
         yield from _known_about(here, about, found)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Line, said
 from tmm_cli.note.kinematics.on_paper import Here, OnPaper
@@ -55,22 +54,15 @@ def sought(step: Step, known: Collection[str]) -> list[Spot]:
     return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
 
 
-def further(motion: Motion, step: Step) -> list[About]:
-    """Points that later groups need, and ends of links that turn on the frame; others are read off the plan."""
-    linkage = motion.linkage
-    running = {slide.point for slide in linkage.slides}
-    return [
-        about
-        for about in step.after
-        if not about.idle
-        and (about.base.fixed or len(linkage.carriers(about.point.name)) > 1 or about.point.name in running)
-    ]
+def further(step: Step) -> list[About]:
+    """Further points of links that turn."""
+    return [about for about in step.after if not about.idle]
 
 
-def points_of(motion: Motion, step: Step) -> set[str]:
+def points_of(step: Step) -> set[str]:
     """Points that are told in a step."""
     found = {s.name for e in step.equations for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])}
-    return found | {about.point.name for about in further(motion, step)}
+    return found | {about.point.name for about in further(step)}
 
 
 def equal(*symbols: Symbol) -> Block:
