@@ -12,12 +12,14 @@ from scipy.integrate import quad, solve_ivp
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.analysis.running import reduced_machine, steady_running
+from tmm_cli.analysis.running import reduced_machine, running
 from tmm_cli.dynamics.curves import fitted
-from tmm_cli.dynamics.motion import StandstillError, with_motor
+from tmm_cli.dynamics.motion import with_motor
 from tmm_cli.dynamics.motors import Constant, Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
-from tmm_cli.dynamics.steady import NoFlywheelError, SteadyTask, fluctuation, steady
+from tmm_cli.dynamics.steady import fluctuation, steady
+from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.errors import NoFlywheelError, StandstillError
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 
@@ -162,7 +164,7 @@ def test_ways_of_a_course_are_near_to_the_exact_one():
 )
 def test_a_mechanism_with_its_flywheel_keeps_the_energy_of_the_cycle(name):
     results = solved(name)
-    found = steady_running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30))
+    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
     assert found.delta == pytest.approx(1 / 30, rel=1e-10)
     gone = found.law.energy(np.array([0.0, found.machine.length]))
     assert gone[1] - gone[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(found.law.energy.coefficients[0])))
@@ -177,7 +179,7 @@ def test_a_constant_force_on_a_stroke_works_its_length():
 def test_powers_balance_in_every_position_of_the_law_of_motion():
     """Balancing moment at omega, epsilon of the law: that of the driver less what speeds the flywheel up."""
     results = solved("shaper")
-    found = steady_running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30))
+    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
     x = np.linspace(0.1, 6.2, 37)
     law, sense = found.law, results.linkage.driver.sense
     q = results.start + sense * x

@@ -90,6 +90,7 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("sqrt(-4)", NUMBER, "sqrt of -4 has no value\n  found:   'sqrt(-4)'" + ARITHMETIC),
         ("sqrt(CD)", LENGTH, "a length has no square root\n  found:   'sqrt(CD)'" + ARITHMETIC),
         ("tan(90)", NUMBER, "tan of a right angle has no value\n  found:   'tan(90)'" + ARITHMETIC),
+        ("cos(1e19)", NUMBER, "cos of so large an angle has no digit left\n  found:   'cos(1e19)'" + ARITHMETIC),
         ("1/(OA - 110)", NUMBER, "division by zero\n  found:   '1/(OA - 110)'" + ARITHMETIC),
         ("(-8)^(1/3)", NUMBER, "this power has no value\n  found:   '(-8)^(1/3)'" + ARITHMETIC),
         ("0^-1", NUMBER, "this power has no value\n  found:   '0^-1'" + ARITHMETIC),

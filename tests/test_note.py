@@ -157,7 +157,13 @@ def hostile() -> Results:
     """The shaper with markup in every text that a file can give."""
     problem = load(str(PROBLEMS / "shaper.yaml"))
     texts = replace(
-        problem.title_texts, student=HOSTILE, group=HOSTILE, teacher=HOSTILE, department=HOSTILE, code=HOSTILE
+        problem.title_texts,
+        student=HOSTILE,
+        group=HOSTILE,
+        teacher=HOSTILE,
+        institution=HOSTILE,
+        department=HOSTILE,
+        code=HOSTILE,
     )
     links = {name: replace(link, label=HOSTILE) for name, link in problem.linkage.links.items()}
     loads = tuple(replace(load, name=HOSTILE) for load in problem.linkage.loads)

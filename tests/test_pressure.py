@@ -137,3 +137,12 @@ def test_it_is_a_right_angle_at_an_end_where_the_rocker_is_stretched():
     assert found.largest == math.pi / 2 and found.transmission == 0 and math.isinf(found.gain)
     assert found.place in [limit.place for limit in limits], "coupler and rocker in line: 0.6 from A to D"
     assert abs(math.hypot(0.3 * math.cos(found.place) - 0.4, 0.3 * math.sin(found.place)) - 0.6) < 1e-12
+
+
+def test_it_is_a_right_angle_at_a_change_point_too():
+    """Coupler and rocker in line, as long as crank and frame together."""
+    lengths = {"1": 0.1, "2": 0.3, "3": 0.2}
+    links = {name: link | {"length": lengths[name]} for name, link in FOUR_BAR["links"].items()}
+    (found,) = results_of(FOUR_BAR | {"links": links}, "kinematics").pressure
+    assert found.largest == math.pi / 2 and found.transmission == 0 and math.isinf(found.gain)
+    assert math.cos(found.place) == pytest.approx(-1)

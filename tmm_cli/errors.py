@@ -106,3 +106,23 @@ class NotOnFrameError(LinkageError):
     def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
         super().__init__(link)
         self.link, self.allowed = link, allowed
+
+
+class NoCycleError(LinkageError):
+    """A law of motion is wanted where there is no cycle: the driver slides, does not turn fully, or is not alone."""
+
+
+class StandstillError(LinkageError):
+    """The machine comes to rest at the way `place` of its cycle (rad): its energy is used up there."""
+
+    def __init__(self, place: float) -> None:
+        super().__init__(place)
+        self.place = place
+
+
+class NoFlywheelError(LinkageError):
+    """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
+
+    def __init__(self, wanted: float, own: float) -> None:
+        super().__init__(wanted, own)
+        self.wanted, self.own = wanted, own

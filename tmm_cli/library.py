@@ -72,7 +72,14 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 def inputs_of(problem: Problem) -> Inputs:
     """What the stages need of a problem."""
     extended = None if problem.extended is None else ExtendedInputs(problem.extended)
-    return Inputs(problem.linkage, problem.request, problem.pressure_limits, problem.lever_limit, extended)
+    return Inputs(
+        problem.linkage,
+        problem.request,
+        problem.pressure_limits,
+        problem.lever_limit,
+        extended,
+        dynamics=problem.dynamics,
+    )
 
 
 @dataclass(frozen=True)

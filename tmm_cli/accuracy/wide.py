@@ -134,7 +134,9 @@ class Wide:
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
         driver_range = self.results.mechanism.driver_range
         limit = next((limit for limit in driver_range.limits if limit.place == place), None)
-        if limit is not None and largest == np.pi / 2:
+        if largest == np.pi / 2 and limit is None:  # where the group is dead inside the way
+            return 2 * ROUNDOFF, self.dead(place, group, span)
+        if largest == np.pi / 2 and limit is not None:
             return 2 * ROUNDOFF, self.end(place, -1 if place == driver_range.start else 1, limit.group, span)
         states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
         b2, b1, here, a1, a2 = pressure_at(states, group, link)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.groups.sequence import LawOfMotion
 from tmm_cli.kinematics.motion import Motion, move, spliced
 from tmm_cli.linkage import Linkage
 from tmm_cli.vectors import Real
@@ -25,7 +25,7 @@ def near_dead(motion: Motion) -> Real:
     return near & motion.moving
 
 
-def refined(motion: Motion, linkage: Linkage, q: Real, law: DriverMotion, where: Real) -> Motion:
+def refined(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
     """A motion with some of its positions taken from that of the same linkage with numbers in double-doubles.
 
     q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.naming import output_link, roles
 from tmm_cli.vectors import Real
 
+if TYPE_CHECKING:
+    from tmm_cli.dynamics.task import SteadyTask
+
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
 
 
@@ -37,7 +40,7 @@ class Inputs:
     pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
     the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
     None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
-    as the structure alone does not need them.
+    as the structure alone does not need them. dynamics: what is asked of the law of motion.
     """
 
     linkage: Linkage
@@ -46,6 +49,7 @@ class Inputs:
     lever_limit: float = 0.05
     extended: Callable[[], Inputs] | None = None
     sized: bool = True
+    dynamics: SteadyTask | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ from tmm_cli.forces.lever import Lever, lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, power, react
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.sequence import DriverMotion, towards
+from tmm_cli.groups.sequence import DriverMotion, LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
 from tmm_cli.kinematics.motion import Motion, move, spliced
 from tmm_cli.kinematics.pressure import Pressure, pressure_at
@@ -37,7 +37,9 @@ from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
+    from tmm_cli.analysis.running import Running
     from tmm_cli.assembly.enumerate import Assemblies
+    from tmm_cli.dynamics.task import SteadyTask
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -63,6 +65,7 @@ class Results:
     friction: FrictionSolution | None = None
     losses: Losses | None = None
     energy: Energy | None = None
+    running: Running | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
@@ -133,6 +136,11 @@ class Results:
         return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 
     @property
+    def law(self) -> LawOfMotion:
+        """How the first driver moves."""
+        return driver_motion(self.linkage, self.start) if self.running is None else self.running
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
@@ -167,6 +175,8 @@ def solve(
         kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
     _need_strokes(results)
     _need_rows(results)
+    if inputs.dynamics is not None:
+        results = replace(results, running=_running(results.mechanism, results.start, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(results.asked):
@@ -175,9 +185,15 @@ def solve(
     return results if stage == "kinematics" else with_forces(results)
 
 
+def _running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
+    from tmm_cli.analysis.running import running  # nothing of it is there unless it is asked for
+
+    return running(mechanism, start, task)
+
+
 def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
     """The motion, its positions near dead ones in extended precision where the machine has it."""
-    law = driver_motion(results.linkage, results.start)
+    law = results.law
     motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
     where = near_dead(motion)
     if results.inputs.extended is None or not np.any(where):
@@ -229,7 +245,7 @@ def driver_motion(linkage: Linkage, start: float) -> DriverMotion:
 
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
-    return move(results.linkage, results.kernels, q, driver_motion(results.linkage, results.start), order)
+    return move(results.linkage, results.kernels, q, results.law, order)
 
 
 def at_places(results: Results, q: Real) -> Results:

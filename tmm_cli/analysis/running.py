@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.double_double import rounded
 from tmm_cli.dynamics.reduced import Reduced, reduced
-from tmm_cli.dynamics.steady import Steady, SteadyTask, steady
-from tmm_cli.errors import LinkageError
+from tmm_cli.dynamics.steady import Steady, steady
+from tmm_cli.errors import NoCycleError
 from tmm_cli.forces.energy import energy
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
-from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.tolerances import SAME_PLACE, SEAM
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.mechanism import Mechanism
-
-
-class NoCycleError(LinkageError):
-    """A law of motion is wanted of a driver that does not turn round, or of several."""
+    from tmm_cli.dynamics.task import SteadyTask
 
 
 def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
@@ -60,9 +59,37 @@ def _jumps(mechanism: Mechanism) -> Iterable[float]:
                 yield from (begin + way * row + turn * k for k in range(turns))
 
 
-def steady_running(mechanism: Mechanism, start: float, task: SteadyTask) -> Steady:
-    """Of a mechanism with its loads, from the driver's place `start` on.
+@dataclass(frozen=True)
+class Running:
+    """Steady running of a mechanism, and the law of motion of its driver from the place `start` on (rad)."""
+
+    steady: Steady
+    start: float
+    sense: int
+
+    def way(self, q: Real) -> Real:
+        """How far the driver has gone in the cycle at its place q, rad."""
+        gone = np.mod(self.sense * (rounded(np.asarray(q)) - self.start) + SEAM, self.steady.machine.length) - SEAM
+        return np.asarray(np.maximum(gone, 0.0))
+
+    def speed(self, q: Real) -> Real:
+        """rad/s, with its sign."""
+        found: Real = self.sense * self.steady.law.speed(self.way(q))
+        return found
+
+    def accelerated(self, q: Real) -> Real:
+        """rad/s2, with its sign."""
+        found: Real = self.sense * self.steady.law.acceleration(self.way(q))
+        return found
+
+    def time(self, q: Real) -> Real:
+        """s, since the beginning of the cycle."""
+        return self.steady.law.time(self.way(q))
+
+
+def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
+    """Of a mechanism with its loads, from the driver's place `start` on (rad).
 
     Raises NoCycleError, StandstillError, NoFlywheelError.
     """
-    return steady(reduced_machine(mechanism, start), task)
+    return Running(steady(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)

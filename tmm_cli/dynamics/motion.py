@@ -15,21 +15,13 @@ import numpy as np
 from tmm_cli.dynamics.curves import FIT, NODES, SUMS, Curve, fitted, nodes
 from tmm_cli.dynamics.motors import Constant, Motor
 from tmm_cli.dynamics.reduced import Reduced
-from tmm_cli.errors import LinkageError
+from tmm_cli.errors import StandstillError
 from tmm_cli.tolerances import LAST_STEP
 from tmm_cli.vectors import Real
 
 STEPS = 60  # of Newton's method, at most
 ROUNDS = 8  # of halving panels on which the energy is no polynomial yet
 TAIL = 1e-13  # of the largest energy: its last coefficients are less
-
-
-class StandstillError(LinkageError):
-    """The machine comes to rest at the way `place` (rad, or m): its energy is used up there."""
-
-    def __init__(self, place: float) -> None:
-        super().__init__(place)
-        self.place = place
 
 
 @dataclass(frozen=True)

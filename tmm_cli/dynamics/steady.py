@@ -9,37 +9,16 @@ import numpy as np
 
 from tmm_cli.dynamics.curves import Curve, fitted
 from tmm_cli.dynamics.flywheel import Flywheel, at_mean, exact, lowest, mertsalov, wittenbauer
-from tmm_cli.dynamics.motion import Law, StandstillError, under_constant_moment, with_motor
+from tmm_cli.dynamics.motion import Law, under_constant_moment, with_motor
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
-from tmm_cli.errors import LinkageError
+from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.errors import NoFlywheelError, StandstillError
 from tmm_cli.roots import roots
 from tmm_cli.vectors import Real
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
-
-
-class NoFlywheelError(LinkageError):
-    """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
-
-    def __init__(self, wanted: float, own: float) -> None:
-        super().__init__(wanted, own)
-        self.wanted, self.own = wanted, own
-
-
-@dataclass(frozen=True)
-class SteadyTask:
-    """What is wanted. mean: of the largest and the least speed of the driver (rad/s, or m/s), under a constant moment.
-
-    delta: fluctuation that a flywheel is to keep. motor: in place of a constant moment; `mean` is then a guess only.
-    flywheel: a given one, reduced to the driver (kg m2, or kg); without a delta no other is sought.
-    """
-
-    mean: float
-    delta: float | None = None
-    motor: Motor | None = None
-    flywheel: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -60,6 +39,11 @@ class Steady:
     found: Flywheel | None = None
     wittenbauer: float = float("nan")
     mertsalov: float = float("nan")
+
+    @property
+    def on_shaft(self) -> float:
+        """Inertia of the flywheel on its own shaft, kg m2: what is found, and a given one where nothing is."""
+        return self.law.flywheel / self.task.ratio**2
 
     @property
     def speeds(self) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -34,6 +34,10 @@ class DriverMotion:
             root = np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
             return np.where(gone == 0, 0.0, 2 * gone / (self.rate + root))
 
+    def accelerated(self, q: Real) -> Real:
+        """d2q/dt2 at q, with its sign."""
+        return np.zeros(np.shape(q)) + self.sense * self.acceleration
+
     def speed(self, q: Real) -> Real:
         """dq/dt at q, with its sign; nan where the driver stops before."""
         if self.acceleration == 0:
@@ -41,6 +45,14 @@ class DriverMotion:
         with np.errstate(invalid="ignore"):
             gone = self.sense * (q - self.start)
             return self.sense * np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
+
+
+class LawOfMotion(Protocol):
+    """Speed, acceleration (with their signs) and time of a driver by its place."""
+
+    def speed(self, q: Real) -> Real: ...
+    def accelerated(self, q: Real) -> Real: ...
+    def time(self, q: Real) -> Real: ...
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_cli.double_double import rounded
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states
+from tmm_cli.groups.sequence import LawOfMotion, LinkStates, link_states
 from tmm_cli.groups.state import Drives
 from tmm_cli.linkage import Linkage, Slide
 from tmm_cli.vectors import Real, Record, Vector, dot, mapped, unit
@@ -160,7 +160,7 @@ class Motion(LinkStates):
 
 
 def move(
-    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: DriverMotion, order: int = 2, *, blank: bool = True,
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: LawOfMotion, order: int = 2, *, blank: bool = True,
     drives: Drives | None = None,
 ) -> Motion:  # fmt: skip
     """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
@@ -170,8 +170,7 @@ def move(
     states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
     rate = law.speed(states.q)
     whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
-    acceleration = np.zeros(np.shape(states.q)) + law.sense * law.acceleration
-    return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=acceleration)
+    return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=law.accelerated(states.q))
 
 
 def spliced(full: Record, part: Record, where: Real) -> Record:

@@ -188,6 +188,8 @@ def _right(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, end: float
 
 
 def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:
-    """Of the last group."""
+    """Of the last group; where it is dead the angle is a right one."""
     motion = link_states(linkage, kernels, q, 0)
-    return -angle(motion, kernels[-1], motion.placements[-1], lead)
+    at = motion.placements[-1]
+    found: Real = np.where(at.dead, -np.pi / 2, -angle(motion, kernels[-1], at, lead))
+    return found

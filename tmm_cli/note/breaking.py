@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from tmm_cli.note.expression import Leaf, Substitution, letters, numbers, result_node
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
 
-LINE = 78.0  # of the text of an A4 page, in widths of a figure
-SMALL = 0.65  # size of indices and exponents
+LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
+SMALL = 0.75  # size of indices and exponents
 TERMS = ("+", "−")
 OPEN, CLOSE = Sign("("), Sign(")")
 OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
@@ -45,9 +45,9 @@ def width(node: Node) -> float:
         case Number(text) | Words(text):
             return float(len(text))
         case Letter(symbol):
-            return 1.3 + SMALL * max(len(symbol.below), len(symbol.above))
+            return 1.4 + SMALL * max(len(symbol.below), len(symbol.above))
         case Sign(text):
-            return len(text) if text[0].isalpha() else 0.6 if text in "·|()" else 2.0
+            return len(text) + 1.0 if text[0].isalpha() else 1.3 if text == "·" else 0.6 if text in "|()" else 2.2
         case Row(nodes):
             return sum(width(n) for n in nodes)
         case Fraction(over, under):

@@ -51,6 +51,5 @@ def _symbol(symbol: Symbol, vector: bool) -> str:
 
 
 def _underlined(shown: str, lines: int) -> str:
-    for _ in range(lines):
-        shown = f'<munder accentunder="true">{shown}<mo stretchy="true">_</mo></munder>'
-    return shown
+    """Lines under a vector are a matter of style: characters under it are as short as they are."""
+    return f'<mrow class="lines{lines}">{shown}</mrow>' if lines else shown

@@ -26,6 +26,7 @@ _DOTTED = re.compile(r"\s*((?:[^\W\d_]+\s*[./]\s*)*[^\W\d_]+\.(?:\s*/?\s*[^\W\d_
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
 _JOINT = re.compile(r"\s*[*·/]|\s+")
 
+MOST_ANGLE: Final = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 _ANGLE_IN: Final = ("sin", "cos", "tan")
 _ANGLE_OUT: Final = ("asin", "acos", "atan")
 _OF_MANY: Final = ("atan2", "hypot", "min", "max")
@@ -217,6 +218,8 @@ class Parser:
             angle = taken(given, ANGLE, self.units)
             if angle is None:
                 raise self.fault(_("{name} wants an angle, not {dimension}").format(name=name, dimension=dimension))
+            if abs(float(angle)) > MOST_ANGLE:
+                raise self.fault(_("{name} of so large an angle has no digit left").format(name=name))
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault(_("tan of a right angle has no value"))
             return PhysicalValue(compute(angle), None)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
+from tmm_cli.linkage import FRAME, Driver, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
 from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
@@ -27,6 +27,9 @@ from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
+
+if TYPE_CHECKING:
+    from tmm_cli.dynamics.task import SteadyTask
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -117,8 +120,16 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed),
-        TitleTexts(**shape.sheet.model_dump()), tree,
+        TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values), tree,
     )  # fmt: skip
+
+
+def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | None:
+    if shape.dynamics is None:
+        return None
+    from tmm_cli.problem.build_dynamics import build_dynamics  # few files have the block
+
+    return build_dynamics(shape, driver, values)
 
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:

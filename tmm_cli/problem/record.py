@@ -14,6 +14,7 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.structure.spatial import SpatialChain
 
 if TYPE_CHECKING:
+    from tmm_cli.dynamics.task import SteadyTask
     from tmm_cli.synthesis.record import Outcome
 
 
@@ -28,11 +29,12 @@ class Synthesised:
 
 @dataclass(frozen=True)
 class TitleTexts:
-    """What the title block of a drawn sheet says, and which of the two it is."""
+    """What the title block of a drawn sheet and the title page of the note say; which of the two blocks it is."""
 
     student: str = ""
     group: str = ""
     teacher: str = ""
+    institution: str = ""
     department: str = ""
     code: str = ""
     block: Literal["gost", "plain"] = "gost"
@@ -60,6 +62,7 @@ class Problem:
     limits_set: tuple[bool, bool] = (False, False)
     bare_speed: bool = False
     title_texts: TitleTexts = TitleTexts()
+    dynamics: SteadyTask | None = None
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

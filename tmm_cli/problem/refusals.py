@@ -13,8 +13,11 @@ from tmm_cli.errors import (
     LinkageError,
     MissingStrokesError,
     MobilityError,
+    NoCycleError,
+    NoFlywheelError,
     NotOnFrameError,
     SketchMismatchError,
+    StandstillError,
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
@@ -114,6 +117,28 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
+        case NoCycleError():
+            return ProblemError(
+                _("a law of motion is found for one crank that turns fully"), path=("dynamics",), key=True,
+                allowed=_("one driver that turns round and round"),
+            )  # fmt: skip
+        case StandstillError(place=place_of_rest):
+            return ProblemError(
+                _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),
+                path=("dynamics",), key=True,
+                found=_("at {place} of the driver's way").format(place=shown(place_of_rest)),
+                allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+            )  # fmt: skip
+        case NoFlywheelError(wanted=delta, own=own):
+            if math.isnan(own):
+                return ProblemError(
+                    _("no flywheel keeps this fluctuation with this motor"), path=("dynamics", "delta"),
+                    found=f"{delta:.6g}", allowed=_("a larger delta"),
+                )  # fmt: skip
+            return ProblemError(
+                _("the fluctuation is smaller than this without any flywheel"), path=("dynamics", "delta"),
+                found=f"{delta:.6g}", allowed=_("less than {own}, or no delta").format(own=f"{own:.4g}"),
+            )  # fmt: skip
         case TableBeyondCycleError(path=path, argument=argument, cycle=cycle):
             turns, unit = round(cycle / (2 * math.pi)), units.symbol(ANGLE)
             text = _("this row is never reached: all repeats after {turns} turns of the driver")

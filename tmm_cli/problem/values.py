@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import _
+from tmm_cli.problem.arithmetic import MOST_ANGLE
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
@@ -20,7 +21,6 @@ from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
-MOST_ANGLE = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")

@@ -208,6 +208,21 @@ def _whole(results: Results) -> bool:
     return results.motion is not None and not results.of
 
 
+STEADY = record(
+    "steady running",
+    Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
+    Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
+    Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
+    Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
+    Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
+    Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
+    Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
+    Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
+    Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
+    Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
+    Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+)
+
 MOTION_PARTS = (
     Field("driver", DRIVER, "the input", lambda r: r, "motion"),
     Field("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", "motion"),
@@ -222,6 +237,8 @@ MOTION_PARTS = (
     Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     Field("forces", FORCES, "force plan", lambda r: r, "lever"),
     Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
+    Field("dynamics", STEADY, "steady running and the law of motion; the driver at the start of its cycle is that of "
+          "position 0", "running", "running"),
     Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
           "energy"),
 )  # fmt: skip

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import accumulate, chain, repeat
+from itertools import accumulate, chain, product, repeat
 
 from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
-from tmm_cli.draw.layout.pieces import GAP, Page, Piece, area, begun, eased, filled, grown, leads, spaced
+from tmm_cli.draw.layout.pieces import ENOUGH, GAP, Page, Piece, area, begun, eased, filled, grown, spaced
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
@@ -23,8 +23,8 @@ EDGE = 6.0  # mm between the frame and what is drawn
 LETTERS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
 MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smaller, and how much smaller at most
 NOTABLE = 1.1  # times larger: it is drawn again
-ENOUGH = 0.72  # of a page: then nothing more is made larger
-EASED = (1.0, 0.75, 0.55, 0.4, 0.3)  # of rooms: so much smaller something is tried
+EASED = 0.75  # of its room: so much smaller something is tried where it became larger than thought
+TRIES = 5  # of that
 ROUNDS = 2  # of making larger what there proves to be room for
 
 
@@ -84,18 +84,21 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
         return [piece for part in again for piece in part]
 
     rooms, pages = begun(pieces, field, shrunk)
-    larger = drawn(grown(pieces, eased(pieces, rooms, EASED[1], all_of_them=False), pages, field, shrunk))
+    free = [k for k, piece in enumerate(pieces) if not piece.length]
+    larger = drawn(grown(pieces, eased(pieces, rooms, EASED, free), pages, field, shrunk))
     if all(pack(spaced(_sizes(larger), page), field) is not None for page in pages):
         pieces = larger
     else:  # something became larger than thought
-        for share in EASED:
-            found = drawn(eased(pieces, rooms, share, all_of_them=True))
-            if all(pack(spaced(_sizes(found), [k]), field) is not None for k in range(len(found))):
+        large = list(range(len(pieces)))
+        for __ in range(TRIES):
+            rooms = eased(pieces, rooms, EASED, large)
+            pieces = drawn(rooms)
+            large = [k for k in large if pack(spaced(_sizes(pieces), [k]), field) is None]
+            if not large:
                 break
-        pieces = found
         pages = fitting([piece.drawn for piece in pieces], field)
     for __ in range(ROUNDS):
-        before = [piece.drawn.longest for piece in pieces]
+        before = [piece.drawn.longest or piece.usual for piece in pieces]
         thin = [page for page in pages if area(_sizes(pieces), page) < ENOUGH * field.area]
         rooms = grown(pieces, before, thin, field, shrunk)
         if all(room < NOTABLE * old for room, old in zip(rooms, before, strict=True)):
@@ -107,12 +110,12 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
 def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Page], field: Field) -> list[Piece]:
     """Those of the larger pieces for which there really is room, one after the other."""
     found = list(pieces)
-    for page in pages:
-        led = leads(_sizes(found), page, field)
-        for number in page:
-            tried = [*found[:number], larger[number], *found[number + 1 :]]
-            if pack(spaced(_sizes(tried), page), field, led=led) is not None:
-                found = tried
+    for page, led in product(pages, (True, False)):
+        if led or area(_sizes(found), page) < ENOUGH * field.area:
+            for number in page:
+                tried = [*found[:number], larger[number], *found[number + 1 :]]
+                if pack(spaced(_sizes(tried), page), field, led=led) is not None:
+                    found = tried
     return found
 
 

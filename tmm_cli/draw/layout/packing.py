@@ -8,7 +8,7 @@ from itertools import combinations
 from random import Random
 
 Size = tuple[float, float]
-MIXED = 12  # orders by chance that are tried too, always the same ones
+MIXED = 30  # orders by chance that are tried too, always the same ones
 MANY = 300  # where the best of all arrangements is looked for
 
 

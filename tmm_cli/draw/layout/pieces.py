@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
 from tmm_cli.draw.paper.picture import Picture
@@ -18,6 +19,8 @@ EVENER = 1.05  # steps in which pages may become fuller than the average one
 FINER = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
 STEP = 1.04  # by which a drawing without a scale is made larger
 ROUGHLY = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
+POINT = 1e-6  # mm: a figure of this size has none
+ENOUGH = 0.74  # of a page: then nothing more is made larger
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
 PAGES = 40  # of one sheet at most
@@ -35,7 +38,8 @@ class Piece:
     @property
     def length(self) -> float:
         """The longest side of the figure, SI; none where there is no scale."""
-        return max(self.drawn.figure) * self.drawn.mu if self.drawn.figure and self.drawn.mu else 0.0
+        longest = max(self.drawn.figure or (0.0,))
+        return longest * self.drawn.mu if longest > POINT and self.drawn.mu else 0.0
 
     def fitted(self, room: float) -> float:
         """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
@@ -74,18 +78,18 @@ def begun(pieces: Sequence[Piece], field: Field, shrunk: float) -> tuple[list[fl
         pages = filled(sized(pieces, rooms), field)
         if pages is not None and len(pages) < few:
             few, found = len(pages), (rooms, pages)
-        if found is not None and share * shrunk**0.5 < LEAST:
+        if found is not None and share < LEAST:
             break
     if found is None:
         raise ProblemError(_("a drawing is larger than the sheet at its least size"), allowed=_("a larger format"))
     return found
 
 
-def eased(pieces: Sequence[Piece], rooms: Sequence[float], share: float, *, all_of_them: bool) -> list[float]:
-    """Smaller rooms for what has no scale, or for all pieces."""
+def eased(pieces: Sequence[Piece], rooms: Sequence[float], share: float, which: Container[int]) -> list[float]:
+    """Rooms so much smaller for these pieces, but not below their least."""
     return [
-        room if piece.length and not all_of_them else piece.fitted(max(share * room, min(room, piece.least)))
-        for piece, room in zip(pieces, rooms, strict=True)
+        piece.fitted(max(share * room, min(room, piece.least))) if k in which else room
+        for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
     ]
 
 
@@ -97,11 +101,6 @@ def shares() -> Iterator[float]:
 def sized(pieces: Sequence[Piece], rooms: Sequence[float]) -> list[Size]:
     """The sizes of the pieces in these rooms."""
     return [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
-
-
-def leads(sizes: Sequence[Size], page: Page, field: Field) -> bool:
-    """Whether the first drawing of a page can stand in its upper left corner; then it stays there."""
-    return pack(spaced(sizes, page), field, led=True) is not None
 
 
 def spaced(sizes: Sequence[Size], page: Page) -> list[Size]:
@@ -144,11 +143,14 @@ def _filled(sizes: Sequence[Size], field: Field, most: float) -> list[Page] | No
 def grown(
     pieces: Sequence[Piece], given: Sequence[float], pages: Sequence[Page], field: Field, shrunk: float
 ) -> list[float]:
-    """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size."""
+    """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size.
+
+    The first drawing stays in the corner, unless too much of the page were left empty for that.
+    """
     rooms = list(given)
-    for page in pages:
-        growing, led = set(page), leads(sized(pieces, rooms), page, field)
-        while growing:
+    for page, led in product(pages, (True, False)):
+        growing = set(page)
+        while growing and area(sized(pieces, rooms), page) < ENOUGH * field.area:
             number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
             piece, before = pieces[number], rooms[number]
             rooms[number] = piece.larger(before)

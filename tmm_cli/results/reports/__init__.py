@@ -26,6 +26,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("forces", "reactions", ("reactions", "pins", "loads", "balance")),
     ("lever", "lever", ("lever",)),
     ("energy", "energy", ("energy", "friction")),
+    ("dynamics", "running", ("dynamics", "law-of-motion")),
     ("assemblies", "assemblies", ()),
     ("checks", "lever", ("checks",)),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,7 @@ def tables(results: Results) -> Iterable[Table]:
         rows += _travel(results.linkage, travel, place)
     rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
-        yield Table("quality", _("Quality"), _mixed(rows, results))
+        yield Table("quality", _("Quality"), of_rows(rows, results))
 
 
 def _strokes(linkage: Linkage, strokes: Strokes, place: Dimension) -> Iterable[Row]:
@@ -88,7 +88,7 @@ def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]
         yield _("with the driver at"), at, place
 
 
-def _mixed(rows: list[Row], results: Results) -> tuple[Column, ...]:
+def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
     """Rows of different dimensions: the unit stands in a column of its own."""
     units = results.problem.units
     return (
