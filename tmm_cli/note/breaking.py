@@ -9,6 +9,7 @@ from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, P
 
 LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
 SMALL = 0.75  # size of indices and exponents
+SHORT = 9.0  # what is no wider, a name, has no line of its own
 TERMS = ("+", "−")
 OPEN, CLOSE = Sign("("), Sign(")")
 OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
@@ -21,8 +22,11 @@ def chain(sides: Sequence[Node], most: float = LINE) -> Node:
         joined = row(lines[-1], "=", side) if lines else side
         if not lines or width(joined) <= most:
             lines[-1:] = [joined]
+        elif width(lines[-1]) < SHORT:
+            lines[-1:] = _in_terms(joined, most)
         else:
             lines += _in_terms(row("=", side), most)
+    lines = _evened(lines, most)
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
 
 
@@ -60,6 +64,21 @@ def width(node: Node) -> float:
             return width(inside) + 1.4
         case Lines(lines):
             return max(width(n) for n in lines)
+
+
+def _evened(lines: list[Node], most: float) -> list[Node]:
+    """A result that is alone on its line gets what is before it there too."""
+    if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
+        return lines
+    nodes = lines[-2].nodes
+    breaks = [k for k, node in enumerate(nodes) if k > 1 and _breaks(node) and nodes[k - 1] not in OPENING]
+    if not breaks or width(end := row(*nodes[breaks[-1] :], lines[-1])) > most:
+        return lines
+    return [*lines[:-2], row(*nodes[: breaks[-1]]), end]
+
+
+def _breaks(node: Node) -> bool:
+    return isinstance(node, Sign) and node.text in ("=", *TERMS)
 
 
 def _in_terms(node: Node, most: float) -> list[Node]:
