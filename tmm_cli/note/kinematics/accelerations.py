@@ -8,7 +8,7 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, said
 from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, Substitution
 from tmm_cli.note.kinematics.equations import equations, vector
-from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, zero
+from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import accelerations as by_ratio
 from tmm_cli.note.kinematics.words import (
     direct,
@@ -77,7 +77,7 @@ def _parts(here: Here, about: About) -> Iterable[Block]:
     tangential, epsilon = _part(here, about, "τ"), here.epsilon.get(about.link, 0.0)
     if tangential.segment:
         product = Product((Leaf(Symbol("ε", about.link), abs(epsilon)), here.length(about.point, about.base)))
-        yield Found(Substitution(tangential.symbol, product, tangential.size, here.a.sort.unit))
+        yield Found(Substitution(tangential.symbol, product, tangential.size, unit("a")))
     elif about.link in here.epsilon:
         yield zero(tangential.symbol)
 
@@ -87,7 +87,7 @@ def _normal(here: Here, about: About) -> Block:
     if not found.segment:
         return zero(found.symbol)
     product = Product((Square(Leaf(Symbol("ω", about.link), omega)), here.length(about.point, about.base)))
-    return Found(Substitution(found.symbol, product, found.size, here.a.sort.unit))
+    return Found(Substitution(found.symbol, product, found.size, unit("a")))
 
 
 def _part(here: Here, equation: About | Along, above: str) -> Vector:
@@ -110,7 +110,7 @@ def _coriolis(here: Here, along: Along) -> Block:
         return zero(found.symbol)
     omega = Leaf(Symbol("ω", link), abs(here.omega[link]))
     product = Product((TWO, omega, here.v.relative(along.point, along.base).leaf))
-    return Found(Substitution(found.symbol, product, found.size, here.a.sort.unit))
+    return Found(Substitution(found.symbol, product, found.size, unit("a")))
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -145,10 +145,10 @@ def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """What is known from velocities and from higher pairs, and the equations."""
     assert step.group is not None
     title, points, together = step.group.title, sought(step, known), solved(step)
-    if step.ratios or not here.first:
-        yield said(
-            _("The higher pairs of group {group} give:") if step.ratios else _("Group {group} gives:"), group=title
-        )
+    if step.ratios:
+        yield said(_("Group {group} is found from its higher pairs."), group=title)
+    elif not here.first:
+        yield said(_("Group {group} gives:"), group=title)
     for ratio in step.ratios:
         yield from by_ratio(here, step, ratio)
     if here.first and together:
@@ -212,7 +212,7 @@ def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
             yield zero(symbol)
             continue
         quotient = Quotient(a.leaf, here.length(about.point, about.base))
-        yield Found(Substitution(symbol, quotient, abs(value), "rad/s²"))
+        yield Found(Substitution(symbol, quotient, abs(value), unit("ε")))
         if here.first:
             text = _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}.")
             yield said(text, a=vector(a.symbol), point=name_of(about.point), epsilon=symbol, sense=sense(value))

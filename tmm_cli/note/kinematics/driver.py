@@ -8,12 +8,12 @@ import numpy as np
 
 from tmm_cli.draw.paper.picture import Picture
 from tmm_cli.kinematics.strokes import Strokes, Travel
-from tmm_cli.language import _
+from tmm_cli.language import _, symbol
 from tmm_cli.linkage import FRAME, Driver
 from tmm_cli.note.blocks import Block, Equation, Found, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
-from tmm_cli.note.kinematics.on_paper import Here
+from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
 from tmm_cli.plans.record import Symbol
@@ -45,12 +45,12 @@ def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
         yield said(_("Driving link {link} turns about point {point} {sense} with the angular velocity"), **fields)
     if rpm:
         product = Product((Constant(float(np.pi), "π"), Leaf(Symbol("n", own), n)))
-        yield Found(Substitution(omega, Quotient(product, Constant(30)), driver.rate, "rad/s"))
+        yield Found(Substitution(omega, Quotient(product, Constant(30)), driver.rate, unit("ω")))
     else:
-        yield _given(subject, omega, driver.rate, "rad/s")
+        yield _given(subject, omega, driver.rate, unit("ω"))
     if driver.acceleration:
         yield said(_("in position 0 and with the angular acceleration"))
-        yield _given(subject, Symbol("ε", own), driver.acceleration, "rad/s²")
+        yield _given(subject, Symbol("ε", own), driver.acceleration, unit("ε"))
 
 
 def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
@@ -63,14 +63,14 @@ def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
             "Driving link {link} is moved along link {base} (a cylinder with its piston) with the relative velocity"
         )
         yield said(text, link=driver.link, base=driver.base)
-    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate, "m/s")
+    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate, unit("v"))
     if driver.acceleration:
         yield said(_("in position 0 and with the acceleration"))
-        yield _given(subject, Symbol("a", own), driver.acceleration, "m/s²")
+        yield _given(subject, Symbol("a", own), driver.acceleration, unit("a"))
 
 
-def _given(subject: Subject, symbol: Symbol, value: float, unit: str) -> Block:
-    return Equation(row(Letter(symbol), "=", Number(subject.text(value)), Words(f" {unit}")))
+def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
+    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {per}")))
 
 
 def speed_here(here: Here) -> Iterable[Block]:
@@ -79,7 +79,7 @@ def speed_here(here: Here) -> Iterable[Block]:
     if not driver.acceleration:
         return
     turns = driver.kind == "turn"
-    letter, rate, unit, way = ("ω", "ε", "rad/s", "φ") if turns else ("v", "a", "m/s", "s")
+    letter, rate, way = ("ω", "ε", "φ") if turns else ("v", "a", "s")
     begins = results.linkage.sketch.at if results.linkage.others else results.start
     gone = driver.sense * (float(here.motion.q[here.k]) - begins)
     first = Symbol(letter, driver.link)
@@ -91,7 +91,7 @@ def speed_here(here: Here) -> Iterable[Block]:
     more = Product((Constant(2), Leaf(Symbol(rate, driver.link), driver.acceleration), Leaf(Symbol(f"Δ{way}"), gone)))
     start = Square(Leaf(Symbol(letter, "0"), driver.rate))
     root = SquareRoot(Sum(((1, start), (1, more))))
-    yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit))
+    yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit(letter)))
 
 
 def positions(subject: Subject) -> Iterable[Block]:
@@ -135,8 +135,8 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     """Where the output turns back, how far it goes, and how long each way takes."""
     places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
-    size, letter, unit = (strokes.travel, "H", "m") if slides else (np.degrees(strokes.travel), "ψ", "°")
-    shown = (Letter(Symbol(letter)), "=", Number(subject.text(float(size))), Words(f" {unit}" if slides else unit))
+    size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
+    shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
     yield said(
         _("The output, {output}, is in its extreme positions at {phi} = {places}; between them it goes through "
           "{size}."),
@@ -149,18 +149,18 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     yield said(
         _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; the "
           "coefficient of change of mean speed is"),
-        working=Symbol("φ", "w"), idle=Symbol("φ", "i"),
+        working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
     )  # fmt: skip
-    angles = Leaf(Symbol("φ", "w"), working, angle=True), Leaf(Symbol("φ", "i"), idle, angle=True)
+    angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
     yield Found(Substitution(Symbol("k"), Quotient(*angles), strokes.k))
 
 
 def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:
     slides = travel.kind == "slide"
-    size = abs(travel.high - travel.low)
-    value = f"{subject.text(size)} m" if slides else f"{subject.text(float(np.degrees(size)))}°"
-    text = _("Over this way the output, {output}, goes through {size} in all.")
-    yield said(text, output=output(subject, travel.link), size=value)
+    ends = (travel.low, travel.high)
+    low, high = (f"{subject.text(end)} {_('m')}" if slides else f"{subject.text(_degrees(end))}°" for end in ends)
+    text = _("Over this way the output, {output}, goes from {low} to {high}.")
+    yield said(text, output=output(subject, travel.link), low=low, high=high)
 
 
 def _degrees(angle: float) -> float:

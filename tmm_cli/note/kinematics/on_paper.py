@@ -99,14 +99,14 @@ class OnPaper:
         """What a segment of the plan is worth."""
         if not vector.segment:
             return zero(vector.symbol)
-        mu = Leaf(Symbol("μ", self.sort.letter), self.mu)
-        return Found(Substitution(vector.symbol, Product((mu, self._segment(vector))), vector.size, self.sort.unit))
+        measured = Product((Leaf(Symbol("μ", self.sort.letter), self.mu), self._segment(vector)))
+        return Found(Substitution(vector.symbol, measured, vector.size, unit(self.sort.letter)))
 
     def scaled(self, vector: Vector) -> Block:
         """The scale, told by the vector that is drawn first."""
-        unit = f"({self.sort.unit})/{_('mm')}"
+        per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.sort.letter]
         name, most = Symbol("μ", self.sort.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
-        return Found(Substitution(name, Quotient(vector.leaf, self._segment(vector)), self.mu, unit, most=most))
+        return Found(Substitution(name, Quotient(vector.leaf, self._segment(vector)), self.mu, per_mm, most=most))
 
     def _segment(self, vector: Vector) -> Leaf:
         return Leaf(drawn(vector), vector.size / self.mu)
@@ -163,6 +163,11 @@ class Here:
         """Between two points of a link, m."""
         places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
         return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
+
+
+def unit(letter: str) -> str:
+    """Of velocities, accelerations, and of what links turn with."""
+    return {"v": _("m/s"), "a": _("m/s²"), "ω": _("rad/s"), "ε": _("rad/s²")}[letter]
 
 
 def large(vectors: Sequence[Vector]) -> Vector | None:

@@ -18,14 +18,13 @@ from tmm_cli.note.expression import (
     Substitution,
     Sum,
 )
-from tmm_cli.note.kinematics.on_paper import Here, Vector, zero
+from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Fraction, Letter, row
 from tmm_cli.pairs.base import axis
 from tmm_cli.plans.record import Symbol
 from tmm_cli.plans.vector_equations import Along, OnGuide, Ratio, Spot, Step
 
-UNITS = {"ω": "rad/s", "ε": "rad/s²", "v": "m/s", "a": "m/s²"}
 ONE = Constant(1)
 
 
@@ -105,7 +104,7 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     yield Equation(row(Letter(_ratio(mesh)), "=", Fraction(over, under)))
     outer = mesh.ratio < 0
     yield Found(Substitution(_ratio(mesh), Sum(((-1, radii),)) if outer else radii, mesh.ratio))
-    yield said(_("from which follows, positive counterclockwise as well,"))
+    yield said(_("The angular velocity that is sought follows from this:"))
 
 
 def _ratio(mesh: Mesh) -> Symbol:
@@ -129,7 +128,7 @@ def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
         expression = share if c is None else Sum(((1, c), (1, share)))
         if own is None and c is not None:
             expression = Product((c, Sum(((1, ONE), (-1, u if link == mesh.j else Quotient(ONE, u))))))
-    return Found(Substitution(found.symbol, expression, found.value, UNITS[letter]))
+    return Found(Substitution(found.symbol, expression, found.value, unit(letter)))
 
 
 def _less(one: Expression | None, other: Expression | None) -> Expression:
@@ -156,12 +155,12 @@ def _rolls(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
     turning = _about(wheel, carrier)
     if turning is None:
         return zero(run.symbol if ratio.slide is not None else Symbol(letter, ratio.link))
-    unit = UNITS["v" if letter == "ω" else "a"]
+    own = unit("v" if letter == "ω" else "a")
     if ratio.slide is not None:
-        return Found(Substitution(run.symbol, Product((radius, Function("abs", turning))), run.size, unit))
+        return Found(Substitution(run.symbol, Product((radius, Function("abs", turning))), run.size, own))
     alone = Symbol(letter, mesh.i if carrier is None else f"{mesh.i}{mesh.carrier}")
     value = abs((wheel.value if wheel else 0.0) - (carrier.value if carrier else 0.0))
-    return Found(Substitution(alone, Quotient(run.leaf, radius), value, UNITS[letter]))
+    return Found(Substitution(alone, Quotient(run.leaf, radius), value, unit(letter)))
 
 
 def _law(mesh: Mesh) -> Iterable[Block]:
@@ -193,9 +192,9 @@ def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
         if not run.segment:
             return zero(run.symbol)
         return Found(
-            Substitution(run.symbol, Function("abs", expression), run.size, UNITS["v" if letter == "ω" else "a"])
+            Substitution(run.symbol, Function("abs", expression), run.size, unit("v" if letter == "ω" else "a"))
         )
     found = _turning(here, mesh.j, letter)
     if found is None or found.value == 0:
         return zero(Symbol(letter, mesh.j))
-    return Found(Substitution(found.symbol, expression, found.value, UNITS[letter]))
+    return Found(Substitution(found.symbol, expression, found.value, unit(letter)))

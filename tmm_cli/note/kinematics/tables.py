@@ -11,6 +11,7 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.kinematics.driver import output
+from tmm_cli.note.kinematics.on_paper import unit
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.cycle import output_motion, states
 from tmm_cli.tolerances import NO_VECTOR
@@ -32,32 +33,25 @@ def tables(subject: Subject) -> Iterable[Block]:
     assert motion is not None
     for link in results.mechanism.outputs:
         letters = ("φ", "ω", "ε") if results.linkage.output_swings(link) else ("s", "v", "a")
-        units = ("°", "rad/s", "rad/s²") if letters[0] == "φ" else ("m", "m/s", "m/s²")
+        units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
         columns = []
-        for letter, unit, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
+        for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
             largest = float(np.nanmax(np.abs(values), initial=0.0))
-            own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if unit == "°" else values)
-            columns.append(Column(line(Symbol(letter, link), f", {unit}"), own))
+            own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if per == "°" else values)
+            columns.append(Column(line(Symbol(letter, link), f", {per}"), own))
         key = f"output-{link}"
         yield said(_("The motion of the output in all positions is in table {table}."), table=Ref(key))
         yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
-    for letter, unit, what, caption, sentence in (
+    for letter, what, caption, sentence in (
         (
-            "ω",
-            "rad/s",
-            "omega",
-            _("Angular velocities of the links"),
-            _("Angular velocities of the links are in table {table}."),
+            "ω", "omega", _("Angular velocities of the links"),
+            _("The angular velocities of the links are in table {table}."),
+        ), (
+            "ε", "epsilon", _("Angular accelerations of the links"),
+            _("The angular accelerations of the links are in table {table}."),
         ),
-        (
-            "ε",
-            "rad/s²",
-            "epsilon",
-            _("Angular accelerations of the links"),
-            _("Angular accelerations of the links are in table {table}."),
-        ),
-    ):
-        columns = _rates(subject, letter, unit, what)
+    ):  # fmt: skip
+        columns = _rates(subject, letter, what)
         if columns:
             yield said(sentence, table=Ref(what))
             yield _table(subject, caption, columns, what)
@@ -70,7 +64,7 @@ def tables(subject: Subject) -> Iterable[Block]:
             yield Figure(_("Pressure angles over the cycle"), drawing, stem)
 
 
-def _rates(subject: Subject, letter: str, unit: str, what: str) -> list[Column]:
+def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
     """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
     motion = subject.results.motion
     assert motion is not None
@@ -86,18 +80,18 @@ def _rates(subject: Subject, letter: str, unit: str, what: str) -> list[Column]:
         else:
             own.append(link)
     varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * largest]
-    return [Column(_head(letter, links, unit), values) for links, values in varied]
+    return [Column(_head(letter, links), values) for links, values in varied]
 
 
 def _differs(values: Real) -> float:
     return float(np.nanmax(np.abs(values), initial=0.0))
 
 
-def _head(letter: str, links: Sequence[str], unit: str) -> Line:
+def _head(letter: str, links: Sequence[str]) -> Line:
     symbols: list[Symbol | str] = []
     for link in links:
         symbols += [" = ", Symbol(letter, link)] if symbols else [Symbol(letter, link)]
-    return line(*symbols, f", {unit}")
+    return line(*symbols, f", {unit(letter)}")
 
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
@@ -125,7 +119,7 @@ def _places(subject: Subject) -> Iterable[Column]:
         value = np.asarray(motion.drives[driver.link].value, float)
         link = driver.link if several else ""
         if driver.kind == "slide":
-            yield Column(line(Symbol("s", link or driver.link), ", m"), value)
+            yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)
             continue
         full = results.driver_range is not None and results.driver_range.full
         yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, 2 * np.pi) if full else value))

@@ -8,7 +8,7 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, said
 from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
 from tmm_cli.note.kinematics.equations import equations, vector
-from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, zero
+from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import velocities as by_ratio
 from tmm_cli.note.kinematics.words import (
     direct,
@@ -66,7 +66,7 @@ def _turned(here: Here, about: About) -> Block:
     if not found.segment:
         return zero(found.symbol)
     product = Product((Leaf(Symbol("ω", about.link), omega), here.length(about.point, about.base)))
-    return Found(Substitution(found.symbol, product, found.size, here.v.sort.unit))
+    return Found(Substitution(found.symbol, product, found.size, unit("v")))
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -98,10 +98,10 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     assert step.group is not None
     points, together, found = sought(step, known), solved(step), {*known}
     title = step.group.title
-    if step.ratios or not here.first:
-        yield said(
-            _("Group {group} gives:") if not step.ratios else _("The higher pairs of group {group} give:"), group=title
-        )
+    if step.ratios:
+        yield said(_("Group {group} is found from its higher pairs."), group=title)
+    elif not here.first:
+        yield said(_("Group {group} gives:"), group=title)
     for ratio in step.ratios:
         yield from by_ratio(here, step, ratio)
     for about in direct(step):
@@ -152,7 +152,7 @@ def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
             yield zero(symbol)
             continue
         quotient = Quotient(v.leaf, here.length(about.point, about.base))
-        yield Found(Substitution(symbol, quotient, abs(value), "rad/s"))
+        yield Found(Substitution(symbol, quotient, abs(value), unit("ω")))
         if here.first:
             text = _("Vector {v}, carried over to point {point}, turns link {link} {sense}.")
             yield said(text, v=vector(v.symbol), point=name_of(about.point), link=about.link, sense=sense(value))
