@@ -136,8 +136,8 @@ class Writer:
         )  # fmt: skip
         whole = ' class="whole"' if len(rows.rows) <= WHOLE else ""
         return (
-            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n<thead><tr>{head}</tr></thead>\n'
-            f"<tbody>{body}</tbody></table>"
+            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'
+            f"<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
         )
 
     def figure(self, figure: Figure) -> str:
