@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.language import N_, _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
-from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
+from tmm_cli.synthesis.coupler_positions.search import Limits
 from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
 from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
 from tmm_cli.synthesis.record import Infeasible
@@ -141,9 +141,8 @@ def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
     box = None if task.within is None else task.outside
     bounds = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
-    # another layout of the curves may find a strip that one passes over; at last one whose branches are not the same
-    for effort, loose in ((FULL, False), (THOROUGH, False), (FULL, True)):
-        found = best_on_curves(task.poses, size, bounds, given, loose, effort)
+    for loose in (False, True):  # at last one whose branches are not the same
+        found = best_on_curves(task.poses, size, bounds, given, loose)
         if found is None or found[2] > SURE:
             break
     if found is not None:
