@@ -87,8 +87,10 @@ def dyad(task: Task, name: str) -> Dyads:
 
 def given_on_curves(task: Task) -> dict[str, Dyads]:
     """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
-    found = {name: of_turn(task, name) if side.near is None else of_near(task, name)
-             for name, side in task.sides.items()}  # fmt: skip
+    found = {
+        name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch) if side.near is None
+        else of_near(task, name) for name, side in task.sides.items()
+    }  # fmt: skip
     for name, own in found.items():
         if not exists(task, own):
             reason = _(
@@ -97,12 +99,6 @@ def given_on_curves(task: Task) -> dict[str, Dyads]:
             )
             raise Infeasible(f"{name}_turn", reason, search=_quick(task))
     return found
-
-
-def of_turn(task: Task, name: str) -> Dyads:
-    """The dyad of four positions that turns as wanted; nan where there is none."""
-    side = task.sides[name]
-    return by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
 
 
 def of_near(task: Task, name: str) -> Dyads:
