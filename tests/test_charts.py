@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from bank import moved
 from higher import PROBLEMS
 from test_commands import ROOT, SHAPER
 
@@ -78,7 +79,7 @@ def test_a_curve_measures_what_the_scales_say():
     drawing = drawn("shaper")["diagrams"]
     run = curves(drawing)[0]
     heights = [place.imag for place in run.places]
-    results = solve(load(str(SHAPER)), "kinematics")
+    results = moved("shaper")
     assert np.ptp(heights) * scale(drawing, "s") == pytest.approx(results.strokes.travel, rel=1e-6)
     assert abs(run.places[-1].real - run.places[0].real) * scale(drawing, "φ") == pytest.approx(360)
 

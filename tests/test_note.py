@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bank import NAMES
+from bank import NAMES, solved, written
 from formulas import formula, formulas, maths
 from models import PROBLEMS
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Found, Note
+from tmm_cli.note.blocks import Found
 from tmm_cli.note.expression import Sum
 from tmm_cli.note.formats.html import html
 from tmm_cli.quantities import KINDS
@@ -28,17 +28,6 @@ from tmm_cli.results.text import json_text
 
 FIGURES = r"(?<![\w.,′'])[−-]?\d+(?:\.\d+)?(?![\w.]*\w)"
 COUNTED = 100  # whole numbers below it count or name something
-
-
-@cache
-def solved(name: str) -> Results:
-    return solve(load(str(PROBLEMS / f"{name}.yaml")))
-
-
-@cache
-def written(name: str) -> Note:
-    """Without drawings, which have tests of their own."""
-    return note(solved(name), drawn=False)
 
 
 @cache
@@ -157,7 +146,13 @@ def hostile() -> Results:
     """The shaper with markup in every text that a file can give."""
     problem = load(str(PROBLEMS / "shaper.yaml"))
     texts = replace(
-        problem.title_texts, student=HOSTILE, group=HOSTILE, teacher=HOSTILE, department=HOSTILE, code=HOSTILE
+        problem.title_texts,
+        student=HOSTILE,
+        group=HOSTILE,
+        teacher=HOSTILE,
+        institution=HOSTILE,
+        department=HOSTILE,
+        code=HOSTILE,
     )
     links = {name: replace(link, label=HOSTILE) for name, link in problem.linkage.links.items()}
     loads = tuple(replace(load, name=HOSTILE) for load in problem.linkage.loads)

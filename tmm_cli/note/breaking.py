@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from tmm_cli.note.expression import Leaf, Substitution, letters, numbers, result_node
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
 
-LINE = 78.0  # of the text of an A4 page, in widths of a figure
-SMALL = 0.65  # size of indices and exponents
+LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
+SMALL = 0.75  # size of indices and exponents
+SHORT = 9.0  # what is no wider, a name, has no line of its own
 TERMS = ("+", "−")
 OPEN, CLOSE = Sign("("), Sign(")")
 OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
@@ -21,8 +22,11 @@ def chain(sides: Sequence[Node], most: float = LINE) -> Node:
         joined = row(lines[-1], "=", side) if lines else side
         if not lines or width(joined) <= most:
             lines[-1:] = [joined]
+        elif width(lines[-1]) < SHORT:
+            lines[-1:] = _in_terms(joined, most)
         else:
             lines += _in_terms(row("=", side), most)
+    lines = _evened(lines, most)
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
 
 
@@ -45,9 +49,9 @@ def width(node: Node) -> float:
         case Number(text) | Words(text):
             return float(len(text))
         case Letter(symbol):
-            return 1.3 + SMALL * max(len(symbol.below), len(symbol.above))
+            return 1.4 + SMALL * max(len(symbol.below), len(symbol.above))
         case Sign(text):
-            return len(text) if text[0].isalpha() else 0.6 if text in "·|()" else 2.0
+            return len(text) + 1.0 if text[0].isalpha() else 1.3 if text == "·" else 0.6 if text in "|()" else 2.2
         case Row(nodes):
             return sum(width(n) for n in nodes)
         case Fraction(over, under):
@@ -60,6 +64,21 @@ def width(node: Node) -> float:
             return width(inside) + 1.4
         case Lines(lines):
             return max(width(n) for n in lines)
+
+
+def _evened(lines: list[Node], most: float) -> list[Node]:
+    """A result that is alone on its line gets what is before it there too."""
+    if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
+        return lines
+    nodes = lines[-2].nodes
+    breaks = [k for k, node in enumerate(nodes) if k > 1 and _breaks(node) and nodes[k - 1] not in OPENING]
+    if not breaks or width(end := row(*nodes[breaks[-1] :], lines[-1])) > most:
+        return lines
+    return [*lines[:-2], row(*nodes[: breaks[-1]]), end]
+
+
+def _breaks(node: Node) -> bool:
+    return isinstance(node, Sign) and node.text in ("=", *TERMS)
 
 
 def _in_terms(node: Node, most: float) -> list[Node]:

@@ -48,7 +48,7 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
-    "group-loads": (group_loads, 110), "forces": (forces, 110), "lever": (lever, 120),
+    "group-loads": (group_loads, 90), "forces": (forces, 100), "lever": (lever, 110),
 }  # fmt: skip
 
 
@@ -83,7 +83,7 @@ class Subject:
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
-        return printed_unit(self.results.problem.units.symbol(dimension))
+        return printed_unit(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
@@ -93,7 +93,7 @@ class Subject:
         """The same of figures that are there already."""
         return figures(text, self.language)
 
-    def drawings(self, name: str, k: int | None = None) -> Mapping[str, Drawing]:
+    def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
         if not self.drawn:
             return {}

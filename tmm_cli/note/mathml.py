@@ -39,7 +39,9 @@ def _of(node: Node) -> str:
 
 
 def _symbol(symbol: Symbol, vector: bool) -> str:
-    letter = f"<mi>{escape(symbol.letter)}</mi>"
+    own = symbol.letter.rstrip("′")  # with its strokes it would be a name, which is upright
+    letter = f"<mi>{escape(own)}</mi>" + "<mo>′</mo>" * (len(symbol.letter) - len(own))
+    letter = letter if own == symbol.letter else f"<mrow>{letter}</mrow>"
     if vector:
         letter = f'<mover accent="true">{letter}<mo stretchy="false">¯</mo></mover>'
     below, above = f"<mtext>{escape(symbol.below)}</mtext>", f"<mi>{escape(symbol.above)}</mi>"
@@ -51,6 +53,5 @@ def _symbol(symbol: Symbol, vector: bool) -> str:
 
 
 def _underlined(shown: str, lines: int) -> str:
-    for _ in range(lines):
-        shown = f'<munder accentunder="true">{shown}<mo stretchy="true">_</mo></munder>'
-    return shown
+    """Lines under a vector are a matter of style: characters under it are as short as they are."""
+    return f'<mrow class="lines{lines}">{shown}</mrow>' if lines else shown

@@ -18,7 +18,7 @@ from tmm_cli.plans.projections import ForceSum, along_guides, of_driver
 from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.plans.velocity import other_than
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import NO_COORDINATE, SAME_PLACES
+from tmm_cli.tolerances import NO_COORDINATE, NO_FORCE, SAME_PLACES
 from tmm_cli.vectors import dot
 
 SPECIAL = "W"  # the special point of a group with three leads
@@ -203,7 +203,7 @@ def _equation(
 
 
 def terms(acting: Iterable[Acting], centre: complex, size: float) -> tuple[Term, ...]:
-    """Moments about a place; without what goes through it but for rounding of a size (m)."""
+    """Moments about a place; without what goes through it but for rounding: of a size (m), of the largest moment."""
     found = []
     for one in acting:
         if one.couple:
@@ -213,7 +213,8 @@ def terms(acting: Iterable[Acting], centre: complex, size: float) -> tuple[Term,
         foot = one.at - along * float(dot(one.at - centre, along))
         if abs(foot - centre) > NO_COORDINATE * size:
             found.append(Term(one, one.about(centre), abs(foot - centre), foot))
-    return tuple(found)
+    least = NO_FORCE * max((abs(term.moment) for term in found), default=0.0)
+    return tuple(term for term in found if abs(term.moment) > least)
 
 
 def _moved(acting: Acting, place: complex | None, size: float) -> Iterable[Acting]:

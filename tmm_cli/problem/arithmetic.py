@@ -40,10 +40,6 @@ def taken(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | N
     return found.value if found.dimension.fits(want) else None
 
 
-class UnknownParameterError(ProblemError):
-    """A name in arithmetic that no parameter has."""
-
-
 class Parser:
     """Precedence climbing over the text: sums, products, powers, signs, calls."""
 
@@ -192,7 +188,7 @@ class Parser:
             raise ProblemError(_("a unit without a number before it"), found=quote(name), allowed=f"e.g. 1 {name}")
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
-        raise UnknownParameterError(
+        raise ProblemError(
             _("there is no such parameter"), found=quote(name), allowed=", ".join(self.parameters) or "none is given",
             near=nearest(name, names),
         )  # fmt: skip

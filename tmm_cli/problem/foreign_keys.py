@@ -32,6 +32,7 @@ _WORDS: Final = {
     "student": "студент",
     "group": "группа grupa",
     "teacher": "преподаватель руководитель nastavnik profesor",
+    "institution": "университет институт вуз univerzitet fakultet",
     "department": "кафедра katedra",
     "code": "шифр обозначение oznaka",
     "length": "длина dužina duzina",

@@ -29,11 +29,12 @@ class Synthesised:
 
 @dataclass(frozen=True)
 class TitleTexts:
-    """What the title block of a drawn sheet says, and which of the two it is."""
+    """What the title block of a drawn sheet and the title page of the note say; which of the two blocks it is."""
 
     student: str = ""
     group: str = ""
     teacher: str = ""
+    institution: str = ""
     department: str = ""
     code: str = ""
     block: Literal["gost", "plain"] = "gost"

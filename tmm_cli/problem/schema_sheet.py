@@ -30,6 +30,7 @@ class SheetTexts(Strict):
     student: Words = Field(default="", description="who drew it")
     group: Words = Field(default="", description="the student's group")
     teacher: Words = Field(default="", description="who checks it")
+    institution: Words = Field(default="", description="the university, on the title page of the note")
     department: Words = Field(default="", description="the university and its department")
     code: Words = Field(default="", description="designation of the project; the number of the sheet is added to it")
     block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from tmm_cli.language import _
 from tmm_cli.problem import schema
-from tmm_cli.problem.arithmetic import Parser, UnknownParameterError
+from tmm_cli.problem.arithmetic import Parser
 from tmm_cli.problem.build import build as build_linkage
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
@@ -89,7 +89,7 @@ class TaskFile:
             resting = self._resting(set(found))
             self.late = {name: raw[name] for name in raw if name in resting}
             self.early = parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
-            self._not_on_late()
+            self._not_on_what_is_found()
 
     def _kinds(self) -> dict[str, str]:
         """Names and kinds of what the task finds; they may depend on what is asked."""
@@ -144,9 +144,9 @@ class TaskFile:
             late |= more
         return late
 
-    def _not_on_late(self) -> None:
-        """What is asked cannot rest on what is found."""
-        known = dict.fromkeys(self.late, PhysicalValue(0.0))
+    def _not_on_what_is_found(self) -> None:
+        """What is asked cannot rest on what is found; a search may ask for something of the linkage with it."""
+        known = dict.fromkeys([*self.late, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
         for path, text in _texts(self.block):
             used = Parser(plain_text(text[:200]), known, self.units).names()
             if path[0] not in ("task", "names") and used:
@@ -172,13 +172,6 @@ class TaskFile:
             raise self._refusal(error) from None
         except OfTheFile as error:
             raise error.error from None
-        except UnknownParameterError as error:
-            if error.found not in [quote(name) for name in self.names.values()]:
-                raise
-            raise ProblemError(
-                _("this rests on what the synthesis finds"), path=error.path, found=error.found,
-                allowed=_("numbers, and parameters that do not"),
-            ) from None  # fmt: skip
 
     def tried(self, found: Parameters, units: UnitSystem) -> Problem:
         """The linkage with other values of what is to be found, for a search. Raises OfTheFile."""

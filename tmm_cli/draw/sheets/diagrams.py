@@ -29,7 +29,7 @@ from tmm_cli.draw.paper.sheet import (
 from tmm_cli.draw.sheets import over_cycle
 from tmm_cli.draw.sheets.over_cycle import Quantities
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import (
@@ -169,7 +169,7 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
 
 
 def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
-    factor, unit = units.factor(found.dimension), on_paper(units.symbol(found.dimension))
+    factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):
         values, points = (np.asarray(v) / factor for v in (course.values, course.points))
@@ -185,11 +185,11 @@ def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Se
         every = slice(None, None, math.ceil(len(marks) / MARKS))
         curves.append(Curve(marks[every], np.broadcast_to(points, np.shape(marks))[every], "", colour, dots=True))
         for i in leaps:
-            told = [f"{v:.4g}" if len(found.courses) <= WRITTEN else "" for v in (values[i], values[i + 1])]
+            told = [numeral(v, ".4g") if len(found.courses) <= WRITTEN else "" for v in (values[i], values[i + 1])]
             jumps.append(Jump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
     return Plot(
         with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),
-        degrees=found.dimension == ANGLE and unit == "deg",
+        degrees=found.dimension == ANGLE and units.symbol(ANGLE) == "deg",
     )  # fmt: skip
 
 

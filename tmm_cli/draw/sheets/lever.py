@@ -16,7 +16,7 @@ from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.lever import POLE, LeverPlan, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
@@ -102,7 +102,7 @@ def _checked(here: Position) -> Iterable[Words]:
     yield filled(
         _("force plan: {name} = {value} {unit}, difference {percent} %"),
         name=balance_symbol(balance.driver.link, several=False, turns=turns), value=figure(abs(value)),
-        unit="N·m" if turns else "N", percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
+        unit=spelt("N·m" if turns else "N"), percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
     )  # fmt: skip
 
 
@@ -118,10 +118,12 @@ def _several(here: Position) -> Iterable[str]:
         ratio = float(np.broadcast_to(motion.drives[balance.driver.link].first, motion.q.shape)[k])
         turns = balance.moment is not None
         name = balance_name(balance.driver.link, True, turns=turns)
-        names.append(name if ratio == 1 else f"{ratio:+.4g}·{name}")
+        names.append(name if ratio == 1 else f"{numeral(ratio, '+.4g')}·{name}")
         yield _("{name} = {value} {unit} (force plan)").format(
-            name=name, value=f"{float(balance.generalized[k]):.6g}", unit="N·m" if turns else "N"
+            name=name, value=numeral(float(balance.generalized[k]), ".6g"), unit=spelt("N·m" if turns else "N")
         )
     yield _("lever: {names} = {value} {unit}").format(
-        names=" ".join(names), value=f"{float(results.lever.balancing[k]):.6g}", unit="N·m" if crank else "N"
+        names=" ".join(names),
+        value=numeral(float(results.lever.balancing[k]), ".6g"),
+        unit=spelt("N·m" if crank else "N"),
     )

@@ -54,4 +54,5 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
         else:
             text = _("Driving link {links}")
         yield from sections.written(part, heading(text.format(links=", ".join(part.links))), first=first and not number)
+    yield from loads.without_friction(results, k)
     yield from lever.written(subject, k, heading(_("Zhukovsky lever")), explained=first)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tmm_cli.draw.sheets.structure import parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, Link, Ref, Rows, line, paragraph, said
+from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
 from tmm_cli.note.math import Words
@@ -110,13 +111,24 @@ def _groups(subject: Subject) -> Iterable[Block]:
         yield Rows(
             _("Assur groups, in the order in which they are joined"), tuple(line(h) for h in head), rows, "groups"
         )
-    yield from subject.figures(
-        "groups", _("The groups are shown apart in figure {figure}."), _("Assur groups of the mechanism")
-    )
+    yield from _apart(subject)
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
     yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+
+
+def _apart(subject: Subject) -> Iterable[Block]:
+    """The drawings of the parts, one after the other."""
+    drawn = subject.drawings("groups")
+    if drawn:
+        sentence = _("The primary mechanism and the groups are shown apart in figures {first} to {last}.")
+        if len(drawn) == 1:
+            sentence = _("The primary mechanism is shown in figure {first}.")
+        yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
+    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
+        text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
+        yield Figure(text.format(title=part.title), drawing, stem)
 
 
 def _group(group: Group) -> tuple[Line, ...]:

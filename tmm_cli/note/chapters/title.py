@@ -13,8 +13,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
     """What the block `sheet` of the file gives; lines are left for what it does not."""
     texts = subject.results.problem.title_texts
     people = ((_("Student"), texts.student), (_("Group"), texts.group), (_("Teacher"), texts.teacher))
+    above = "\n".join(text for text in (texts.institution, texts.department) if text)
     yield Title(
-        texts.department, _("Explanatory note to the course project on the theory of mechanisms and machines"),
+        above, _("Explanatory note to the course project on the theory of mechanisms and machines"),
         subject.results.problem.title, people, texts.code,
     )  # fmt: skip
     yield Contents()

@@ -9,7 +9,6 @@ from tmm_cli.language import _
 from tmm_cli.note.breaking import chain
 from tmm_cli.note.expression import Expression, Leaf, Product, Quotient, Substitution, Sum, letters
 from tmm_cli.note.math import Letter, Node, Number, row
-from tmm_cli.plans.forces import ForcePlan
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
 from tmm_cli.plans.record import Symbol
@@ -60,12 +59,6 @@ def along_guide(forces: ForceSum) -> tuple[Node, Substitution]:
 def value(symbol: Symbol, size: float, unit: str) -> Substitution:
     """A quantity that is read off: its letter and its value."""
     return Substitution(symbol, Leaf(symbol, size), size, unit)
-
-
-def polygon(plan: ForcePlan, known: frozenset[Symbol], lines: frozenset[Symbol]) -> Node:
-    """The vector sum of a plan: known whole, known to be along a line, or neither."""
-    symbols = [vector.symbol for vector in plan.plan.vectors if vector.kind != "inner"]
-    return vector_sum([(symbol, 2 if symbol in known else 1 if symbol in lines else 0) for symbol in symbols])
 
 
 def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.applied import Applied
+from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
@@ -16,7 +18,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
 from tmm_cli.note.forces.words import direction, listed, sense, shown
 from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.record import Symbol, reaction_symbol
+from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import dot
 
@@ -130,8 +132,8 @@ def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
 def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
     assert results.reactions is not None
     reaction = results.reactions.of(given.pair)
-    own = (f"T{given.pair}", f"T{given.pair}'")  # on the frame it is left out
-    load = next((one for one in results.loads if one.kind == "friction" and one.name in own), None)
+    own = ((reaction.on, f"T{given.pair}"), (reaction.by, f"T{given.pair}'"))  # on the frame it is left out
+    load = next((x for x in results.loads if x.kind == "friction" and (x.link, x.name) in own), None)
     if load is None:
         return
     f, r = Leaf(Symbol("f", given.pair), given.coefficient), Leaf(Symbol("r", given.pair), given.radius)
@@ -141,6 +143,21 @@ def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
     if size:
         factors = (f, normal) if slides else (f, r, normal)
         yield Found(Substitution(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m")))
+
+
+def without_friction(results: Results, k: int) -> Iterable[Block]:
+    """What would balance the drivers if nothing rubbed."""
+    motion = results.motion
+    if not results.linkage.friction or motion is None:
+        return
+    free = react(motion, results.structure, tuple(load for load in results.loads if load.kind != "friction"))
+    yield said(_("Without friction it would be:"))
+    for balance in free.balances:
+        turns = balance.moment is not None
+        symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)
+        size = abs(float(balance.generalized[k]))
+        name = replace(symbol, above="0")
+        yield Found(Substitution(name, Leaf(name, size), size, _("N·m") if turns else _("N")))
 
 
 def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:

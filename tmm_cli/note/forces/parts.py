@@ -13,7 +13,8 @@ from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.moments import LoadedPart, loaded_parts
 from tmm_cli.plans.projections import ForceSum
-from tmm_cli.plans.record import Symbol, reaction_symbol
+from tmm_cli.plans.record import NamedVector, Symbol, reaction_symbol
+from tmm_cli.tolerances import NO_FORCE
 
 
 @dataclass(frozen=True)
@@ -69,10 +70,13 @@ class Part:
     @property
     def sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
         """Sums along guides of what is known before the force plan is drawn, and the others."""
+        inner = () if self.forces is None else self.forces.inner
+        both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
+        unknown = (self.sought | both) - self.by_moments
         found: tuple[list[ForceSum], list[ForceSum]] = [], []
         for one in self.loaded.sums:
             others = {part.acting.symbol for part in one.parts if part is not one.found}
-            found[bool(others & self.sought - self.by_moments)].append(one)
+            found[bool(others & unknown)].append(one)
         return found
 
     @property
@@ -89,6 +93,14 @@ class Part:
     def caption(self) -> str:
         """Of its position."""
         return at_position(self.subject, self.here.k)
+
+    @property
+    def vectors(self) -> list[NamedVector]:
+        """Of the plan without the inner reaction, and without loads that are nothing here."""
+        least = NO_FORCE * self.plan.plan.size
+        return [
+            v for v in self.plan.plan.vectors if v.kind != "inner" and (v.symbol in self.sought or abs(v.value) > least)
+        ]
 
     def stem(self, name: str) -> str:
         """Of its drawing."""

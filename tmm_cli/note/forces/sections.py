@@ -9,7 +9,7 @@ from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Found, Heading, Items, Line, filled, said
 from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
-from tmm_cli.note.forces.equations import along_guide, by_moments, moments, polygon, value, vector_sum
+from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.forces.words import direction, links_of, listed, sense
 from tmm_cli.plans.bodies import DRIVE, Acting
@@ -127,14 +127,16 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
         return
     point, links, symbol = equation.about, links_of(equation.links), equation.sought.symbol
     if found is None:
-        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} = 0.")
+        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
                  "moments about it ({links}) gives {symbol}:")  # fmt: skip
     else:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=point, links=links, symbol=symbol)
-    if found is not None:
+    if found is None:
+        yield Found(value(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N")))
+    else:
         yield from (Equation(moments(equation)), Found(found))
 
 
@@ -143,7 +145,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     known = part.calculated | part.borne
     if part.inner_first:
         known |= {reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None}
-    vectors = [v for v in part.plan.plan.vectors if v.kind != "inner"]
+    vectors = part.vectors
     lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield said(
         _("The forces make a closed polygon. Two lines are under vectors that are known whole, one is under a vector "
@@ -151,7 +153,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
         if explained
         else _("The forces make a closed polygon:")
     )  # fmt: skip
-    yield Equation(polygon(part.plan, known, lines))
+    yield Equation(vector_sum([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors]))
     yield from part.subject.figures(
         "forces", _("The force plan is drawn to scale in figure {figure}."),
         _("Force plan: {links}; {position}").format(links=links_of(part.links), position=part.caption),

@@ -167,16 +167,23 @@ def parts(
     return Rows(found, np.concatenate([t for __, t in made]), loops, first, last)
 
 
-def _scanned(found: Curve, loop: int, size: float, first: int, rounds: int) -> Any:
+def _scanned(found: Loops | Circle, loop: int, size: float, first: int, rounds: int) -> Any:
+    def wide(t: Any) -> Any:
+        dyads = found.at(loop, t)
+        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size
+        return (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
+
+    return denser(wide, first, rounds)
+
+
+def denser(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
+    """Parameters all round a loop: so many steps first, then more in the middle of those that are too wide."""
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
-        dyads = found.at(loop, t)
-        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size  # type: ignore[union-attr]
-        wide = (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART)
-        wide &= np.diff(t) > 1e-12
-        if not np.any(wide):
+        here = wide(t)
+        if not np.any(here):
             break
-        t = np.sort(np.concatenate([t, ((t[1:] + t[:-1]) / 2)[wide]]))
+        t = np.sort(np.concatenate([t, ((t[1:] + t[:-1]) / 2)[here]]))
     return t
 
 

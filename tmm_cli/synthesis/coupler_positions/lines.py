@@ -7,10 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Poses, equal_angles
-from tmm_cli.synthesis.coupler_positions.curve import FULL, Curve, curve
+from tmm_cli.synthesis.coupler_positions.burmester import Poses, equal_angles
+from tmm_cli.synthesis.coupler_positions.curve import FULL, Curve, curve, denser
 
-FIRST: Final = 721  # places of a loop that are looked at first;
+FIRST: Final = 720  # steps of a loop that are looked at first;
 ROUNDS: Final = 24  # then between those that are far apart, or where the curve bends between them
 APART: Final = 0.01  # of the size of the mechanism, or of how far off the place is
 BEND: Final = 0.05  # rad: a corner that is seen
@@ -58,21 +58,18 @@ def _parts(found: Curve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
 
 def _dense(at: Callable[[Any], Any]) -> Any:
     """Places all round a loop, as near to each other as a drawing needs."""
-    t = FULL * np.linspace(0, 1, FIRST, dtype=EXACT)
-    places = at(t)
-    for _ in range(ROUNDS):
+
+    def wide(t: Any) -> Any:
+        places = at(t)
         steps, reach = np.diff(places), np.maximum(1, np.abs(places))
-        wide = ~(np.abs(steps) < APART * np.minimum(reach[1:], reach[:-1]))
+        found = ~(np.abs(steps) < APART * np.minimum(reach[1:], reach[:-1]))
         bends = np.abs(np.angle(steps[1:] / steps[:-1])) > BEND
         seen = np.abs(steps) > SHORT
-        wide[1:] |= bends & seen[1:]
-        wide[:-1] |= bends & seen[:-1]
-        wide &= (_near(places[1:]) | _near(places[:-1])) & (np.diff(t) > CLOSE * FULL)
-        if not np.any(wide):
-            break
-        between = ((t[1:] + t[:-1]) / 2)[wide]
-        order = np.argsort(np.concatenate([t, between]), kind="stable")
-        t, places = np.concatenate([t, between])[order], np.concatenate([places, at(between)])[order]
+        found[1:] |= bends & seen[1:]
+        found[:-1] |= bends & seen[:-1]
+        return found & (_near(places[1:]) | _near(places[:-1])) & (np.diff(t) > CLOSE * FULL)
+
+    places = at(denser(wide, FIRST, ROUNDS))
     return places[np.isfinite(places)]
 
 

@@ -10,18 +10,19 @@ Arrays: tasks on the first axis, pairs on the last.
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from tmm_cli.double_double import PI, DoubleDouble
-from tmm_cli.roots import bisect
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4
 SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
 REFINEMENTS: Final = 6
 ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
+ON_CIRCLE: Final = 1e-6  # how near to the unit circle a root is on it
 
 
 class Bars(NamedTuple):
@@ -144,52 +145,26 @@ def angles_of_forms(forms: Any) -> Any:
     """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
     and sine vanish; nan where there is no more.
 
-    Between the angles where it is extreme (its slope is a form too) it has one sign change or none: no root is lost
-    because two are near each other, and none is made of two complex ones.
+    Times e^(3 i angle) a form is a cubic of z = e^(2 i angle): its roots on the unit circle are real angles, to half
+    their digits where two lie together, and `polished` makes them exact.
     """
-    forms = np.asarray(forms, dtype=EXACT)
-    size = np.max(np.abs(forms), axis=-1, keepdims=True)
-    whole = np.isfinite(size[:, 0]) & (size[:, 0] > 0)
-    forms = np.where(whole[:, None], forms, 1.0) / np.where(whole[:, None], size, 1.0)
-    extremes = np.stack([np.angle(_roots(row)) / 2 for row in np.asarray(forms, dtype=float) @ WAVES]) if len(
-        forms) else np.zeros((0, 3))  # fmt: skip
-    even = np.broadcast_to(np.linspace(-np.pi / 2, np.pi / 2, 25)[:-1], (len(forms), 24))
-    scan = np.sort(np.concatenate([extremes, even], axis=-1)).astype(EXACT)
-    ends = np.concatenate([scan, scan[:, :1] + EXACT(PI)], axis=-1)
-    values = _value(forms.T[:, :, None], ends)
-    values[:, -1] = -values[:, 0]  # half a turn on, a form of odd degree is what it was, of the other sign
-    below = np.signbit(values)
-    rows, here = np.nonzero((below[:, 1:] != below[:, :-1]) & whole[:, None])
-    low, high, below, own = ends[rows, here], ends[rows, here + 1], below[rows, here], forms[rows].T
-    low, high = bisect(lambda angle: np.signbit(_value(own, angle)) == below, low, high)
     found = np.full((len(forms), 3), EXACT(np.nan))
-    number = np.arange(len(rows)) - np.searchsorted(rows, rows)
-    kept = number < 3
-    found[rows[kept], number[kept]] = ((low + high) / 2)[kept]
+    size = np.max(np.abs(forms), axis=-1)
+    for k in np.flatnonzero(np.isfinite(size) & (size > 0)):
+        z = np.roots(np.asarray(forms[k] / size[k], dtype=float) @ WAVES)
+        angles = np.sort(np.angle(z[np.abs(np.abs(z) - 1) < ON_CIRCLE]) / 2)
+        found[k, : len(angles)] = angles
     return found
 
 
-def _value(form: Any, angle: Any) -> Any:
-    c, s = np.cos(angle), np.sin(angle)
-    f0, f1, f2, f3 = form
-    return ((f0 * s + f1 * c) * s + f2 * c * c) * s + f3 * c * c * c
+def _waves() -> Any:
+    """The cubic of z of each of the four terms of a form."""
+    sine, cosine = np.array([-1j, 1j]), np.array([1, 1])  # 2 sin, 2 cos: of e^(i angle), e^(-i angle)
+    terms = (sine, sine, sine), (sine, sine, cosine), (sine, cosine, cosine), (cosine, cosine, cosine)
+    return np.array([reduce(np.convolve, term) for term in terms])
 
 
-def _roots(polynomial: Any) -> Any:
-    """Three roots of a cubic; 1 where it has fewer."""
-    found = np.roots(polynomial)
-    return np.concatenate([found, np.ones(3 - len(found))])
-
-
-def _slopes() -> Any:
-    """Over z = e^(2 i angle) a form times e^(3 i angle) is a cubic, and so is its slope: that of each of the four."""
-    sine, cosine, rows = np.array([-1j, 1j]), np.array([1, 1]), []  # 2 sin, 2 cos: of e^(i angle), e^(-i angle)
-    for one in ((sine, sine, sine), (sine, sine, cosine), (sine, cosine, cosine), (cosine, cosine, cosine)):
-        rows.append(np.convolve(np.convolve(one[0], one[1]), one[2]) * np.array([3j, 1j, -1j, -3j]))
-    return np.array(rows)
-
-
-WAVES: Final = _slopes()
+WAVES: Final = _waves()
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:

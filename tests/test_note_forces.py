@@ -1,0 +1,135 @@
+"""The force analysis of the note: the order in which it finds things, what it says of vectors, friction, positions."""
+
+import re
+from collections.abc import Iterator
+from itertools import takewhile
+
+import pytest
+from bank import NAMES, solved
+from models import PROBLEMS
+
+from tmm_cli import load, solve
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, Paragraph
+from tmm_cli.note.chapters.forces import blocks
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Leaf
+from tmm_cli.note.math import Letter, Row
+from tmm_cli.plans.record import Symbol, reaction_symbol
+
+FRICTION = "friction: {coefficient: 0.1, radius: 15}"
+
+
+def chapter(name: str) -> list[Block]:
+    return list(blocks(Subject(solved(name), drawn=False)))
+
+
+def section(found: list[Block], title: str) -> list[Block]:
+    at = found.index(Heading(title, 2))
+    return list(takewhile(lambda block: not isinstance(block, Heading), found[at + 1 :]))
+
+
+def leaves(expression: Expression) -> Iterator[Leaf]:
+    if isinstance(expression, Leaf):
+        yield expression
+    for part in getattr(expression, "terms", ()):
+        yield from leaves(part[1])
+    for part in getattr(expression, "factors", ()):
+        yield from leaves(part)
+    for name in ("over", "under", "of"):
+        if hasattr(expression, name):
+            yield from leaves(getattr(expression, name))
+
+
+def under(block: Equation) -> dict[str, int]:
+    """Lines under the vectors of a sum, by their names."""
+    rows = [block.node] if isinstance(block.node, Row) else block.node.nodes
+    return {n.symbol.name: n.lines for r in rows for n in r.nodes if isinstance(n, Letter) and n.vector}
+
+
+def opposite(name: Symbol, links: list[str]) -> Symbol:
+    """R₄₃ of R₃₄."""
+    by = next(a for a in links for b in links if reaction_symbol(a, b).below == name.below)
+    on = next(b for b in links if reaction_symbol(by, b).below == name.below)
+    return reaction_symbol(on, by)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_reaction_is_put_in_before_it_is_found(name):
+    links = list(solved(name).linkage.links)
+    known: set[Symbol] = set()
+    for block in chapter(name):
+        if isinstance(block, Heading) and block.text.startswith("Loads of the links"):
+            known = set()
+        if not isinstance(block, Found) or block.substitution.name.letter == "ΣM":
+            continue
+        found, expression = block.substitution.name, block.substitution.expression
+        for leaf in leaves(expression):
+            if leaf.symbol.letter == "R" and leaf.symbol != found:
+                assert {leaf.symbol, opposite(leaf.symbol, links)} & known, f"{leaf.symbol.name} for {found.name}"
+        known.add(found)
+        known |= {Symbol("R", found.below)} if found.above else set()
+
+
+def test_groups_come_from_the_last_to_the_driving_link():
+    headings = [block.text for block in chapter("shaper") if isinstance(block, Heading)]
+    assert headings == [
+        "Force analysis", "Loads of the links", "Group of links 4, 5", "Group of links 2, 3", "Driving link 1",
+        "Zhukovsky lever", "Forces in all positions",
+    ]  # fmt: skip
+
+
+def test_lines_under_a_vector_say_what_is_known_of_it():
+    sums = [block for block in section(chapter("shaper"), "Group of links 4, 5") if isinstance(block, Equation)]
+    whole = next(vectors for vectors in map(under, sums) if "R₃₄ⁿ" in vectors)
+    assert whole == {"R₃₄ⁿ": 1, "R₃₄ᵗ": 2, "G₄": 2, "U₄": 2, "G₅": 2, "U₅": 2, "F": 2, "R₀₅": 1}
+
+
+def test_a_stone_between_two_guides_takes_two_polygons():
+    sums = [block for block in section(chapter("course-2"), "Group of links 4, 5") if isinstance(block, Equation)]
+    first, second = [vectors for vectors in map(under, sums) if vectors]
+    assert first == {"G₅": 2, "U₅": 2, "Q": 2, "R₄₅": 1, "R₀₅": 1}, "two sizes unknown"
+    assert second["R₀₅"] == 2 and second["R₃₄"] == 0, "then a size and a direction"
+
+
+def test_nothing_is_written_where_nothing_acts():
+    assert not chapter("five-point-line")
+
+
+def test_links_whose_reactions_are_found_together_are_said_to_be():
+    said = " ".join(str(block.line) for block in chapter("class-iv") if isinstance(block, Paragraph))
+    assert "solved together" in said
+    checks = [
+        b.substitution for b in chapter("class-iv") if isinstance(b, Found) and b.substitution.name.letter == "ΣM"
+    ]
+    assert len(checks) == 4 and all(check.result == 0 for check in checks)
+
+
+@pytest.fixture(scope="module")
+def rubbing(tmp_path_factory):
+    """The shaper with friction, two positions in detail."""
+    text = (PROBLEMS / "shaper.yaml").read_text(encoding="utf-8")
+    text = text.replace("output: 5", f"{FRICTION}\noutput: 5").replace("detail: [3]", "detail: [3, 8]")
+    file = tmp_path_factory.mktemp("friction") / "shaper.yaml"
+    file.write_text(text, encoding="utf-8")
+    return solve(load(str(file)))
+
+
+def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
+    found = [block.substitution for block in blocks(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
+    rubbed = {s.name.below for s in found if s.name.letter == "T"}
+    assert rubbed == {pair.pair for pair in rubbing.linkage.friction}
+    without = [s.result for s in found if s.name == Symbol("M", "b", "0")]
+    free = solved("shaper").reactions.balance.moment
+    assert without == pytest.approx([abs(free[3]), abs(free[8])])
+    efficiency = next(s for s in found if s.name.letter == "η")
+    assert efficiency.result == rubbing.losses.efficiency and efficiency.printed()
+
+
+def test_the_method_is_explained_once_and_sections_are_named_after_their_positions(rubbing):
+    found = list(blocks(Subject(rubbing, drawn=False)))
+    headings = [block.text for block in found if isinstance(block, Heading)]
+    assert [re.findall(r"position (\d)", text) for text in headings].count(["3"]) == 5
+    said = [str(block.line) for block in found if isinstance(block, Paragraph)]
+    once = ("d'Alembert", "acceleration of free fall", "angular acceleration", "Two lines are under", "rigid lever")
+    for words in once:
+        assert sum(words in text for text in said) == 1, words
