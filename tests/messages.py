@@ -19,10 +19,12 @@ from babel.messages.mofile import read_mo, write_mo
 from babel.messages.pofile import read_po, write_po
 
 from tmm_cli.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
+from tmm_cli.problem.units import SYMBOLS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "tmm_cli"
-KEYWORDS = {"_": "", "N_": "", "Phrase": "", "symbol": "symbol"}  # what marks a message, and its context
+KEYWORDS = {"_": "", "N_": "", "Phrase": "", "lettered": "symbol"}  # what marks a message, and its context
+UNITS = sorted({*filter(str.isascii, SYMBOLS), "J", "W"} - {"%"})
 NOT_TRANSLATED = "bench"
 TRANSLATED = tuple(language for language in LANGUAGES if language != ENGLISH)
 
@@ -41,6 +43,8 @@ def messages() -> Iterator[tuple[str, str, str]]:
                 text = found if isinstance(found, str) else found[0]
                 if text:
                     yield KEYWORDS[name], text, file.relative_to(ROOT).as_posix()
+    for unit in UNITS:
+        yield "unit", unit, "tmm_cli/problem/units.py"
 
 
 def _marked(stream: io.BufferedReader) -> Iterator[tuple[int, str, object, list[str]]]:
@@ -106,7 +110,8 @@ def read(language: str) -> dict[tuple[str | None, str], str]:
 
 def translations(catalog: Catalog) -> dict[tuple[str | None, str], str]:
     """What is translated, by context and message."""
-    return {(m.context, str(m.id)): str(m.string) for m in catalog if m.id and m.string and not m.fuzzy}
+    found = ((m.context, str(m.id), str(m.string)) for m in catalog if m.id and m.string and not m.fuzzy)
+    return {(c.decode() if isinstance(c, bytes) else c, text): said for c, text, said in found}
 
 
 def fields(text: str) -> list[str]:

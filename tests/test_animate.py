@@ -9,9 +9,10 @@ from functools import cache
 
 import numpy as np
 import pytest
+from bank import solved
 from models import PROBLEMS
 
-from tmm_cli import load, solve
+from tmm_cli import solve
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.animate.content import FRAMES, frames, picture_of
 from tmm_cli.animate.page import FEWEST, MOST, page
@@ -24,13 +25,8 @@ HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'
 
 
 @cache
-def results_of(name):
-    return solve(load(str(PROBLEMS / f"{name}.yaml")))
-
-
-@cache
 def page_of(name):
-    return page(results_of(name))
+    return page(solved(name))
 
 
 def data_of(html):
@@ -50,13 +46,13 @@ def test_a_page_is_small_and_asks_for_nothing(name):
 def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
     whole = page_of("shaper")
     monkeypatch.setattr("tmm_cli.animate.page.MOST", len(whole.encode()) * 3 // 4)
-    fewer = page(results_of("shaper"))
+    fewer = page(solved("shaper"))
     assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
     assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
 
 
 def test_links_are_in_every_frame_where_the_results_have_them():
-    results, data = results_of("shaper"), data_of(page_of("shaper"))
+    results, data = solved("shaper"), data_of(page_of("shaper"))
     whole = frames(results, FRAMES)
     picture = picture_of(whole, whole.motion)
     for name, body in zip(picture.bodies, data["bodies"], strict=True):
@@ -68,7 +64,7 @@ def test_links_are_in_every_frame_where_the_results_have_them():
 
 
 def test_plans_end_in_the_velocities_and_accelerations_of_the_points():
-    results, data = results_of("shaper"), data_of(page_of("shaper"))
+    results, data = solved("shaper"), data_of(page_of("shaper"))
     motion = at_positions(results, results.closely(FRAMES + 1))
     for plan, quantity in zip(data["plans"], ("v", "a"), strict=True):
         found = {letter: n["point"] for n in plan["letters"] for letter in n["text"].split(", ")}

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import moved
 from random_linkages import Maker
 from test_commands import described, tmm
 
@@ -297,7 +298,7 @@ sketch: {at: 90 deg}
 
 def test_links_that_hang_on_a_leg_do_not_hide_the_triad():
     """In the press the rod to the ram hangs on lever 2, which is a leg of the triad."""
-    results = solve(load(str(SIX.parent / "press-class-iii.yaml")), "kinematics")
+    results = moved("press-class-iii")
     linkage, structure = results.linkage, results.structure
     triad, dyad = find_assemblies(linkage, structure, results.kernels, results.start).groups
     assert (triad.group.links, triad.method, triad.complete) == (("2", "5", "6", "7"), "polynomial", True)

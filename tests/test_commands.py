@@ -18,9 +18,9 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from bank import NAMES, solved
 from rich.console import Console
 
-from tmm_cli import load, solve
 from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
 from tmm_cli.problem.units import UnitSystem
@@ -29,9 +29,6 @@ from tmm_cli.results.reports import tables
 from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
 
 ROOT = Path(__file__).parent.parent
-PROBLEMS = sorted(
-    path for path in (ROOT / "problems").glob("*.yaml") if "\nstructure:" not in path.read_text(encoding="utf-8")
-)  # chains given by pairs alone have no dimensions: test_spatial
 SHAPER = ROOT / "problems" / "shaper.yaml"
 
 
@@ -73,18 +70,6 @@ def after_the_echo(stderr):
     lines = stderr.splitlines(keepends=True)
     assert [line.split(": ")[1] for line in lines[:3]] == ["bare numbers", "driver", "sizes"]
     return "".join(lines[3:])
-
-
-@functools.cache
-def problem(path):
-    """A problem of the bank, read (and what it searches for found) once for all the tests that only look at it."""
-    return load(str(path))
-
-
-@functools.cache
-def moved(path):
-    """Its kinematics, likewise."""
-    return solve(problem(path), "kinematics")
 
 
 def leaves(value):
@@ -246,7 +231,8 @@ def test_above_the_limit_of_the_lever_the_run_says_so_and_exits_1(tmp_path):
 
 
 def test_the_lever_of_every_problem_agrees_in_what_it_is_checked_against():
-    for file in PROBLEMS:
+    for name in NAMES:
+        file = ROOT / "problems" / f"{name}.yaml"
         assert "Property to see:" in file.read_text(encoding="utf-8")
         expected = json.loads((file.parent / "expected" / f"{file.stem}.json").read_text(encoding="utf-8"))
         assert max(d for d in expected["result"]["lever"]["difference"] if d is not None) < 1e-10, file
@@ -340,7 +326,7 @@ def test_every_command_has_help_and_stands_in_the_readme(command):
 
 
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
-    results = solve(load(str(SHAPER)))
+    results = solved("shaper")
     for width in (60, 80, 120, 300):
         console = Console(width=width, record=True, file=io.StringIO(), highlight=False)
         for table in tables(results):

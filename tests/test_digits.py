@@ -20,6 +20,7 @@ import mpmath as mp
 import multibody
 import numpy as np
 import pytest
+from bank import moved, solved
 from fuzz import beyond
 from random_linkages import any_linkage, linkage
 from test_commands import ROOT, SHAPER, described, tmm
@@ -241,7 +242,7 @@ def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kin
 
 @pytest.mark.parametrize("name", ["shaper", "excavator", "five-point-line", "clamp"])
 def test_what_an_ordinary_run_says_of_its_digits_holds_in_double_doubles(name):
-    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
+    results = solved(name)
     found, size = accuracy(results), len(results.numbers)
     assert not found.chosen.size, "no position needs to be judged"
     wide = cells(at(results, exact(results), exactly(results.motion.q), results.start))
@@ -283,7 +284,7 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
 
 
 def test_a_pressure_angle_that_is_the_same_everywhere_has_no_place_of_its_largest():
-    results = solve(load(str(ROOT / "problems" / "gear-doubling.yaml")), "kinematics")
+    results = moved("gear-doubling")
     (pressure,) = accuracy(results).with_bounds(tables_of(results, ("pressure",)))
     place = next(column for column in pressure.columns if column.header == "driver there at")
     assert "-" in shown(place, results.problem.units, range(pressure.rows))
@@ -302,7 +303,7 @@ def test_decimals_that_arithmetic_left_behind_a_number_of_teeth_are_none_in_more
 
 
 def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
-    results = solve(load(str(ROOT / "problems" / "crank-slider.yaml")), "kinematics")
+    results = moved("crank-slider")
     found = searched(
         results, lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])}, Wide(results), 0.001
     )
@@ -312,7 +313,7 @@ def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
 
 
 def test_a_largest_pressure_angle_goes_with_crank_and_rod_as_its_sine_their_ratio_says():
-    results = solve(load(str(ROOT / "problems" / "crank-slider.yaml")), "kinematics")
+    results = moved("crank-slider")
     found = searched(results, lambda r: {"largest": np.array([r.pressure[0].largest])}, Wide(results), 0.001)
     by_both = 2 * 1e-3 * np.tan(results.pressure[0].largest)
     assert found.lengths["largest"][0] == pytest.approx(by_both, rel=1e-4)

@@ -6,10 +6,9 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from models import PROBLEMS
+from bank import solved
 from test_draw import plain
 
-from tmm_cli import load, solve
 from tmm_cli.draw.paper.drawing import Area, Line
 from tmm_cli.draw.paper.script import plain as line
 from tmm_cli.draw.paper.script import wrapped
@@ -28,7 +27,7 @@ from tmm_cli.plans.record import NamedVector, Symbol
 
 def sheets_of(name, kind):
     """Sheets of one kind of the first position in detail, by their stems."""
-    return dict(kind(detailed(solve(load(PROBLEMS / f"{name}.yaml"), "forces"))[0]))
+    return dict(kind(detailed(solved(name))[0]))
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +38,7 @@ def loaded():
 @pytest.fixture(scope="module")
 def equations():
     """Of the shaper's parts by their links, as they are written."""
-    (here,) = detailed(solve(load(PROBLEMS / "shaper.yaml"), "forces"))
+    (here,) = detailed(solved("shaper"))
     parts = loaded_parts(here.motion, here.results.reactions, here.k)
     return {part.links: [line(words) for e in part.equations for words in written(e)] for part in parts}
 
@@ -109,7 +108,7 @@ def left(written, across):
 
 @pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])
 def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
-    here = detailed(solve(load(PROBLEMS / f"{name}.yaml"), "forces"))[0]
+    here = detailed(solved(name))[0]
     for plan in force_plans(here.results.reactions, here.k, here.motion):
         rows = [row.cells for row in table(plan, 7.5) if not row.head]
         vectors = [*plan.plan.vectors, *plan.full]
@@ -124,7 +123,7 @@ def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
 
 
 def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
-    here = detailed(solve(load(PROBLEMS / "shaper.yaml"), "forces"))[0]
+    here = detailed(solved("shaper"))[0]
     reactions = here.results.reactions
     found = {v.name: v.value for plan in force_plans(reactions, here.k) for v in plan.full}
     wanted = {f"R{r.by}{r.on}": complex(r.force[here.k]) for r in reactions.all if r.tangential is not None}
@@ -134,7 +133,7 @@ def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
 
 
 def test_leads_of_a_group_of_class_iii_are_parted_as_those_of_dyads_are():
-    here = detailed(solve(load(PROBLEMS / "press-class-iii.yaml"), "forces"))[0]
+    here = detailed(solved("press-class-iii"))[0]
     reactions = here.results.reactions
     plan = next(p for p in force_plans(reactions, here.k, here.motion) if len(p.links) == 4)
     assert {"R₁₂ⁿ", "R₁₂ᵗ", "R₀₆ⁿ", "R₀₆ᵗ", "R₀₇ⁿ", "R₀₇ᵗ"} <= {v.name for v in plan.plan.vectors}

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import pytest
-from test_commands import ROOT
+from bank import solved
 
-from tmm_cli import load, solve
 from tmm_cli.draw.paper.drawing import Circle, Text
 from tmm_cli.draw.paper.fonts import corners
 from tmm_cli.draw.paper.script import plain
@@ -17,9 +17,10 @@ from tmm_cli.draw.sheets.motion_plans import motion_plans, sorts, table
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 
 
+@cache
 def plans(name):
     """The first position in detail, and its two sheets with what they are of."""
-    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")))
+    results = solved(name)
     here = detailed(results)[0]
     return here, [(sort, sheet) for sort, (__, sheet) in zip(sorts(), motion_plans(here), strict=True)]
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
+from bank import moved, solved
 from hypothesis import given
 from hypothesis import strategies as st
 from test_commands import ROOT
 
-from tmm_cli import load, solve
+from tmm_cli import solve
 from tmm_cli.draw.paper.drawing import Area, Line, Text
 from tmm_cli.draw.paper.fonts import corners
 from tmm_cli.draw.paper.ruler import TICK, spread
@@ -23,8 +25,9 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import LENGTH
 
 
+@cache
 def sheet_of(name):
-    results = solve(load(str(ROOT / "problems" / f"{name}.yaml")), "kinematics")
+    results = moved(name)
     ((__, sheet),) = all_positions(results)
     return results, sheet
 
@@ -184,7 +187,7 @@ def test_numbers_of_the_working_stroke_stand_outside_and_the_sheet_says_so():
 
 @pytest.mark.parametrize("name", ["shaper", "press-class-iii", "lifting-boom", "planetary-dwell-press"])
 def test_a_position_under_its_loads_fills_its_sheet(name):
-    here = detailed(solve(load(str(ROOT / "problems" / f"{name}.yaml"))))[0]
+    here = detailed(solved(name))[0]
     ((__, sheet),) = position(here)
     marks = np.concatenate([np.ravel(m.places) for m in sheet.marks if isinstance(m, Line) and m.layer != "frame"])
     marks = marks[np.isfinite(marks)]

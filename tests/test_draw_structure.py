@@ -8,7 +8,8 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, ROOT, SHAPER, imported, moved, tmm
+from bank import NAMES, moved
+from test_commands import ROOT, SHAPER, imported, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.draw import sheets
@@ -89,10 +90,6 @@ HAND_MADE = {
 }  # fmt: skip
 
 
-def of_file(path):
-    return at_sketch(moved(path))[1]
-
-
 def chain(number):
     """A crank and a row of dyads, each on the compound hinge of the one before."""
     points, links = {"O": 0j, "A": 20 + 30j}, {FRAME: "O", "1": "O A"}
@@ -134,9 +131,9 @@ def legible(figure):
             assert across < 0.3 or up < 0.6, (text, other)
 
 
-@pytest.mark.parametrize("drawn", [*PROBLEMS[1::2], *HAND_MADE], ids=lambda d: d if isinstance(d, str) else d.stem)
-def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_group(drawn):
-    here = HAND_MADE[drawn] if isinstance(drawn, str) else of_file(drawn)
+@pytest.mark.parametrize("name", [*NAMES[1::2], *HAND_MADE])
+def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_group(name):
+    here = HAND_MADE[name] if name in HAND_MADE else at_sketch(moved(name))[1]
     every = parts(here.structure)
     whole = scheme("title", "crank at 30 deg", here).finish()
     apart = side_by_side("title", "crank at 30 deg", here, every, {}).finish()
@@ -164,7 +161,7 @@ def test_the_legend_counts_mobility_after_chebyshev():
 
 
 def test_a_compound_hinge_has_a_circle_for_every_pair():
-    figure = scheme("title", "", of_file(ROOT / "problems" / "six-bar.yaml")).finish()
+    figure = scheme("title", "", at_sketch(moved("six-bar"))[1]).finish()
     circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
     assert len(circles) == 6  # turning pairs
     assert len({(round(c.centre.real, 3), round(c.centre.imag, 3)) for c in circles}) == 5
@@ -192,7 +189,7 @@ def test_a_hinge_beside_a_guide_is_joined_to_it_square():
 
 
 def test_a_link_goes_on_beyond_a_hinge_in_its_middle():
-    here = of_file(ROOT / "problems" / "whitworth.yaml")
+    here = at_sketch(moved("whitworth"))[1]
     sheet = Sheet("", "", here.extent(here.structure.links))
     pivot = next(p for p in here.structure.pairs if p.name == "C")
     assert by_pairs(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
@@ -275,7 +272,7 @@ def test_drawings_of_the_structure_leave_what_a_run_has_written(tmp_path):
 
 
 def test_a_run_draws_them_too_and_the_same_each_time():
-    results = solve(load(str(SHAPER)), "kinematics")
+    results = moved("shaper")
     assert [stem for stem, _ in islice(sheets(results), 2)] == ["structure", "groups"]
     here = at_sketch(results)
     assert texts(scheme("", *here).finish()) == texts(scheme("", *here).finish())

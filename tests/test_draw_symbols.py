@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, moved
+from bank import NAMES, moved
 
 from tmm_cli.draw.paper.drawing import Area, Circle, Line
 from tmm_cli.draw.paper.labels import gathered
@@ -24,9 +24,9 @@ NEAR = 0.35  # mm
 
 
 @cache
-def drawn(path, look):
+def drawn(name, look):
     """A mechanism at its sketch, with its sheet."""
-    scene, links = at_sketch(moved(path))[1], moved(path).structure.links
+    scene, links = at_sketch(moved(name))[1], moved(name).structure.links
     if look.measured:
         linkage = scene.linkage
         places = [scene.point(name) for link in linkage.links.values() for name in link.points]
@@ -40,7 +40,7 @@ def drawn(path, look):
 
 def every(test):
     test = pytest.mark.parametrize("look", LOOKS.values(), ids=list(LOOKS))(test)
-    return pytest.mark.parametrize("path", PROBLEMS, ids=lambda path: path.stem)(test)
+    return pytest.mark.parametrize("name", NAMES)(test)
 
 
 def distance(place, line):
@@ -59,8 +59,8 @@ def meet(one, other):
 
 
 @every
-def test_no_rod_runs_through_hatching(path, look):
-    sheet, found = drawn(path, look)
+def test_no_rod_runs_through_hatching(name, look):
+    sheet, found = drawn(name, look)
     strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
     for pair in found.scene.structure.pairs:
         if pair.lower and FRAME in (pair.i, pair.j):
@@ -72,8 +72,8 @@ def test_no_rod_runs_through_hatching(path, look):
 
 
 @every
-def test_all_parts_of_a_link_touch_one_another(path, look):
-    _sheet, found = drawn(path, look)
+def test_all_parts_of_a_link_touch_one_another(name, look):
+    _sheet, found = drawn(name, look)
     for link, form in found.forms.items():
         parts = list(form.edges)
         reached, parts = parts[:1], parts[1:]
@@ -87,8 +87,8 @@ def test_all_parts_of_a_link_touch_one_another(path, look):
 
 
 @every
-def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(path, look):
-    sheet, found = drawn(path, look)
+def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(name, look):
+    sheet, found = drawn(name, look)
     lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
     plates = [m.corners for m in sheet.marks if isinstance(m, Area) and m.face in (PLATE, tint(DARK))]
     linkage = found.scene.linkage
@@ -105,8 +105,8 @@ def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(path, lo
 
 
 @every
-def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(path, look):
-    sheet, found = drawn(path, look)
+def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(name, look):
+    sheet, found = drawn(name, look)
     circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links"]
     lines = [m for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
     for pair in found.scene.structure.pairs:
@@ -124,8 +124,8 @@ def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(path, look):
 
 
 @every
-def test_a_hinge_has_a_circle_for_every_pair_in_it(path, look):
-    sheet, found = drawn(path, look)
+def test_a_hinge_has_a_circle_for_every_pair_in_it(name, look):
+    sheet, found = drawn(name, look)
     circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links" and m.face == "white"]
     hinges = gathered((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
     for at, pairs in hinges:
@@ -166,8 +166,8 @@ def test_a_support_is_where_no_rod_runs_through_it(ends, side):
 
 
 @every
-def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(path, look):
-    sheet, found = drawn(path, look)
+def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(name, look):
+    sheet, found = drawn(name, look)
     lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
     barrels = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 4 and m.z > 4.5]
     driven = [d for d in found.scene.linkage.drivers if d.kind == "slide" and d.base != FRAME]
@@ -182,8 +182,8 @@ def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(path, look):
 
 
 @every
-def test_a_wheel_is_welded_to_the_bar_of_its_link(path, look):
-    sheet, found = drawn(path, look)
+def test_a_wheel_is_welded_to_the_bar_of_its_link(name, look):
+    sheet, found = drawn(name, look)
     marks = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 3 and m.face == DARK]
     for pair in found.scene.structure.pairs:
         for disc in getattr(found.scene.higher(pair), "discs", ()) if not pair.lower else ():

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import moved
 
-from tmm_cli import load, solve
 from tmm_cli.draw.paper.drawing import Area, Line, Text
 from tmm_cli.draw.paper.fonts import corners
 from tmm_cli.draw.paper.sheet import LOAD, THIN, border
@@ -132,7 +132,7 @@ def test_given_pivots_are_turned_back_with_the_coupler_to_its_first_position():
 
 
 def test_joints_are_called_as_in_the_file_and_the_centre_otherwise():
-    results = solve(load(str(ROOT / "problems" / "press-synthesis.yaml")), "kinematics")
+    results = moved("press-synthesis")
     (one,) = slider(1.08, 3.5)
     named, letters = rename(one, results.linkage, {"r": "OA", "l": "AB", "e": "e"})
     assert letters == {"O": "O", "A": "A", "B": "B", "M": "M"}
@@ -142,7 +142,7 @@ def test_joints_are_called_as_in_the_file_and_the_centre_otherwise():
 
 
 def test_both_extreme_positions_have_letters():
-    results = solve(load(str(ROOT / "problems" / "press-synthesis.yaml")), "kinematics")
+    results = moved("press-synthesis")
     found = results.problem.synthesis
     figure = dict(sheets("", found.outcome, results, results.problem.units, found.names))["synthesis-extremes"]
     assert {"Aᴵ", "Bᴵ", "Aᴵᴵ", "Bᴵᴵ", "O"} <= {text[0] for text in boxes(figure)}

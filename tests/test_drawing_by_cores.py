@@ -5,9 +5,10 @@ import time
 from functools import partial
 
 import pytest
+from bank import moved
 from test_commands import ROOT
 
-from tmm_cli import load, solve
+from tmm_cli import solve
 from tmm_cli.cli import drawing
 from tmm_cli.cli.drawing import FEW, by_all_cores
 from tmm_cli.draw import files, parts
@@ -48,7 +49,7 @@ def test_several_processes_write_the_same_files_in_the_same_order():
 
 
 def test_large_sheets_are_the_same_whoever_draws_and_writes_them():
-    results = solve(load(str(ROOT / "problems" / "sine.yaml")), "kinematics")
+    results = moved("sine")
     asked = (results, "A3", ["pdf", "svg"], lambda note: None)
     assert list(files_of_sheets(*asked, by_all_cores, every=False)) == list(files_of_sheets(*asked, every=False))
 

@@ -9,13 +9,13 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from bank import solved
 from covering import covered
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pypdf import PdfReader
 from test_commands import ROOT, SHAPER, tmm
 
-from tmm_cli import load, solve
 from tmm_cli.draw import sheets
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.dxf import plain
@@ -37,11 +37,6 @@ from tmm_cli.problem.reader import read_text
 SINE = ROOT / "problems" / "sine.yaml"
 COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 PRECISE = 0.01  # mm
-
-
-@functools.cache
-def solved(name):
-    return solve(load(str(ROOT / "problems" / f"{name}.yaml")))
 
 
 @functools.cache

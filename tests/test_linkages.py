@@ -5,11 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import solved
 from multibody import compared
 
 from tmm_cli import load, solve
@@ -47,11 +47,6 @@ FORMULAS = {
     "loader": "I(4,5) -> III(1,2,3,4,5)",
 }
 SHARES = (0.07, 0.31, 0.58, 0.86)  # of the driver's way: off the round places of the file
-
-
-@cache
-def solved(name):
-    return solve(load(str(BANK / f"{name}.yaml")))
 
 
 @pytest.fixture(params=FORMULAS)

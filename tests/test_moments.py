@@ -6,12 +6,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from bank import solved
 from hypothesis import given, settings
 from models import PROBLEMS
 from random_linkages import linkage
 from test_properties import CHAINS, SEEDS, generic
 
-from tmm_cli import load, solve
 from tmm_cli.plans.moments import loaded_parts
 from tmm_cli.vectors import cross, dot
 
@@ -21,7 +21,7 @@ IN_DETAIL = [path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "detail: [
 @cache
 def detailed(name):
     """The results of a problem of the bank, and its positions in detail that can be computed."""
-    results = solve(load(PROBLEMS / f"{name}.yaml"), "forces")
+    results = solved(name)
     wanted = [k for k, n in enumerate(results.numbers) if n in results.problem.request.detail]
     return results, [k for k in wanted if results.motion.moving[k] and not results.locked[k]]
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bank import solved
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from models import PROBLEMS
 from random_linkages import linkage
-from test_commands import SHAPER
-from test_properties import CHAINS, SEEDS, generic, solved
+from test_properties import CHAINS, SEEDS, generic
+from test_properties import solved as solved_for
 
-from tmm_cli import load, solve
 from tmm_cli.forces.lever import lever
 from tmm_cli.plans.acceleration import acceleration_plan
 from tmm_cli.plans.forces import force_plans
@@ -52,7 +51,7 @@ def test_parts_of_accelerations_lead_from_one_end_to_the_next(seed, kinds):
 
 
 def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
-    results = solve(load(str(SHAPER)))
+    results = solved("shaper")
     velocity = velocity_plan(results.motion, 3)
     assert {"pa", "pd", "pe", "de", "pa3", "a3a"} <= {v.name for v in velocity.vectors}
     acceleration = acceleration_plan(results.motion, 3)
@@ -73,7 +72,7 @@ def test_the_shaper_s_plans_have_the_vectors_a_student_draws():
 
 @pytest.mark.parametrize("name", ["shaper", "lifting-boom", "cylinder", "five-bar", "excavator", "engine-four"])
 def test_moments_about_the_pole_of_the_drawn_lever_come_to_nothing_with_what_balances_them(name):
-    results = solve(load(PROBLEMS / f"{name}.yaml"), "forces")
+    results = solved(name)
     for k in np.flatnonzero(results.motion.moving):
         plan = lever_plan(results.motion, results.reactions, results.lever, k)
         moments = [a.moment if a.couple else cross(a.at, a.force) for a in plan.acting]
@@ -91,7 +90,7 @@ def test_moments_about_the_pole_of_the_drawn_lever_come_to_nothing_with_what_bal
 
 
 def test_the_crank_of_the_lever_lies_along_the_crank_and_couples_are_pairs_of_forces():
-    results = solve(load(str(SHAPER)))
+    results = solved("shaper")
     plan = lever_plan(results.motion, results.reactions, results.lever, 3)
     assert plan.ends["a"] == pytest.approx(results.motion.named("A").x[3])  # O is the origin
     assert {"s1", "s3", "s5"} <= set(plan.ends)
@@ -114,12 +113,12 @@ def test_reactions_are_named_from_link_to_link():
 
 
 def test_nothing_is_left_of_the_lever_when_nothing_acts():
-    _, motion, *_ = solved(linkage(3, ("RRR",)))
+    _, motion, *_ = solved_for(linkage(3, ("RRR",)))
     assert lever(motion, (), np.zeros(3)).items == ()
 
 
 def test_each_vector_is_read_off_once_and_equal_ones_together():
-    results = solve(load(str(SHAPER)))
+    results = solved("shaper")
     motion, k = results.motion, 3
     found = {s: r for r in readings(velocity_plan(motion, k)) for s in r.symbols}
     both = found[Symbol("v", "A")]
@@ -136,14 +135,14 @@ def test_each_vector_is_read_off_once_and_equal_ones_together():
 
 
 def test_links_that_only_slide_turn_with_nothing_and_signs_are_senses():
-    motion = solve(load(str(SHAPER))).motion
+    motion = solved("shaper").motion
     found = {t.symbol.below: t.value for t in turns(motion, 3, "omega")}
     assert set(found) == {"1", "2", "3", "4"}
     assert found["1"] == pytest.approx(82 * np.pi / 30) and found["2"] == found["3"] == motion.link("3").omega[3]
 
 
 def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points():
-    results = solve(load(str(SHAPER.parent / "course-2.yaml")))
+    results = solved("course-2")
     found = [s for r in readings(acceleration_plan(results.motion, 2)) for s in r.symbols]
     assert Symbol("a", "D5E", "n") not in found and Symbol("a", "DC", "n") in found
     assert Symbol("a", "DD5", "k") in found  # zero, as the guide does not turn: worth a line

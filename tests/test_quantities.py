@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import solved
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
@@ -32,7 +33,7 @@ THINGS = {  # where the things of a kind stand in result.json, and what may be l
 
 @pytest.fixture(scope="module")
 def shaper():
-    return solve(load(str(PROBLEMS / "shaper.yaml")))
+    return solved("shaper")
 
 
 @pytest.mark.parametrize("place", THINGS)

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_commands import PROBLEMS, ROOT, SHAPER, moved, tmm
-from test_commands import problem as read
+from bank import NAMES, moved
+from bank import problem as read
+from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.assembly.choose import assemble
@@ -33,8 +34,7 @@ from tmm_cli.results.table import Column, Table
 from tmm_cli.results.text import csv_text, json_bytes, json_text
 from tmm_cli.structure.assur import analyse
 
-PROBLEMS = [path for path in PROBLEMS if path.stem != "crank-rocker-optimal"]  # a four-bar, sought for seconds
-IDS = [path.stem for path in PROBLEMS]
+NAMES = [name for name in NAMES if name != "crank-rocker-optimal"]  # a four-bar, sought for seconds
 
 
 def into_numpy(work):
@@ -56,9 +56,9 @@ def into_numpy(work):
     return called
 
 
-@pytest.mark.parametrize("path", PROBLEMS, ids=IDS)
-def test_structure_alone_builds_no_arrays_and_solves_no_group(path):
-    problem = read(path)
+@pytest.mark.parametrize("name", NAMES)
+def test_structure_alone_builds_no_arrays_and_solves_no_group(name):
+    problem = read(name)
     with counted() as count:
         called = into_numpy(lambda: structure_of(problem).structure.formula)
     if analyse(problem.linkage).sound:
@@ -84,9 +84,9 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
         assert count.velocities == count.accelerations == 0
 
 
-@pytest.mark.parametrize("path", PROBLEMS[1::3], ids=IDS[1::3])
-def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(path):
-    problem, whole = read(path), moved(path)
+@pytest.mark.parametrize("name", NAMES[1::3])
+def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(name):
+    problem, whole = read(name), moved(name)
     for link in problem.linkage.moving:
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
@@ -141,10 +141,10 @@ def test_only_positions_asked_for_are_solved():
     assert (one.accelerations, all_of_them.accelerations) == (groups, groups * (others + 1))
 
 
-@pytest.mark.parametrize("path", PROBLEMS[::3], ids=IDS[::3])
-def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(path):
-    problem = read(path)
-    if any(kernel.followed for kernel in moved(path).kernels):
+@pytest.mark.parametrize("name", NAMES[::3])
+def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(name):
+    problem = read(name)
+    if any(kernel.followed for kernel in moved(name).kernels):
         return  # a group is followed by its accelerations
 
     def quality():

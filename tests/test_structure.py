@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from bank import NAMES, moved, problem, solved
 from models import SI, results_of
-from test_commands import PROBLEMS, ROOT, SHAPER, problem
+from test_commands import SHAPER
 
-from tmm_cli import load, solve
+from tmm_cli import solve
 from tmm_cli.analysis.pipeline import at_places
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -17,10 +18,6 @@ from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.assur import analyse
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
-
-
-def bank(name, stage="kinematics"):
-    return solve(load(str(ROOT / "problems" / f"{name}.yaml")), stage)
 
 
 @pytest.mark.parametrize(
@@ -37,7 +34,7 @@ def bank(name, stage="kinematics"):
     ],
 )  # fmt: skip
 def test_formula_of_structure_types_and_names(name, formula, types, roles):
-    results = bank(name, "structure")
+    results = moved(name)
     assert results.structure.formula == formula
     assert [g.type for g in results.structure.groups] == types
     assert list(results.roles.values()) == roles
@@ -46,7 +43,7 @@ def test_formula_of_structure_types_and_names(name, formula, types, roles):
 
 
 def test_a_compound_hinge_of_three_links_is_two_pairs():
-    structure = bank("six-bar", "structure").structure
+    structure = moved("six-bar").structure
     assert (len(structure.links), len(structure.pairs)) == (5, 7)
     assert [(p.name, p.i, p.j) for p in structure.pairs if p.point == "B"] == [("B", "2", "3"), ("B''", "3", "4")]
 
@@ -97,16 +94,16 @@ def test_a_class_iii_group_is_named_and_solved():
 
 def test_coefficient_of_change_of_mean_speed_follows_from_the_geometry():
     theta = 2 * math.asin(100 / 300)
-    assert bank("slotted-lever").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
-    assert bank("slotted-lever").strokes.travel == pytest.approx(theta, rel=1e-12)
+    assert moved("slotted-lever").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+    assert moved("slotted-lever").strokes.travel == pytest.approx(theta, rel=1e-12)
     theta = 2 * math.asin(60 / 150)
-    assert bank("whitworth").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
-    assert bank("whitworth").strokes.travel == pytest.approx(0.24, rel=1e-12)
+    assert moved("whitworth").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+    assert moved("whitworth").strokes.travel == pytest.approx(0.24, rel=1e-12)
     r, rod, e = 50, 190, 40
     stroke = math.sqrt((rod + r) ** 2 - e * e) - math.sqrt((rod - r) ** 2 - e * e)
-    assert bank("crank-slider-offset").strokes.travel == pytest.approx(stroke / 1000, rel=1e-12)
+    assert moved("crank-slider-offset").strokes.travel == pytest.approx(stroke / 1000, rel=1e-12)
     theta = math.asin(e / (rod - r)) - math.asin(e / (rod + r))
-    assert bank("crank-slider-offset").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
+    assert moved("crank-slider-offset").strokes.k == pytest.approx((math.pi + theta) / (math.pi - theta), rel=1e-12)
 
 
 def test_strokes_are_the_same_whichever_way_the_crank_turns_but_for_their_order():
@@ -119,7 +116,7 @@ def test_strokes_are_the_same_whichever_way_the_crank_turns_but_for_their_order(
 
 
 def test_position_0_is_the_start_of_the_working_stroke_and_loads_of_it_act_in_it_only():
-    results = bank("shaper", "forces")
+    results = solved("shaper")
     speed = results.motion.slide(results.linkage.slides[1]).v
     assert abs(speed[0]) < 1e-12 * np.max(np.abs(speed))
     close = at_places(results, results.closely(721)[1:-1])
@@ -167,7 +164,7 @@ def test_a_balancing_force_at_the_crank_s_end_has_the_balancing_moment_and_chang
 
 
 def test_a_driven_slider_is_balanced_along_its_guide():
-    results = bank("cylinder", "forces")
+    results = solved("cylinder")
     balance, frame = results.reactions.balance, results.reactions.frames[0]
     assert balance.moment is None
     assert np.max(np.abs(balance.vector.imag)) == 0
@@ -194,10 +191,10 @@ def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
 
 def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_wrong_way_of_a_load():
     """At the end of a stroke both balancing moments may be nothing but rounding."""
-    for file in PROBLEMS[1::4]:
-        alone = solve(problem(file), positions=[0])
-        assert alone.lever_holds, file.stem
-        assert not any("drives" in w for w in warnings(alone)), file.stem
+    for name in NAMES[1::4]:
+        alone = solve(problem(name), positions=[0])
+        assert alone.lever_holds, name
+        assert not any("drives" in w for w in warnings(alone)), name
 
 
 def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bank import NAMES, problem
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import linkage_of
 from random_linkages import TYPES, linkage
-from test_commands import PROBLEMS, problem
 
 import tmm_cli
 from tmm_cli import load, solve
@@ -139,8 +139,8 @@ def test_groups_found_by_iteration_are_solved_one_by_one():
 
 def test_class_ii_problems_of_the_bank():
     taped = 0
-    for file in PROBLEMS[1::2]:
-        name, it = file.stem, problem(file).linkage
+    for name in NAMES[1::2]:
+        it = problem(name).linkage
         if any(
             not isinstance(group.type, str) or group.drivers or len(group.links) > 2 for group in analyse(it).groups
         ):

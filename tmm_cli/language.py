@@ -8,6 +8,7 @@ translated where it is shown. Files for machines are written in English: `with s
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -58,6 +59,19 @@ def _(message: str) -> str:
     """The sentence in the language that is spoken; in English where it is not translated."""
     language = _spoken.get()
     return message if language == ENGLISH or not message else _catalogue(language).gettext(message)
+
+
+def numeral(value: float, form: str) -> str:
+    """A number for people in this format, with a comma where the language has one. What may be typed has points."""
+    text = f"{value:{form}}"
+    return text if _spoken.get() == ENGLISH else text.replace(".", ",")
+
+
+def spelt(unit: str) -> str:
+    """A unit as the language spells it: rad/s is рад/с in Russian, rpm is o/min in Serbian."""
+    if _spoken.get() == ENGLISH:
+        return unit
+    return re.sub(r"[A-Za-zµμ°]+", lambda name: _in_context("unit", name[0]), unit)
 
 
 def symbol(letter: str) -> str:

@@ -16,7 +16,7 @@ from tmm_cli.draw.paper.sheet import Sheet
 from tmm_cli.draw.sheets.motion_plans import sorts
 from tmm_cli.draw.symbols.scene import Scene, fit, fixed_pivots, to_scale
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _
+from tmm_cli.language import ENGLISH, _, language
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.vectors import Real
@@ -50,11 +50,12 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
     driver, turns = results.linkage.driver, loops(results)
     units, measure = results.problem.units, ANGLE if driver.kind == "turn" else LENGTH
     return {
+        "comma": language() != ENGLISH,
         "loops": turns > 0,
         "seconds": SECONDS * (turns or 1),
         "driver": {
             "name": ("φ" if driver.kind == "turn" else "s") + driver.link,
-            "unit": units.symbol(measure),
+            "unit": units.spelt(measure),
             "values": rounded(units.from_si(motion.q, measure), 5),
             "turn": units.from_si(2 * np.pi, ANGLE) if driver.kind == "turn" else 0,
         },

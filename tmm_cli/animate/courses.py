@@ -12,7 +12,7 @@ from tmm_cli.draw.paper.sheet import COLOURS, THIN, with_unit
 from tmm_cli.draw.sheets.motion_plans import Sort
 from tmm_cli.draw.sheets.over_cycle import Quantities, balances, output
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _
+from tmm_cli.language import _, spelt
 from tmm_cli.vectors import Vector
 
 PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
@@ -57,7 +57,7 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
     scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
     return {
         "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
-            unit=sort.unit
+            unit=spelt(sort.unit)
         ),
         "points": [[rounded(z.real, 4), rounded(z.imag, 4)] for z in points],
         "vectors": below,

@@ -131,7 +131,11 @@ const charts = data.charts.map((chart) => {
 });
 
 function figures(value) {
-  return value === null ? "–" : Number(value.toPrecision(4)).toString();
+  return value === null ? "–" : written(Number(value.toPrecision(4)).toString());
+}
+
+function written(number) {
+  return data.comma ? number.replace(".", ",") : number;
 }
 
 function drawChart({chart, caption, hand, dots, up}) {
@@ -155,7 +159,7 @@ function show(at) {
   byId("at").value = state.at;
   const driver = data.driver, value = now(driver.values);
   const place = driver.turn ? ((value % driver.turn) + driver.turn) % driver.turn : value;
-  byId("place").textContent = `${driver.name} = ${place.toFixed(1)} ${driver.unit}`;
+  byId("place").textContent = `${driver.name} = ${written(place.toFixed(1))} ${driver.unit}`;
 }
 
 function step(time) {

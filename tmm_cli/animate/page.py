@@ -17,7 +17,7 @@ from typing import Any
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.animate.content import FRAMES, content, frames, loops, paths, picture_of, view
 from tmm_cli.draw.formats.svg import element
-from tmm_cli.language import _
+from tmm_cli.language import _, language
 
 MOST = 300_000  # bytes of a page
 FEWEST = 36  # frames a turn
@@ -45,7 +45,7 @@ def _page(results: Results, count: int) -> str:
         for name, marks in picture.layers()
     )
     return Template(_part("page.html")).substitute(
-        lang="en",
+        lang=language(),
         policy=f"default-src 'none';style-src '{_digest(style)}';script-src '{_digest(script)}'",
         title=escape(results.problem.title),
         style=style,

@@ -20,7 +20,7 @@ from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.quantities import FORCE, MOMENT
 
 OF_POSITION = (position, motion_plans, group_loads, forces, lever)
@@ -87,7 +87,7 @@ def _chosen(results: Results, k: int) -> str:
         return _("note: no positions.detail in the file, drawn in full is position {number}").format(number=number)
     turns = results.linkage.driver.kind == "turn"
     units, dimension = results.problem.units, MOMENT if turns else FORCE
-    told = f"{units.from_si(size, dimension):.4g} {units.symbol(dimension)}"
+    told = f"{numeral(units.from_si(size, dimension), '.4g')} {units.spelt(dimension)}"
     return (
         _("note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing moment: "
           "{size}")

@@ -11,7 +11,7 @@ from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import angle, followers, named
 from tmm_cli.kinematics.strokes import Strokes
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.library import solve
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.family import Family
@@ -63,7 +63,10 @@ class Faults:
                 limit = self.limits.get((lead[0], named(lead)))
                 if limit is not None:
                     holds = _top(angle(states, kernel, at, lead)) <= limit
-                    yield holds, _("its pressure angle goes beyond {limit:.4g} deg").format(limit=np.degrees(limit))
+                    yield (
+                        holds,
+                        _("its pressure angle goes beyond {limit} deg").format(limit=numeral(np.degrees(limit), ".4g")),
+                    )
 
 
 def faults_of(task: Task) -> Faults:

@@ -147,7 +147,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
         text = values.get(name, str(own))
         number, _space, unit = text.partition(" ")
         measure = measures[name]
-        unit = unit or (task.units.symbol(measure) if measure else "")
+        unit = unit or (task.units.spelt(measure) if measure else "")
         rows.append((name, number, unit))
     return table_of_words("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
 
@@ -208,7 +208,7 @@ def meaning(name: str) -> str:
 
 def _unit(task: Task, asked: Asked) -> str:
     dimension = asked.quantity.dimension
-    return "" if dimension == NUMBER else task.units.symbol(dimension)
+    return "" if dimension == NUMBER else task.units.spelt(dimension)
 
 
 def _markdown(title: str, student: str, picture: str, tables: Iterable[Table]) -> str:

@@ -83,7 +83,7 @@ class Subject:
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
-        return printed_unit(self.results.problem.units.symbol(dimension))
+        return printed_unit(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""

@@ -9,7 +9,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Balance, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import Kind, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.record import Kind, Symbol, balance_symbol, lettered, reaction_symbol
 from tmm_cli.structure.assur import Pair
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import cross, dot, unit
@@ -165,6 +165,10 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
     """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
+    if load.kind == "weight":
+        return lettered("G", load.link), lettered("G", load.link)
+    if load.kind == "inertia":
+        return lettered("U", load.link), lettered("M", load.link)
     names = load.name, load.couple_name or load.name
     if load.kind != "load":
         return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])

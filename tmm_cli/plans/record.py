@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from tmm_cli.language import symbol
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
@@ -32,6 +33,11 @@ class Symbol:
         """In one line: R₃₄ᵗ."""
         below = f"({self.below})" if "," in self.below else self.below.translate(_BELOW)
         return self.letter + below + self.above.translate(_ABOVE)
+
+    @property
+    def plain(self) -> str:
+        """With its index on the line: U3."""
+        return self.letter + self.below
 
     @property
     def primed(self) -> Symbol:
@@ -135,6 +141,13 @@ def balance_name(link: str, several: bool, *, turns: bool = False) -> str:
     return balance_symbol(link, several, turns=turns).name
 
 
+def lettered(mark: str, index: str = "") -> Symbol:
+    """A quantity with an index by the letter that the course of the language gives it: U₃ is Φ₃ in Russian."""
+    letter, _, below = symbol(mark).partition("_")
+    return Symbol(letter, below + index)
+
+
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
     """The same with indices."""
-    return Symbol("M" if turns else "F", f"b{link}" if several else "b")
+    index = link if several else ""
+    return lettered("M_b", index) if turns else lettered("F_b", index)

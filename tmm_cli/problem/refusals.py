@@ -52,18 +52,18 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
     def shown(value: complex | float) -> str:
         if isinstance(value, complex):
             return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
-        return f"{units.from_si(value, ANGLE):.6g} {units.symbol(ANGLE)}"
+        return f"{units.from_si(value, ANGLE):.6g} {units.spelt(ANGLE)}"
 
     crank = problem.linkage.driver.kind == "turn"
     at = units.from_si(problem.linkage.sketch.at, ANGLE if crank else LENGTH)
-    place = f"{at:.6g} {units.symbol(ANGLE if crank else LENGTH)}"
+    place = f"{at:.6g} {units.spelt(ANGLE if crank else LENGTH)}"
     match error:
         case MobilityError(structure=structure):
             return mobility(structure)
         case AssemblyError(group=group, residual=residual):
             short = _("it never closes")
             if residual is not None:
-                size = f"{units.from_si(residual, LENGTH):.6g} {units.symbol(LENGTH)}"
+                size = f"{units.from_si(residual, LENGTH):.6g} {units.spelt(LENGTH)}"
                 short = _("{size} short of closing").format(size=size)
             return ProblemError(
                 _("group {group} cannot be assembled with the driver at {place}").format(
@@ -140,7 +140,7 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 found=f"{delta:.6g}", allowed=_("less than {own}, or no delta").format(own=f"{own:.4g}"),
             )  # fmt: skip
         case TableBeyondCycleError(path=path, argument=argument, cycle=cycle):
-            turns, unit = round(cycle / (2 * math.pi)), units.symbol(ANGLE)
+            turns, unit = round(cycle / (2 * math.pi)), units.spelt(ANGLE)
             text = _("this row is never reached: all repeats after {turns} turns of the driver")
             if turns == 1:
                 text = _("this row is never reached: all repeats after 1 turn of the driver")

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
-from tmm_cli.language import _
+from tmm_cli.language import _, spelt
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (
@@ -85,7 +85,7 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("in", LENGTH, "127/5000"),
     ("rad рад", ANGLE, "1"),
     ("deg ° град", ANGLE, "pi/180"),
-    ("rev turn об", ANGLE, "pi*2"),
+    ("rev turn об o", ANGLE, "pi*2"),
     ("s sec с сек", TIME, "1"),
     ("ms мс", TIME, "1/1000"),
     ("min мин", TIME, "60"),
@@ -237,6 +237,10 @@ class UnitSystem:
         if dimension in self._names:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _bases(dimension)})
+
+    def spelt(self, dimension: Dimension) -> str:
+        """The same for people, as their language spells it."""
+        return spelt(self.symbol(dimension))
 
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""

@@ -22,7 +22,7 @@ from tmm_cli.accuracy.wide import Wide, coarsely
 from tmm_cli.analysis.extended import near_dead
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.kinematics.motion import FIXED
-from tmm_cli.language import N_, _, translated
+from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.quantities import NUMBER, Dimension
@@ -191,12 +191,12 @@ def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
     """What to know of the worst columns of a table."""
     bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
     if not share[3] > 0:
-        return _("Rounding: at most {bound} of the largest value of a column.").format(bound=f"{bound[1]:.1e}")
+        return _("Rounding: at most {bound} of the largest value of a column.").format(bound=numeral(bound[1], ".1e"))
     return _(
 "Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to "
 "{lengths} % ({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper})."
-).format(bound=f"{bound[1]:.1e}", lengths=f"{share[3]:.2g}", by_lengths=share[0], paper=f"{paper[4]:.2g}",
-        by_paper=paper[0],
+).format(bound=numeral(bound[1], ".1e"), lengths=numeral(share[3], ".2g"), by_lengths=share[0],
+        paper=numeral(paper[4], ".2g"), by_paper=paper[0],
     )  # fmt: skip
 
 
@@ -205,7 +205,7 @@ def _scale(mu: float) -> str:
         "± lengths: when every length is 0.1 % off; ± paper: when every coordinate is {mm} mm "
         "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first "
         "order."
-    ).format(mm=PAPER, mu=f"{mu:.10g}")
+    ).format(mm=PAPER, mu=numeral(mu, ".10g"))
 
 
 def _mu(results: Results) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral, spelt
 from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
@@ -72,7 +72,7 @@ def _points(problem: Problem) -> Table:
     note = _("Lengths in {unit}. A point on two links is a hinge; on three and more, a compound hinge.")
     return table_of_words(
         "points", _("Points, each in the axes of its link"), (_("link"), _("point"), _("place")), rows,
-        (note.format(unit=problem.units.symbol(LENGTH)),),
+        (note.format(unit=problem.units.spelt(LENGTH)),),
     )  # fmt: skip
 
 
@@ -89,8 +89,8 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage, units = problem.linkage, problem.units
     driver, measure = linkage.driver, place_dimension(linkage.driver.kind)
     dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
-    yield _("bare numbers are in"), ", ".join(units.symbol(dimension) for dimension in dimensions)
-    yield _("a bare speed is in"), units.symbol(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
+    yield _("bare numbers are in"), ", ".join(units.spelt(dimension) for dimension in dimensions)
+    yield _("a bare speed is in"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
     if driver.kind == "slide":
         text = _("link {link}, {speed}")
     elif driver.sense > 0:
@@ -98,14 +98,14 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     else:
         text = _("link {link}, {speed} clockwise")
     yield _("driver"), text.format(link=driver.link, speed=_speed(driver))
-    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] m/s^2"
+    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
     yield _("positions"), _positions(problem, measure)
     sketch = linkage.sketch
     places = [show(problem, sketch.at, measure)]
     places += [f"{name} {show_vector(problem, place)}" for name, place in sketch.points.items()]
     places += [f"{name} {show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
     yield _("sketch, driver at"), ", ".join(places)
-    yield _("limit of the lever check"), f"{100 * problem.lever_limit:.6g} %"
+    yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
 
 
 def _positions(problem: Problem, measure: Dimension) -> str:
@@ -136,7 +136,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
             rows=len(load.table.values), against=load.table.against
         )
     elif load.force:
-        size = f"{show_vector(problem, load.force, FORCE)} {problem.units.symbol(FORCE)}"
+        size = f"{show_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
     else:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
@@ -174,8 +174,12 @@ def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH)
 def _speed(driver: Driver) -> str:
     """A driver's speed, and its acceleration where it has one."""
     turns = driver.kind == "turn"
-    rate = f"{driver.rate:.6g} {'rad/s' if turns else 'm/s'}"
-    return rate + (f", {driver.acceleration:.6g} {'rad/s^2' if turns else 'm/s^2'}" if driver.acceleration else "")
+    rate = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
+    return rate + (
+        f", {numeral(driver.acceleration, '.6g')} {spelt('rad/s^2' if turns else 'm/s^2')}"
+        if driver.acceleration
+        else ""
+    )
 
 
 def _further(problem: Problem) -> Iterable[Table]:
@@ -196,7 +200,7 @@ def _further(problem: Problem) -> Iterable[Table]:
         yield table_of_words(
             "meshes", _("Toothed wheels and racks"),
             (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
-            wheels, (note.format(unit=problem.units.symbol(LENGTH)),),
+            wheels, (note.format(unit=problem.units.spelt(LENGTH)),),
         )  # fmt: skip
     cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam(problem, mesh)]
     if cams:
@@ -220,7 +224,8 @@ def _further(problem: Problem) -> Iterable[Table]:
         slides = {slide.name for slide in linkage.slides}
         yield table_of_words(
             "friction", _("Friction"), (_("pair"), _("coefficient"), _("journal's radius")),
-            [(f.pair, f"{f.coefficient:.6g}", _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH))
+            [(f.pair, numeral(f.coefficient, ".6g"),
+              _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH))
              for f in linkage.friction],
         )  # fmt: skip
 
@@ -240,11 +245,11 @@ def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
     if mesh.kind == "rack":
         kind = _("wheel and rack")
         step = problem.units.from_si(mesh.ratio, LENGTH)
-        law, offset = f"s_{mesh.j} = {step:.6g} phi_{mesh.i}", show(problem, mesh.offset, LENGTH)
+        law, offset = f"s_{mesh.j} = {numeral(step, '.6g')} phi_{mesh.i}", show(problem, mesh.offset, LENGTH)
         radii = show(problem, abs(mesh.ratio), LENGTH)
     else:
         kind = _("inner mesh") if mesh.ratio > 0 else _("outer mesh")
-        law, offset = f"phi_{mesh.j} = {mesh.ratio:.6g} phi_{mesh.i}", show(problem, mesh.offset, ANGLE)
+        law, offset = f"phi_{mesh.j} = {numeral(mesh.ratio, '.6g')} phi_{mesh.i}", show(problem, mesh.offset, ANGLE)
         points = [linkage.shared(mesh.carrier, link) for link in (mesh.i, mesh.j)]
         a, b = (complex(np.ravel(linkage.local(mesh.carrier, p))[0]) for p in points if p is not None)
         pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.double_double import array
-from tmm_cli.language import translated
+from tmm_cli.language import numeral, spelt, translated
 from tmm_cli.problem.units import Unit, UnitSystem, parse_unit
 from tmm_cli.quantities import NUMBER, Dimension
 
@@ -36,7 +36,7 @@ class Column:
         """The header with the unit."""
         if self.dimension is None or self.dimension == NUMBER:
             return translated(self.header)
-        return f"{translated(self.header)}, {self.unit or units.symbol(self.dimension)}"
+        return f"{translated(self.header)}, {spelt(self.unit) if self.unit else units.spelt(self.dimension)}"
 
     def shown_in(self, units: UnitSystem) -> Unit:
         """The unit of its numbers on paper."""
@@ -64,7 +64,7 @@ class Column:
 
 def with_unit(units: UnitSystem, value: float, dimension: Dimension) -> str:
     """A value (SI) in the unit of the file, to six digits: `110 mm`."""
-    return f"{units.from_si(value, dimension) + 0.0:.6g} {units.symbol(dimension)}"
+    return f"{numeral(units.from_si(value, dimension) + 0.0, '.6g')} {units.spelt(dimension)}"
 
 
 def true_digits(values: Any, bound: Any) -> Any:

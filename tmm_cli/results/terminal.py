@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, numeral
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 
@@ -36,7 +36,7 @@ def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
 def _number(value: float, figures: int) -> str:
     if figures < 0 or not math.isfinite(value):
         return "-"
-    return f"{value:.{figures}g}" if figures else "0"
+    return numeral(value, f".{figures}g") if figures else "0"
 
 
 def show(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME, Driver, Link
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.units import UnitSystem
@@ -40,9 +40,9 @@ def understood(task: Problem | TaskProblem) -> Iterable[str]:
 
 def bare_units(units: UnitSystem) -> str:
     """What numbers without a unit mean."""
-    names = [units.symbol(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
+    names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
     return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
-        units=", ".join(names), angular=units.symbol(ANGULAR_SPEED), linear=units.symbol(SPEED)
+        units=", ".join(names), angular=units.spelt(ANGULAR_SPEED), linear=units.spelt(SPEED)
     )
 
 
@@ -62,8 +62,8 @@ def gravity(pull: complex) -> str:
     if not pull:
         return _("no gravity")
     if pull.real == 0 > pull.imag:
-        return _("gravity {size} m/s^2 downwards").format(size=f"{-pull.imag:.6g}")
-    return _("gravity [{x}, {y}] m/s^2").format(x=f"{pull.real:.6g}", y=f"{pull.imag:.6g}")
+        return _("gravity {size} m/s^2 downwards").format(size=numeral(-pull.imag, ".6g"))
+    return _("gravity [{x}, {y}] m/s^2").format(x=numeral(pull.real, ".6g"), y=numeral(pull.imag, ".6g"))
 
 
 def doubts(problem: Problem) -> Iterable[str]:
@@ -92,12 +92,12 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         yield _(
             "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
             "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
-        ).format(motion=motion(driver), angle=units.symbol(ANGLE), speed=f"{driver.rate:.6g}")
+        ).format(motion=motion(driver), angle=units.spelt(ANGLE), speed=numeral(driver.rate, ".6g"))
     if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
             "write `{speed} m/s`, or `{speed} {length}/s` if that is meant"
-        ).format(length=units.symbol(LENGTH), speed=f"{driver.rate:.6g}")
+        ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
 
 
 def _sizes(problem: Problem) -> Iterable[str]:
@@ -156,4 +156,4 @@ def _farthest(link: Link, point: str) -> str:
 
 def _short(number: float) -> str:
     """Three figures, and all those before the point of a number that people would write so."""
-    return f"{number:.0f}" if 1000 <= number < 1e6 else f"{number:.3g}"
+    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".3g")

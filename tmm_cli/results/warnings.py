@@ -15,7 +15,7 @@ from tmm_cli.forces.springs import twisted
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.linkage import Load
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.reports.synthesis import missed
@@ -53,7 +53,7 @@ def warnings(results: Results | ChainResults) -> Iterable[str]:
 def _place(results: Results, q: float) -> str:
     """A place of the driver."""
     units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
-    return f"{round(units.from_si(q, measure), 5) + 0.0:.8g} {units.symbol(measure)}"
+    return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
 
 
 def _range(results: Results) -> Iterable[str]:
@@ -116,7 +116,7 @@ def _dead(results: Results) -> Iterable[str]:
                 "keep to the side of the sketch"
             )
         )
-        yield text.format(place=_place(results, dead.place), group=dead.group, margin=f"{dead.margin:.2g}")
+        yield text.format(place=_place(results, dead.place), group=dead.group, margin=numeral(dead.margin, ".2g"))
 
 
 def _unreached(results: Results, motion: Motion) -> Iterable[str]:
@@ -156,7 +156,7 @@ def _near(results: Results, motion: Motion) -> Iterable[str]:
             k = int(np.argmin(margin))
             yield _(
                 "position {number} is near a dead position of {group}: sine of the transmission angle {margin}"
-            ).format(number=results.numbers[k], group=kernel.group.title, margin=f"{float(margin[k]):.2g}")
+            ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
 
 
 def _passive(results: Results) -> Iterable[str]:
@@ -270,11 +270,11 @@ def _impacts(results: Results) -> Iterable[str]:
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()
         if jumps:
-            places = ", ".join(f"{units.from_si(a, ANGLE):.6g}" for a in jumps)
+            places = ", ".join(numeral(units.from_si(a, ANGLE), ".6g") for a in jumps)
             yield _(
                 "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
                 "a hard impact, the acceleration there is not finite and is not in the tables"
-            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.symbol(ANGLE)}")
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.spelt(ANGLE)}")
 
 
 def _loads(results: Results, motion: Motion) -> Iterable[str]:
@@ -330,6 +330,6 @@ def _lever(results: Results, motion: Motion) -> Iterable[str]:
     yield _(
         "the lever differs from the force plan by {difference} % at position {number}, more than the limit of {limit} %"
     ).format(
-        number=results.numbers[k], difference=f"{100 * float(worst[k]):.3g}",
-        limit=f"{100 * results.problem.lever_limit:.3g}",
+        number=results.numbers[k], difference=numeral(100 * float(worst[k]), ".3g"),
+        limit=numeral(100 * results.problem.lever_limit, ".3g"),
     )  # fmt: skip

@@ -14,7 +14,7 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import on_paper
 from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
-from tmm_cli.language import _, translated
+from tmm_cli.language import _, numeral, translated
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.problem.units import UnitSystem
@@ -92,7 +92,7 @@ def _over_positions(results: Results, title: str, columns: Sequence[Quantity]) -
     crank = results.linkage.driver.kind == "turn"
     place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
-    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.symbol(kind))}") for name, __, kind in every)]
+    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.spelt(kind))}") for name, __, kind in every)]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
     cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
@@ -119,9 +119,9 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
             forces.append((symbol, complex(balance.vector[k])))
     largest = max((abs(force) for __, force in forces), default=0.0)
     rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
-    rows += [[name, "", "", f"{units.from_si(moment, MOMENT):.{FIGURES}g}"] for name, moment in moments]
-    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.symbol(FORCE))), _("angle from x, °"),
-             _("moment, {unit}").format(unit=on_paper(units.symbol(MOMENT)))]  # fmt: skip
+    rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]
+    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))), _("angle from x, °"),
+             _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT)))]  # fmt: skip
     place = place_of_driver(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the indices of two links: from the first one on the second")]
@@ -133,7 +133,7 @@ def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]
     if not abs(force) > NO_FORCE * largest:
         return "0", "-"
     angle = math.degrees(math.atan2(force.imag, force.real)) % 360
-    return f"{units.from_si(abs(force), FORCE):.{FIGURES}g}", f"{angle:.1f}"
+    return numeral(units.from_si(abs(force), FORCE), f".{FIGURES}g"), numeral(angle, ".1f")
 
 
 def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
@@ -141,4 +141,4 @@ def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable
     shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
     least = NOTHING * np.max(np.abs(shown), where=np.isfinite(shown), initial=0.0)
     picked = [float(shown[k if len(shown) > 1 else 0]) for k in rows]
-    return ["-" if not math.isfinite(v) else f"{v if abs(v) > least else 0.0:.{FIGURES}g}" for v in picked]
+    return ["-" if not math.isfinite(v) else numeral(v if abs(v) > least else 0.0, f".{FIGURES}g") for v in picked]

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_cli.language import numeral
+
 ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
 OF_DEGREES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 TICKS = (1.0, 2.0, 5.0, 10.0)  # between numbers on an axis, times a power of ten
@@ -56,7 +58,7 @@ class Axis:
         values = [k * step for k in range(first, last + 1)]
         if self.logarithmic:
             return [(10.0**value, f"1e{value:.0f}" if value else "1") for value in values]
-        return [(value, f"{value:.10g}") for value in values]
+        return [(value, numeral(value, ".10g")) for value in values]
 
     def _step(self, least: float) -> float:
         if self.degrees and 1 <= least <= ANGLES[-1]:

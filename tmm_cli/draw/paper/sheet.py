@@ -19,6 +19,7 @@ from tmm_cli.draw.paper.labels import Label, place
 from tmm_cli.draw.paper.labels import extent as label_extent
 from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.paper.room import Room
+from tmm_cli.language import numeral, spelt
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import Dimension
@@ -274,12 +275,12 @@ def border(inner: complex, outer: complex, low: complex, high: complex) -> compl
 
 def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
     """μ_l = 0.005 m/mm."""
-    return Symbol("μ", symbol), f" = {mu:.10g} {unit}"
+    return Symbol("μ", symbol), f" = {numeral(mu, '.10g')} {spelt(unit)}"
 
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """A title of an axis."""
-    return ", ".join(part for part in (words, on_paper(units.symbol(dimension))) if part)
+    return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
 
 
 def on_paper(unit: str) -> str:

@@ -17,7 +17,7 @@ from tmm_cli.draw.sheets.structure import colours
 from tmm_cli.draw.symbols.parts import STRUCTURAL, Look, numbers, symbol_size
 from tmm_cli.draw.symbols.render import names, render, spot
 from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
 from tmm_cli.results.reports.assemblies import place
@@ -128,5 +128,8 @@ def _framed(sheet: Sheet, low: complex, high: complex, number: int, assembly: As
     sheet.text(low + complex(3, 3.5), words.format(number=number), 10, weight="bold" if mark else "normal")
     margin = assembly.margin if assembly.margin > DEAD else 0
     sheet.text(
-        complex(high.real - 3, low.imag + 3.5), _("margin {margin}").format(margin=f"{margin:.3g}"), 8.5, ha="right"
+        complex(high.real - 3, low.imag + 3.5),
+        _("margin {margin}").format(margin=numeral(margin, ".3g")),
+        8.5,
+        ha="right",
     )

@@ -14,7 +14,7 @@ from tmm_cli.draw.sheets.lettering import rename
 from tmm_cli.draw.symbols.fixed import guide, support, support_side
 from tmm_cli.draw.symbols.forms import Line
 from tmm_cli.draw.symbols.parts import MEASURED, box
-from tmm_cli.language import _, translated
+from tmm_cli.language import _, numeral, translated
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
@@ -198,9 +198,9 @@ def _size(sheet: Sheet, size: Size, units: UnitSystem) -> None:
 def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
     """H = 120 mm."""
     measure = KINDS[kind].dimension
-    text = f"{units.from_si(value, measure):.4g}"
-    text = f"{units.from_si(value, measure):.0f}" if "e+" in text else text
-    unit = units.symbol(measure) if symbol else ""
+    number = float(units.from_si(value, measure))
+    text = numeral(number, ".0f" if "e+" in f"{number:.4g}" else ".4g")
+    unit = units.spelt(measure) if symbol else ""
     return f"{name} = {text} {unit}".rstrip()
 
 
@@ -210,6 +210,6 @@ def _notes(sheet: Sheet, drawn: Construction, letters: Mapping[str, str], units:
     for k in range(0, len(values), 3):
         sheet.note(", ".join(values[k : k + 3]))
     if drawn.sizes:
-        sheet.note(_("sizes in {unit}").format(unit=units.symbol(KINDS["length"].dimension)))
+        sheet.note(_("sizes in {unit}").format(unit=units.spelt(KINDS["length"].dimension)))
     for key in drawn.notes:
         sheet.note(translated(key).format(**letters))

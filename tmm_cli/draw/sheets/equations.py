@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.script import Words, filled
 from tmm_cli.draw.sheets.beneath import Table
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
@@ -45,7 +45,7 @@ def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
     if found is None or sought is None:
         rest, largest = abs(sum(t.moment for t in terms)), max(abs(t.moment) for t in terms)
         value = figure(rest if rest > NO_MOMENT * largest else 0.0)
-        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} {unit}")
+        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} {spelt(unit)}")
         return
     sense = -float(np.sign(found.moment))
     letters = _sum((_letters(t), sense * t.moment) for t in others)
@@ -53,13 +53,13 @@ def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
     if found.acting.couple:
         value = figure(equation.value)
         summed = () if numbers == [value] else (*numbers, " = ")
-        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {unit}")
+        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {spelt(unit)}")
         return
     name, over, by, of = found.acting.symbol, found.letter, found.arm, "N"
     if sought.arm:
         name, over, by, of = found.letter, found.acting.symbol, found.acting.size, "m"
     divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {figure(by)}")
-    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {of}")
+    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {spelt(of)}")
 
 
 def along_guide(forces: ForceSum) -> Iterable[Words]:
@@ -69,12 +69,12 @@ def along_guide(forces: ForceSum) -> Iterable[Words]:
     sense = -float(np.sign(forces.found.along))
     yield (title, *_sum((_cosine(p), p.along) for p in (forces.found, *others)), " = 0")
     numbers = _sum(((f"{figure(p.acting.size)}·{figure(p.cosine)}",), sense * p.along) for p in others)
-    yield (INDENT, forces.found.acting.symbol, " = ", *numbers, f" = {figure(forces.value)} N")
+    yield (INDENT, forces.found.acting.symbol, " = ", *numbers, f" = {figure(forces.value)} {spelt('N')}")
 
 
 def _cosine(part: Part) -> tuple[Word, ...]:
     angle = float(np.degrees(np.arccos(part.cosine)))
-    return (part.acting.symbol, f"·cos {angle:.1f}°") if angle >= 0.05 else (part.acting.symbol,)
+    return (part.acting.symbol, f"·cos {numeral(angle, '.1f')}°") if angle >= 0.05 else (part.acting.symbol,)
 
 
 def _letters(term: Term) -> tuple[Word, ...]:
@@ -98,10 +98,10 @@ def table_of_forces(acting: Iterable[Acting], unit: str = "N·m") -> Table:
     """Sizes, angles of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
-        way = f"{round(float(np.degrees(np.angle(one.force))), 1) % 360:.1f}°"
+        way = f"{numeral(round(float(np.degrees(np.angle(one.force))), 1) % 360, '.1f')}°"
         if one.couple:  # the equations have its sense as a sign
             way = _("ccw") if one.moment > 0 else _("cw") if one.moment < 0 else ""
-        rows.append((one.symbol, f"{figure(one.size)} {unit if one.couple else 'N'}", way))
+        rows.append((one.symbol, f"{figure(one.size)} {spelt(unit if one.couple else 'N')}", way))
     return Table((_("force"), _("size"), _("from x")), rows)
 
 
@@ -114,13 +114,14 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
     for first, *others in found.values():
         of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
         size = figure(units.from_si(first.arm, LENGTH) if units else first.arm)
-        rows.append((first.letter, of, size, f"{first.arm / mu:.1f} mm"))
-    return Table((_("arm"), _("of"), units.symbol(LENGTH) if units else "", _("on paper")), rows)
+        rows.append((first.letter, of, size, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
+    return Table((_("arm"), _("of"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
 
 
 def figure(value: float) -> str:
     """A number with four figures, without powers of ten as far as people write it so."""
-    text = f"{value:.4g}"
-    if "e-" not in text:
-        return f"{float(text):.10g}"
-    return np.format_float_positional(float(text)) if abs(value) > PLAIN else text
+    rounded = float(f"{value:.4g}")
+    if "e-" not in f"{rounded:.4g}":
+        return numeral(rounded, ".10g")
+    places = len(np.format_float_positional(rounded).partition(".")[2])
+    return numeral(rounded, f".{places}f" if abs(value) > PLAIN else ".4g")

@@ -15,7 +15,7 @@ from tmm_cli.draw.paper.script import Words, wrapped
 from tmm_cli.draw.paper.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.equations import figure
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.record import NamedVector, extent
 from tmm_cli.tolerances import NO_FORCE
@@ -81,12 +81,12 @@ def told_apart(plan: ForcePlan) -> list[NamedVector]:
 
 def table(plan: ForcePlan, mu: float) -> list[Row]:
     """Every vector with its size, its length on paper and its direction; then reactions of which it has the parts."""
-    rows = [Row((_("vector"), "N", _("mm"), _("from x")), head=True)]
+    rows = [Row((_("vector"), spelt("N"), spelt("mm"), _("from x")), head=True)]
     least = NO_FORCE * plan.plan.size
     for vector in (*plan.plan.vectors, *plan.full):
         size = abs(vector.value) if abs(vector.value) > least else 0.0
-        angle = f"{round(float(np.degrees(np.angle(vector.value))), 1) % 360:.1f}°" if size else ""
-        rows.append(Row((vector.symbol, figure(size), f"{size / mu:.1f}", angle)))
+        angle = f"{numeral(round(float(np.degrees(np.angle(vector.value))), 1) % 360, '.1f')}°" if size else ""
+        rows.append(Row((vector.symbol, figure(size), numeral(size / mu, ".1f"), angle)))
     return rows
 
 

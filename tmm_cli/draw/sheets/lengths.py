@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.paper.blocks import Row
 from tmm_cli.draw.paper.script import Words
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.pairs.base import axis
 from tmm_cli.plans.record import Symbol
@@ -27,10 +27,12 @@ def lengths(results: Results) -> list[Row]:
     sizes = [*_links(results), *_wheels(results.linkage), *_frame(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
-    titles: list[Words] = [_("length"), *([_("in the file")] if named else []), units.symbol(LENGTH)]
+    titles: list[Words] = [_("length"), *([_("in the file")] if named else []), units.spelt(LENGTH)]
     rows = [Row(tuple(titles), head=True)]
     for name, parameter, value, dimension in sizes:
-        shown = f"{units.from_si(value, dimension):.6g}" + (f" {units.symbol(ANGLE)}" if dimension == ANGLE else "")
+        shown = numeral(units.from_si(value, dimension), ".6g") + (
+            f" {units.spelt(ANGLE)}" if dimension == ANGLE else ""
+        )
         rows.append(Row((name, *([parameter] if named else []), shown)))
     return rows
 

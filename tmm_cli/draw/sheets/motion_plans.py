@@ -15,7 +15,7 @@ from tmm_cli.draw.sheets.equations import figure
 from tmm_cli.draw.sheets.lever import letter_points
 from tmm_cli.draw.sheets.mechanism import Position
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.readings import readings, turns
 from tmm_cli.plans.record import NamedVector, Plan
@@ -100,13 +100,13 @@ def alone(vector: NamedVector, plan: Plan) -> complex:
 
 def table(here: Position, sort: Sort, plan: Plan, mu: float) -> list[Row]:
     """Every vector with its segment, its length on paper and its value; what each link turns with."""
-    rows = [Row((_("vector"), _("segment"), _("mm"), sort.unit), head=True)]
+    rows = [Row((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in readings(plan):
         first, *others = reading.symbols
         names = (first, *(part for symbol in others for part in (" = ", symbol)))
-        length = f"{reading.size / mu:.1f}" if reading.size else "0"
+        length = numeral(reading.size / mu, ".1f") if reading.size else "0"
         rows.append(Row((names, reading.segment, length, figure(reading.size))))
-    rows.append(Row((_("link"), _("sense"), "", sort.turning), head=True))
+    rows.append(Row((_("link"), _("sense"), "", spelt(sort.turning)), head=True))
     for turn in turns(here.motion, here.k, sort.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""
         rows.append(Row((turn.symbol, sense, "", figure(abs(turn.value)))))

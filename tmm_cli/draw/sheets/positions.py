@@ -24,7 +24,7 @@ from tmm_cli.draw.symbols.render import arrows
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import sheet_scale
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.vectors import Vector
@@ -142,7 +142,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 def ratio(mu: float) -> str:
     """A scale factor (m/mm) as the scale of a drawing, 1:4."""
-    return f"1:{1000 * mu:.6g}" if mu >= 1e-3 else f"{1e-3 / mu:.6g}:1"
+    return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
 
 
 def _figure(view: View, whole: list[Vector]) -> Figure:
@@ -206,7 +206,7 @@ def _size(view: View) -> str:
     results, units = view.results, view.results.problem.units
     turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
     measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
-    return f"{letter} = {units.from_si(travel(results), measure):.4g} {units.symbol(measure)}"
+    return f"{letter} = {numeral(units.from_si(travel(results), measure), '.4g')} {units.spelt(measure)}"
 
 
 def _farthest(places: Vector) -> tuple[complex, complex]:

@@ -14,7 +14,7 @@ from typing import Literal
 from tmm_cli.grading.readings import factor
 from tmm_cli.grading.record import Mark, StudentMarks
 from tmm_cli.grading.task import Asked, Task
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, numeral
 from tmm_cli.results.files import folder_name
 
 STATES = {
@@ -40,10 +40,10 @@ class Answer:
         size: that of a vector without its direction.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
-        number = f"{self.number(value) / scale + 0.0:.5g} {_printed(unit or self.unit)}".rstrip()
+        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {_printed(unit or self.unit)}".rstrip()
         if not self.asked.quantity.vector or size:
             return number
-        return _("{size} at {direction}°").format(size=number, direction=f"{direction(value):.4g}")
+        return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))
 
     def number(self, value: complex) -> float:
         """A value (SI) as one number: the size of a vector."""
@@ -115,7 +115,7 @@ def _printed(unit: str) -> str:
 @lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
     """Points as people write them: 4, 3.5."""
-    return f"{rounded(points):.10g}"
+    return numeral(rounded(points), ".10g")
 
 
 def rounded(points: float) -> float:
@@ -132,7 +132,7 @@ def share_text(share: float) -> str:
     """A share for people, to two figures: 0.51 %, 5.1 %, 51 %."""
     if not share < 10:  # nan too
         return _("over 999 %")
-    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{100 * share:.2g} %"
+    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{numeral(100 * share, '.2g')} %"
 
 
 def direction(value: complex) -> float:

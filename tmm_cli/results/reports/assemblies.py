@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import Assemblies, GroupAssemblies, listed
-from tmm_cli.language import N_, Phrase, _
+from tmm_cli.language import N_, Phrase, _, numeral
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, place_dimension
 from tmm_cli.results.table import Column, Table
@@ -24,7 +24,7 @@ def place(problem: Problem, q: float, number: int | None) -> str:
     crank = problem.linkage.driver.kind == "turn"
     measure = place_dimension(problem.linkage.driver.kind)
     value = problem.units.from_si(q % math.tau if crank else q, measure)
-    at = f"{round(value, 9) + 0.0:.6g} {problem.units.symbol(measure)}"
+    at = f"{numeral(round(value, 9) + 0.0, '.6g')} {problem.units.spelt(measure)}"
     if number is None:
         text = _("place of the sketch, crank at {place}") if crank else _("place of the sketch, driver at {place}")
         return text.format(place=at)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.checks import Check, checks
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
 from tmm_cli.results.table import Table, table_of_words, with_unit
 from tmm_cli.tolerances import SAME_PLACE
@@ -53,14 +53,14 @@ def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
                     _("drives in the working stroke ({work} J), resists in the idle one")
                     if check.detail == "working"
                     else _("resists in the working stroke, drives in the idle one ({work} J)")
-                ).format(work=f"{check.value:.6g}")
+                ).format(work=numeral(check.value, ".6g"))
             wanted = _("one way; or when: working stroke")
             return _("load without `when`"), _("load {load}").format(load=check.of), found, wanted
         case "near dead":
-            limit = _("at least {margin}").format(margin=f"{check.limit:.6g}")
-            found = f"{check.value if check.value > 1e-12 else 0.0:.3g}"
+            limit = _("at least {margin}").format(margin=numeral(check.limit, ".6g"))
+            found = numeral(check.value if check.value > 1e-12 else 0.0, ".3g")
             return _("margin to dead and change points"), check.of, found, limit
         case "lever":
-            limit = _("at most {share} %").format(share=f"{100 * check.limit:.6g}")
+            limit = _("at most {share} %").format(share=numeral(100 * check.limit, ".6g"))
             value = 100 * check.value
-            return _("lever against force plan"), "", f"{0.0 if check.at is None else value:.3g} %", limit
+            return _("lever against force plan"), "", f"{numeral(0.0 if check.at is None else value, '.3g')} %", limit

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, numeral
 from tmm_cli.quantities import ENERGY, LENGTH, NUMBER, columns
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.table import Column, Table
@@ -39,7 +39,7 @@ def _friction(results: Results) -> Table:
     given = results.linkage.friction
     notes = [_("no efficiency over the cycle: the driver is locked somewhere, or does no work")]
     if lost is not None and lost.efficiency is not None:
-        notes = [_("efficiency over the cycle: {share} %").format(share=f"{100 * lost.efficiency:.4g}")]
+        notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
     locked = [str(n) for n, lost in zip(results.numbers, rubbed.locked, strict=True) if lost]
     if locked:
         notes.append(_("locked in positions {numbers}").format(numbers=", ".join(locked)))

@@ -14,6 +14,7 @@ from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
+from tmm_cli.tolerances import CAME_BACK
 
 Row = tuple[str, Any, Dimension]
 
@@ -67,7 +68,9 @@ def _turned(results: Results, strokes: Strokes) -> float:
     """By how much (rad) an output turns that does not come back."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
     angle = np.unwrap(curve.place(results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)))
-    return abs(float(angle[-1] - angle[0]))
+    turned = abs(float(angle[-1] - angle[0]))
+    whole = 2 * np.pi * round(turned / (2 * np.pi))  # whatever repeats has turned by whole turns
+    return whole if abs(turned - whole) < CAME_BACK else turned
 
 
 def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]:
@@ -94,5 +97,5 @@ def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
     return (
         Column(N_("what"), [name for name, __, __ in rows]),
         Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
-        Column(N_("unit"), [units.symbol(dim) for __, __, dim in rows]),
+        Column(N_("unit"), [units.spelt(dim) for __, __, dim in rows]),
     )

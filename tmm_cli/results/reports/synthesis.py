@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import N_, _, translated
+from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import KINDS
@@ -71,7 +71,7 @@ def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[st
         if m.open:
             yield _(
                 "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open"
-            ).format(quantity=translated(m.demand.text), by=f"{m.open:.2g}")
+            ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
         if not m.met:
             wanted, on = (_shown(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
             yield _("{quantity}: wanted {wanted}, measured {found}").format(
@@ -125,7 +125,7 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
         elif kind == "by":
             values = [_("asked") if value else _("foretold") for value in values]
         elif kind == "share":
-            values = [f"{0.0 if abs(value) < ROUNDING else value:.2g}" for value in values]
+            values = [numeral(0.0 if abs(value) < ROUNDING else value, ".2g") for value in values]
         else:
             values = ["" if v is None else translated(v) for v in values]
         columns += [Column(header, values, dimension)] if header else []
@@ -152,8 +152,8 @@ def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
     if value is None or kind == "word":
         return "" if value is None else translated(value)
     number = float(value)
-    return _("none") if math.isnan(number) else f"{units.from_si(number, KINDS[kind].dimension):.{digits}g}"
+    return _("none") if math.isnan(number) else numeral(units.from_si(number, KINDS[kind].dimension), f".{digits}g")
 
 
 def _unit(kind: Kind, units: UnitSystem) -> str:
-    return units.symbol(KINDS[kind].dimension) if kind in KINDS else ""
+    return units.spelt(KINDS[kind].dimension) if kind in KINDS else ""
