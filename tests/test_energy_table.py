@@ -7,7 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bank import solved
+from fuzz import beyond
 
+from tmm_cli import solve
+from tmm_cli.library import problem_of
+from tmm_cli.problem.reader import read_text
 from tmm_cli.results.reports.energy import tables
 
 PROBLEMS = Path(__file__).parent.parent / "problems"
@@ -18,3 +22,11 @@ def test_its_derivative_by_the_driver_stands_beside_the_reduced_inertia(name, he
     results = solved(name)
     column = next(column for column in next(iter(tables(results))).columns if column.header == header)
     assert np.array_equal(column.array, results.energy.slope)
+
+
+def test_its_bound_has_nothing_of_speeds_in_it():
+    """A parallelogram of equal arms has the same inertia everywhere; what is left of its derivative is rounding."""
+    text = (PROBLEMS / "hanger.yaml").read_text(encoding="utf-8")
+    slow = text.replace("speed: 10 deg/s", "speed: 1e-8 deg/s")
+    assert slow != text
+    assert beyond(solve(problem_of(read_text(slow, "x.yaml")))) is None

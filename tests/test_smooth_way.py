@@ -11,6 +11,7 @@ from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.results.reports.quality import tables
 from tmm_cli.results.warnings import warnings
 
 KITE = """tmm: 1
@@ -82,6 +83,8 @@ def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparall
     half = np.mod(motion.q, 2 * np.pi) < np.pi
     assert np.allclose(motion.first["3"].w[half], 1) and np.all(motion.first["3"].w[~half] < 0)
     assert "the results keep to the side of the sketch" in next(iter(warnings(results)))
+    (quality,) = tables(results)
+    assert (quality.columns[0].values[0], quality.columns[1].values[0]) == ("link 3 turns in a cycle by", 0)
 
 
 def test_another_word_there_is_refused():

@@ -93,7 +93,7 @@ class Substitution:
 
     result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
     formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only. whole: a
-    number that is counted.
+    number that is counted. most: figures of the result.
     """
 
     name: Symbol
@@ -102,6 +102,7 @@ class Substitution:
     unit: str = ""
     angle: bool = False
     whole: bool = False
+    most: int = FIGURES
 
     def value(self, figures: int) -> float:
         """Of the expression with numbers of so many figures put in, in the unit of the result."""
@@ -119,7 +120,7 @@ class Substitution:
         shown = 0.0 if abs(result) <= NOTHING * terms else result
         if self.whole and self.value(MOST_FIGURES) == result:
             return MOST_FIGURES, str(round(result))
-        for own in range(FIGURES, 0, -1):
+        for own in range(self.most, 0, -1):
             text = fixed(shown, own, terms)
             unit = last_digit(text)
             for figures in range(FIGURES, MOST_FIGURES + 1):

@@ -213,8 +213,11 @@ class _Way:
             yield Along(self._spot(slide.point), under(slide), slide, known)
 
     def _others(self, link: str, base: Spot, told: Collection[str]) -> tuple[About, ...]:
-        """Further points of a link that tell its motion."""
+        """Further points of a link that tell its motion; not the free ends of cylinders and rods that swing."""
         points = [p for p in hinge_points(self.linkage, link) if p not in told and p != base.name]
+        if not base.fixed and any(link in (slide.carrier, slide.runner) for slide in self.linkage.slides):
+            running = {slide.point for slide in self.linkage.slides}
+            points = [p for p in points if len(self.linkage.carriers(p)) > 1 or p in running]
         return tuple(self._about(self._spot(p), base, link) for p in points if not self._spot(p).fixed)
 
     def _same(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:

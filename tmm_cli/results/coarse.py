@@ -12,6 +12,7 @@ from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
 
 HUGE = 1e300  # a bound of what is zero as far as is known
+SLOPES = ("dJ/dphi, SI", "dm/ds, SI")
 RATIOS = {  # columns that are something over a force: the less of it there is the less they are known, of zero nothing
     ("reactions", "angle"): "F",
     ("reactions", "acts at"): "F",
@@ -30,6 +31,9 @@ def by_margins(
     if column.dimension == NUMBER and table.name in ("energy", "cycle"):
         power = sizes.get(FORCE, 0.0) * sizes[SPEED]
         size = _percent(results, table.name, power, sizes) if column.header.endswith("%") else max(power, own)
+        if column.header in SLOPES and results.energy is not None:  # which has nothing of speeds in it
+            inertia = np.abs(results.energy.inertia)
+            size = 2 * sizes[NUMBER] * float(np.max(inertia, where=np.isfinite(inertia), initial=0.0))
     bound = np.repeat(relative, table.rows // len(relative)) * size
     over = RATIOS.get((table.name, column.header))
     if over is not None:

@@ -7,33 +7,46 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Rows, filled, line, said
+from tmm_cli.note.blocks import Block, Line, Rows, filled, line, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces.words import angle, shown
-from tmm_cli.plans.record import balance_symbol, reaction_symbol
+from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
+from tmm_cli.results.reports.cycle import signs
 from tmm_cli.tolerances import NO_DIFFERENCE
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, Vector
 
 PAIRS = 4  # reactions in one table
 NONE = "—"  # of what there is not in a position
 
 
 def reactions(subject: Subject) -> Iterable[Block]:
-    """Sizes and angles, a few pairs to a table."""
+    """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
     found = subject.results.reactions
     assert found is not None
     yield said(_("The tables have the reactions of all positions, and the angles from the axis x at which they act."))
-    for first in range(0, len(found.directed), PAIRS):
-        some = found.directed[first : first + PAIRS]
+    pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
+    yield from _sized(subject, _("Reactions in the pairs {names}"), pairs)
+    pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
+            for pin in found.pins(subject.results.linkage)]  # fmt: skip
+    if pins:
+        yield said(_("In a compound hinge more than two links meet; its pin acts on each of them with the force:"))
+        yield from _sized(subject, _("Forces of the pins {names} on their links"), pins)
+
+
+def _sized(
+    subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]]
+) -> Iterable[Block]:
+    """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
+    for first in range(0, len(forces), PAIRS):
+        some = forces[first : first + PAIRS]
         head: list[Line] = [line(_("position"))]
-        for r in some:
-            head += [line(reaction_symbol(r.by, r.on), ", ", _("N")), line(_("angle, °"))]
-        caption = _("Reactions in the pairs {pairs}").format(pairs=", ".join(r.pair.name for r in some))
         columns: list[Real] = []
-        for r in some:
-            assert r.angle is not None
-            columns += [np.where(np.isnan(r.angle), 0.0, np.abs(r.force)), r.angle]
-        yield _table(subject, caption, head, columns, angles=True)
+        for __, symbol, force, told in some:
+            head += [line(symbol, ", ", _("N")), line(_("angle, °"))]
+            way, size = np.angle(force) if told is None else told, np.abs(force)
+            columns += [np.where(np.isnan(way) & np.isfinite(size), 0.0, size), way]
+        names = ", ".join(dict.fromkeys(name for name, *__ in some))
+        yield _table(subject, caption.format(names=names), head, columns, angles=True)
 
 
 def balancing(subject: Subject) -> Iterable[Block]:
@@ -59,7 +72,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
         head.append(line(_("difference, %")))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     caption = _("What balances the driving link") if not several else _("What balances the driven links")
-    yield said(_("Moments that are positive turn counterclockwise."))
+    yield paragraph(signs(results.linkage))
     yield _table(subject, caption, head, columns)
 
 

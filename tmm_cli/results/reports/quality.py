@@ -14,6 +14,7 @@ from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
+from tmm_cli.tolerances import CAME_BACK
 
 Row = tuple[str, Any, Dimension]
 
@@ -67,7 +68,9 @@ def _turned(results: Results, strokes: Strokes) -> float:
     """By how much (rad) an output turns that does not come back."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
     angle = np.unwrap(curve.place(results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)))
-    return abs(float(angle[-1] - angle[0]))
+    turned = abs(float(angle[-1] - angle[0]))
+    whole = 2 * np.pi * round(turned / (2 * np.pi))  # whatever repeats has turned by whole turns
+    return whole if abs(turned - whole) < CAME_BACK else turned
 
 
 def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]:

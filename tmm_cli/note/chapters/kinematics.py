@@ -1,0 +1,67 @@
+"""The kinematics: drivers and positions, velocities and accelerations of the positions in detail, tables of all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Heading, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.kinematics.accelerations import accelerations
+from tmm_cli.note.kinematics.driver import drivers, place_here, positions, speed_here
+from tmm_cli.note.kinematics.on_paper import Here
+from tmm_cli.note.kinematics.tables import tables
+from tmm_cli.note.kinematics.velocities import velocities
+from tmm_cli.plans.vector_equations import Step, steps
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Of what moves."""
+    results = subject.results
+    if results.motion is None:
+        return
+    yield Heading(_("Kinematic analysis"))
+    yield Heading(_("Driving links and positions"), 2)
+    yield from drivers(subject)
+    yield from positions(subject)
+    every = steps(results.linkage, results.structure.groups)
+    for k in subject.detail:
+        yield from _position(Here(subject, k, k == subject.detail[0]), every)
+    yield Heading(_("Kinematics of all positions"), 2)
+    yield from tables(subject)
+
+
+def _position(here: Here, every: list[Step]) -> Iterable[Block]:
+    subject, number = here.subject, here.subject.results.numbers[here.k]
+    yield Heading(_("Velocities, position {number}").format(number=number), 2)
+    if here.first:
+        yield said(
+            _(
+                "Velocities are found by plans: of the driving links first, then of the groups in the order of the "
+                "formula of structure. Of a vector under which two lines stand the size and the direction are "
+                "known, of one with a single line its direction only. A point of a link under a stone has the "
+                "number of the link in its name."
+            )
+        )
+    yield place_here(here)
+    yield from speed_here(here)
+    yield from subject.figures(
+        "velocity", _("The plan of velocities is shown in figure {figure}."),
+        _("Plan of velocities, position {number}").format(number=number), here.k,
+    )  # fmt: skip
+    yield from velocities(here, every)
+    yield Heading(_("Accelerations, position {number}").format(number=number), 2)
+    if here.first:
+        yield said(
+            _(
+                "The acceleration of a point about another one of its link has a normal part, towards that other "
+                "point, and a tangential one across their line. The acceleration of a stone about the point under "
+                "it has a part along the guide and, where the guide turns, that of Coriolis: it has the direction "
+                "of the relative velocity turned through 90° in the sense of the guide's rotation."
+            )
+        )
+    yield from subject.figures(
+        "acceleration", _("The plan of accelerations is shown in figure {figure}."),
+        _("Plan of accelerations, position {number}").format(number=number), here.k,
+    )  # fmt: skip
+    yield from accelerations(here, every)

@@ -1,0 +1,1 @@
+"""What the chapter on kinematics writes: the driver, plans of velocities and accelerations, tables of all positions."""

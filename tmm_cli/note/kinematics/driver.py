@@ -1,0 +1,186 @@
+"""The drivers, the positions of the cycle, the extreme positions of the output with its stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.draw.paper.picture import Picture
+from tmm_cli.kinematics.strokes import Strokes, Travel
+from tmm_cli.language import _, symbol
+from tmm_cli.linkage import FRAME, Driver
+from tmm_cli.note.blocks import Block, Equation, Found, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.kinematics.on_paper import Here, unit
+from tmm_cli.note.kinematics.words import sense
+from tmm_cli.note.math import Letter, Number, Words, row
+from tmm_cli.plans.record import Symbol
+from tmm_cli.tolerances import NO_VECTOR
+
+ROUND = 1e-9  # of a speed in rpm that was given as such
+
+
+def drivers(subject: Subject) -> Iterable[Block]:
+    """How each driving link moves."""
+    for driver in subject.results.linkage.drivers:
+        yield from _turning(subject, driver) if driver.kind == "turn" else _sliding(subject, driver)
+
+
+def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
+    own = driver.link if driver.base == FRAME else driver.link + driver.base
+    omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    fields = {"link": driver.link, "point": driver.joint, "base": driver.base, "sense": sense(driver.sense)}
+    rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
+    if driver.base != FRAME:
+        text = _(
+            "Driving link {link} turns about point {point} of link {base}, {sense}, with the relative angular velocity"
+        )
+        yield said(text, **fields)
+    elif rpm:
+        text = _("Driving link {link} turns about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
+        yield said(text, **fields, n=Symbol("n", own), speed=subject.text(n, 6))
+    else:
+        yield said(_("Driving link {link} turns about point {point} {sense} with the angular velocity"), **fields)
+    if rpm:
+        product = Product((Constant(float(np.pi), "π"), Leaf(Symbol("n", own), n)))
+        yield Found(Substitution(omega, Quotient(product, Constant(30)), driver.rate, unit("ω")))
+    else:
+        yield _given(subject, omega, driver.rate, unit("ω"))
+    if driver.acceleration:
+        yield said(_("in position 0 and with the angular acceleration"))
+        yield _given(subject, Symbol("ε", own), driver.acceleration, unit("ε"))
+
+
+def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
+    point = subject.results.linkage.slide(driver.joint).point
+    own = point if driver.base == FRAME else f"{point}{point}{subject.results.linkage.slide(driver.joint).carrier}"
+    if driver.base == FRAME:
+        yield said(_("Driving link {link} slides along its guide on the frame with the velocity"), link=driver.link)
+    else:
+        text = _(
+            "Driving link {link} is moved along link {base} (a cylinder with its piston) with the relative velocity"
+        )
+        yield said(text, link=driver.link, base=driver.base)
+    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate, unit("v"))
+    if driver.acceleration:
+        yield said(_("in position 0 and with the acceleration"))
+        yield _given(subject, Symbol("a", own), driver.acceleration, unit("a"))
+
+
+def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
+    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {per}")))
+
+
+def speed_here(here: Here) -> Iterable[Block]:
+    """The speed in a position of a first driver that does not keep it."""
+    results, driver = here.subject.results, here.motion.linkage.driver
+    if not driver.acceleration:
+        return
+    turns = driver.kind == "turn"
+    letter, rate, way = ("ω", "ε", "φ") if turns else ("v", "a", "s")
+    begins = results.linkage.sketch.at if results.linkage.others else results.start
+    gone = driver.sense * (float(here.motion.q[here.k]) - begins)
+    first = Symbol(letter, driver.link)
+    yield said(
+        _("Since position 0 the driving link has gone through {gone}; its speed {speed} follows from the even "
+          "acceleration:"),
+        gone=Symbol(f"Δ{way}"), speed=first,
+    )  # fmt: skip
+    more = Product((Constant(2), Leaf(Symbol(rate, driver.link), driver.acceleration), Leaf(Symbol(f"Δ{way}"), gone)))
+    start = Square(Leaf(Symbol(letter, "0"), driver.rate))
+    root = SquareRoot(Sum(((1, start), (1, more))))
+    yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit(letter)))
+
+
+def positions(subject: Subject) -> Iterable[Block]:
+    """How many there are and from where on; the plan of positions; extreme positions with the stroke."""
+    results = subject.results
+    request, count = results.inputs.request, len(results.asked)
+    full = results.driver_range is not None and results.driver_range.full and results.linkage.driver.kind == "turn"
+    if count > 1:
+        if request.places:
+            yield said(_("The mechanism is studied in {count} given positions of the driving link."), count=str(count))
+        elif full and request.start == "working stroke":
+            text = _(
+                "The cycle is divided into {count} equal parts; position 0 is the beginning of the working stroke."
+            )
+            yield said(text, count=str(count))
+        elif full:
+            yield said(_("The cycle is divided into {count} equal parts."), count=str(count))
+        else:
+            yield said(_("The way of the driving link is studied in {count} positions."), count=str(count))
+    for drawing in subject.drawings("positions").values():
+        if isinstance(drawing, Picture) and drawing.mu is not None:
+            text = _("The scale factor of the plan of positions is {mu} = {value} m/mm.")
+            yield said(text, mu=Symbol("μ", "l"), value=subject.text(drawing.mu))
+    yield from subject.figures(
+        "positions", _("The plan of positions is shown in figure {figure}."), _("Plan of positions of the mechanism")
+    )
+    for link, strokes in _strokes(subject):
+        yield from _extremes(subject, link, strokes)
+    for travel in results.travels:
+        yield from _travel(subject, travel)
+
+
+def _strokes(subject: Subject) -> Iterable[tuple[str, Strokes]]:
+    results = subject.results
+    for strokes in (results.strokes, *results.further):
+        if strokes is not None and strokes.strokes:
+            yield strokes.link, strokes
+
+
+def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
+    """Where the output turns back, how far it goes, and how long each way takes."""
+    places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
+    slides = strokes.kind == "slide"
+    size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
+    shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
+    yield said(
+        _("The output, {output}, is in its extreme positions at {phi} = {places}; between them it goes through "
+          "{size}."),
+        output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
+    )  # fmt: skip
+    if not np.isfinite(strokes.k):
+        return
+    working = sum(s.length for s in strokes.working)
+    idle = sum(s.length for s in strokes.strokes if not s.working)
+    yield said(
+        _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; the "
+          "coefficient of change of mean speed is"),
+        working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
+    )  # fmt: skip
+    angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
+    yield Found(Substitution(Symbol("k"), Quotient(*angles), strokes.k))
+
+
+def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:
+    slides = travel.kind == "slide"
+    ends = (travel.low, travel.high)
+    low, high = (f"{subject.text(end)} {_('m')}" if slides else f"{subject.text(_degrees(end))}°" for end in ends)
+    text = _("Over this way the output, {output}, goes from {low} to {high}.")
+    yield said(text, output=output(subject, travel.link), low=low, high=high)
+
+
+def _degrees(angle: float) -> float:
+    """Without what only rounding leaves of zero."""
+    found = float(np.degrees(angle))
+    return 0.0 if abs(found) < NO_VECTOR else found
+
+
+def output(subject: Subject, link: str) -> str:
+    """A link, or a coordinate of a point."""
+    return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
+
+
+def place_here(here: Here) -> Block:
+    """Where the driving link is in a position."""
+    driver, q = here.motion.linkage.driver, float(here.motion.q[here.k])
+    if driver.kind == "turn":
+        text = _("In position {number} the driving link is at {phi} = {angle}°.")
+        angle = here.subject.text(_degrees(q % (2 * np.pi)))
+        return said(text, number=str(here.subject.results.numbers[here.k]), phi=Symbol("φ", driver.link), angle=angle)
+    text = _("In position {number} the driving link is at {run} = {place} m.")
+    number = str(here.subject.results.numbers[here.k])
+    return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))

@@ -1,0 +1,186 @@
+"""A position as formulas read it: segments of its plans in millimetres, what links turn with, lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from tmm_cli.draw.paper.picture import Picture
+from tmm_cli.draw.sheets.motion_plans import Sort, sorts
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Equation, Found
+from tmm_cli.note.context import OF_POSITION, Subject
+from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
+from tmm_cli.note.math import Letter, Number, row
+from tmm_cli.plans.readings import turns
+from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, round_scale
+from tmm_cli.plans.vector_equations import Spot
+from tmm_cli.tolerances import NO_VECTOR
+
+SMALL = 0.2  # of the largest known vector: a smaller one is not the one by which a scale is told
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A vector of a plan: its symbol, size (SI) and segment. One of no size is a point, and has none."""
+
+    symbol: Symbol
+    size: float
+    segment: str
+
+    @property
+    def leaf(self) -> Leaf:
+        """Its size in a formula."""
+        return Leaf(self.symbol, self.size)
+
+
+@dataclass(frozen=True)
+class OnPaper:
+    """The plan of velocities, or of accelerations, at its scale."""
+
+    subject: Subject
+    motion: Motion
+    k: int
+    name: Literal["velocity", "acceleration"]
+
+    @cached_property
+    def sort(self) -> Sort:
+        """Its letters and units."""
+        return next(sort for sort in sorts() if sort.stem == self.name)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """Its vectors."""
+        return self.sort.plan(self.motion, self.k)
+
+    @cached_property
+    def mu(self) -> float:
+        """SI a millimetre: of its drawing, or as it would be drawn."""
+        for drawing in self.subject.drawings(self.name, self.k).values():
+            if isinstance(drawing, Picture) and drawing.mu is not None:
+                return drawing.mu
+        longest = OF_POSITION[self.name][1]
+        __, across, up, ___ = extent([0j, *(p for v in self.plan.vectors for p in (v.start, v.end))])
+        return round_scale(across, up, longest, longest)
+
+    @cached_property
+    def ends(self) -> dict[str, NamedVector]:
+        """Vectors of points and centres of mass, by their names."""
+        return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
+
+    def of(self, spot: Spot | str) -> Vector:
+        """The vector of a point, or of a centre of mass by its name."""
+        name = spot if isinstance(spot, str) else spot.name
+        return self._vector(Symbol(self.sort.letter, name), self._end(spot), self.sort.pole + self._letter(spot))
+
+    def relative(self, point: Spot, base: Spot) -> Vector:
+        """The velocity of a point about another one; about one of the frame it is the whole one."""
+        if base.fixed:
+            return self.of(point)
+        symbol = Symbol(self.sort.letter, point.name + base.name)
+        letters = [self._letter(spot) or self.sort.pole for spot in (base, point)]
+        return self._vector(symbol, self._end(point) - self._end(base), "".join(letters))
+
+    def part(self, point: Spot, base: Spot, above: str) -> Vector:
+        """A part of an acceleration: n, τ, k or r."""
+        symbol = Symbol(self.sort.letter, point.name + base.name, above)
+        found = next(v for v in self.plan.vectors if v.symbol == symbol)
+        return self._vector(symbol, found.value, found.name)
+
+    def same(self, one: str, other: str) -> bool:
+        """Whether two points move as one."""
+        return abs(self._end(one) - self._end(other)) <= NO_VECTOR * self.plan.size
+
+    def read(self, vector: Vector) -> Block:
+        """What a segment of the plan is worth."""
+        if not vector.segment:
+            return zero(vector.symbol)
+        measured = Product((Leaf(Symbol("μ", self.sort.letter), self.mu), self._segment(vector)))
+        return Found(Substitution(vector.symbol, measured, vector.size, unit(self.sort.letter)))
+
+    def scaled(self, vector: Vector) -> Block:
+        """The scale, told by the vector that is drawn first."""
+        per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.sort.letter]
+        name, most = Symbol("μ", self.sort.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
+        return Found(Substitution(name, Quotient(vector.leaf, self._segment(vector)), self.mu, per_mm, most=most))
+
+    def _segment(self, vector: Vector) -> Leaf:
+        return Leaf(drawn(vector), vector.size / self.mu)
+
+    def _end(self, spot: Spot | str) -> complex:
+        name = spot if isinstance(spot, str) else spot.name
+        return self.ends[name].end if name in self.ends else 0j
+
+    def _letter(self, spot: Spot | str) -> str:
+        """Of the end of its vector; none of a point of the frame, which ends in the pole."""
+        name = spot if isinstance(spot, str) else spot.name
+        return self.ends[name].name[len(self.sort.pole) :] if name in self.ends else ""
+
+    def _vector(self, symbol: Symbol, value: complex, segment: str) -> Vector:
+        there = abs(value) > NO_VECTOR * self.plan.size
+        return Vector(symbol, abs(value) if there else 0.0, segment if there else "")
+
+
+@dataclass(frozen=True)
+class Here:
+    """A position with both its plans. first: of those that are shown in full, in which the method is explained."""
+
+    subject: Subject
+    k: int
+    first: bool
+
+    @property
+    def motion(self) -> Motion:
+        """The motion of the problem."""
+        assert self.subject.results.motion is not None
+        return self.subject.results.motion
+
+    @cached_property
+    def v(self) -> OnPaper:
+        """The plan of velocities."""
+        return OnPaper(self.subject, self.motion, self.k, "velocity")
+
+    @cached_property
+    def a(self) -> OnPaper:
+        """The plan of accelerations."""
+        return OnPaper(self.subject, self.motion, self.k, "acceleration")
+
+    @cached_property
+    def omega(self) -> Mapping[str, float]:
+        """Of the links that turn in some position, rad/s."""
+        return {turn.symbol.below: turn.value for turn in turns(self.motion, self.k, "omega")}
+
+    @cached_property
+    def epsilon(self) -> Mapping[str, float]:
+        """Of the links that turn unevenly, rad/s2."""
+        return {turn.symbol.below: turn.value for turn in turns(self.motion, self.k, "epsilon")}
+
+    def length(self, point: Spot, base: Spot) -> Leaf:
+        """Between two points of a link, m."""
+        places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
+        return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
+
+
+def unit(letter: str) -> str:
+    """Of velocities, accelerations, and of what links turn with."""
+    return {"v": _("m/s"), "a": _("m/s²"), "ω": _("rad/s"), "ε": _("rad/s²")}[letter]
+
+
+def large(vectors: Sequence[Vector]) -> Vector | None:
+    """The first that is large enough among these to tell a scale; None where all are points."""
+    largest = max((vector.size for vector in vectors), default=0.0)
+    return next((vector for vector in vectors if vector.segment and vector.size > SMALL * largest), None)
+
+
+def drawn(vector: Vector) -> Symbol:
+    """Its segment."""
+    return Symbol(vector.segment.translate(_BELOW))
+
+
+def zero(symbol: Symbol) -> Block:
+    """A quantity that is nothing."""
+    return Equation(row(Letter(symbol), "=", Number("0")))

@@ -1,0 +1,129 @@
+"""Tables of all positions: the output, angular velocities and accelerations of links; diagrams over the cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.kinematics.driver import output
+from tmm_cli.note.kinematics.on_paper import unit
+from tmm_cli.plans.record import Symbol
+from tmm_cli.results.reports.cycle import output_motion, states
+from tmm_cli.tolerances import NO_VECTOR
+from tmm_cli.vectors import Real
+
+
+@dataclass(frozen=True)
+class Column:
+    """A quantity in all positions, in the unit of its head."""
+
+    head: Line
+    values: Real
+
+
+def tables(subject: Subject) -> Iterable[Block]:
+    """What is found in all positions in the same way."""
+    results = subject.results
+    motion = results.motion
+    assert motion is not None
+    for link in results.mechanism.outputs:
+        letters = ("φ", "ω", "ε") if results.linkage.output_swings(link) else ("s", "v", "a")
+        units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
+        columns = []
+        for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
+            largest = float(np.nanmax(np.abs(values), initial=0.0))
+            own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if per == "°" else values)
+            columns.append(Column(line(Symbol(letter, link), f", {per}"), own))
+        key = f"output-{link}"
+        yield said(_("The motion of the output in all positions is in table {table}."), table=Ref(key))
+        yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
+    for letter, what, caption, sentence in (
+        (
+            "ω", "omega", _("Angular velocities of the links"),
+            _("The angular velocities of the links are in table {table}."),
+        ), (
+            "ε", "epsilon", _("Angular accelerations of the links"),
+            _("The angular accelerations of the links are in table {table}."),
+        ),
+    ):  # fmt: skip
+        columns = _rates(subject, letter, what)
+        if columns:
+            yield said(sentence, table=Ref(what))
+            yield _table(subject, caption, columns, what)
+    for stem, drawing in subject.drawings("diagrams").items():
+        if stem.startswith("diagrams"):
+            yield said(_("The diagrams of motion are shown in figure {figure}."), figure=Ref(stem))
+            yield Figure(_("Diagrams of motion over the cycle"), drawing, stem)
+        elif stem.startswith("pressure"):
+            yield said(_("The pressure angles are shown in figure {figure}."), figure=Ref(stem))
+            yield Figure(_("Pressure angles over the cycle"), drawing, stem)
+
+
+def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
+    """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
+    motion = subject.results.motion
+    assert motion is not None
+    every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
+    largest = max((float(np.nanmax(np.abs(values), initial=0.0)) for values in every.values()), default=0.0)
+    together: list[tuple[list[str], Real]] = []
+    for link, values in every.items():
+        if not np.nanmax(np.abs(values), initial=0.0) > NO_VECTOR * largest:
+            continue
+        own = next((links for links, one in together if _differs(values - one) <= NO_VECTOR * largest), None)
+        if own is None:
+            together.append(([link], np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, values)))
+        else:
+            own.append(link)
+    varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * largest]
+    return [Column(_head(letter, links), values) for links, values in varied]
+
+
+def _differs(values: Real) -> float:
+    return float(np.nanmax(np.abs(values), initial=0.0))
+
+
+def _head(letter: str, links: Sequence[str]) -> Line:
+    symbols: list[Symbol | str] = []
+    for link in links:
+        symbols += [" = ", Symbol(letter, link)] if symbols else [Symbol(letter, link)]
+    return line(*symbols, f", {unit(letter)}")
+
+
+def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
+    """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
+    results = subject.results
+    motion = results.motion
+    assert motion is not None
+    columns = [*_places(subject), *columns]
+    told = states(results)
+    rows = []
+    for k, number in enumerate(results.numbers):
+        cells = [line(_cell(subject, float(column.values[k]))) for column in columns]
+        rows.append((line(str(number)), *cells, *((line(told[k]),) if any(told) else ())))
+    head = [line(_("position")), *(column.head for column in columns), *((line(_("state")),) if any(told) else ())]
+    return Rows(caption, tuple(head), tuple(rows), key)
+
+
+def _places(subject: Subject) -> Iterable[Column]:
+    """Of the drivers; of a crank within a turn."""
+    results = subject.results
+    motion = results.motion
+    assert motion is not None
+    several = bool(results.linkage.others)
+    for driver in results.linkage.drivers:
+        value = np.asarray(motion.drives[driver.link].value, float)
+        link = driver.link if several else ""
+        if driver.kind == "slide":
+            yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)
+            continue
+        full = results.driver_range is not None and results.driver_range.full
+        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, 2 * np.pi) if full else value))
+
+
+def _cell(subject: Subject, value: float) -> str:
+    return subject.text(value) if np.isfinite(value) else "–"

@@ -1,0 +1,160 @@
+"""Velocities of a position: those of the driving links, then of each group by its vector equations and the plan."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
+from tmm_cli.note.kinematics.equations import equations, vector
+from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
+from tmm_cli.note.kinematics.ratios import velocities as by_ratio
+from tmm_cli.note.kinematics.words import (
+    direct,
+    further,
+    listed,
+    name_of,
+    not_on_paper,
+    points_of,
+    remaining,
+    sense,
+    solved,
+    sought,
+    turning_as_one,
+)
+from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.vector_equations import About, OnGuide, Step, VectorEquation
+
+
+def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+    """All that the plan gives, in the order in which it is drawn."""
+    known: set[str] = set()
+    for step in steps:
+        if step.group is None:
+            yield from _driving(here, step)
+            known |= points_of(step)
+    yield from _scale(here, steps)
+    for step in steps:
+        if step.group is not None:
+            yield from _group(here, step, known)
+            known |= points_of(step)
+    yield from remaining(here, here.v, known)
+
+
+def _driving(here: Here, step: Step) -> Iterable[Block]:
+    """Points of a driving link."""
+    turned = further(step)
+    if here.first and turned:
+        one = _("The velocity of point {points} of the driving link is across {line}, in the sense of its rotation:")
+        several = _(
+            "The velocities of points {points} of the driving link are across their radii, in the sense of its "
+            "rotation:"
+        )
+        line = turned[0].base.at + turned[0].point.at
+        yield said(one if len(turned) == 1 else several, points=listed(about.point for about in turned), line=line)
+    elif here.first and step.equations:
+        text = _("Link {link} does not turn: all its points move with the given velocity {v}.")
+        yield said(text, link=step.links[0], v=here.v.of(step.equations[0].point).symbol)
+    for about in turned:
+        yield _turned(here, about)
+
+
+def _turned(here: Here, about: About) -> Block:
+    """v = ω l of a point about another one of its link."""
+    found, omega = here.v.relative(about.point, about.base), abs(here.omega.get(about.link, 0.0))
+    if not found.segment:
+        return zero(found.symbol)
+    product = Product((Leaf(Symbol("ω", about.link), omega), here.length(about.point, about.base)))
+    return Found(Substitution(found.symbol, product, found.size, unit("v")))
+
+
+def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+    """Of the plan, by the first vector on it that is known."""
+    plan = here.v
+    first = large([vector for step in steps for vector in _known(here, step)])
+    if first is None:
+        yield said(_("All points are at rest in this position."))
+        return
+    yield said(
+        _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
+          "of the plan is"),
+        pole=Symbol(plan.sort.pole), segment=drawn(first), v=first.symbol,
+    )  # fmt: skip
+    yield plan.scaled(first)
+
+
+def _known(here: Here, step: Step) -> Iterable[Vector]:
+    """Vectors that are known before the plan is drawn."""
+    for equation in (*step.equations, *(step.after if step.group is None else ())):
+        if equation.known and isinstance(equation, OnGuide):
+            yield here.v.of(equation.point)
+        elif equation.known and not isinstance(equation, OnGuide):
+            yield here.v.relative(equation.point, equation.base)
+
+
+def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+    """Ratios, equations, what they give, further points."""
+    assert step.group is not None
+    points, together, found = sought(step, known), solved(step), {*known}
+    title = step.group.title
+    if step.ratios:
+        yield said(_("Group {group} is found from its higher pairs."), group=title)
+    elif not here.first:
+        yield said(_("Group {group} gives:"), group=title)
+    for ratio in step.ratios:
+        yield from by_ratio(here, step, ratio)
+    for about in direct(step):
+        yield from _known_about(here, about, found)
+        found.add(about.point.name)
+    if here.first and together:
+        one = _("Group {group}: the velocity of point {points} is found from")
+        several = _("Group {group}: the velocities of points {points} are found from")
+        none = _("Group {group}: what is not known yet is found from")
+        text = none if not points else one if len(points) == 1 else several
+        yield said(text, group=title, points=listed(points))
+        yield from equations(step, together, "v", found, here.omega)
+        yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
+    for spot in points:
+        yield here.v.read(here.v.of(spot))
+    for equation in together:
+        if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
+            yield here.v.read(here.v.relative(equation.point, equation.base))
+    yield from _rates(here, together)
+    yield from turning_as_one(step, here.omega, "ω")
+    for about in further(step):
+        yield from _known_about(here, about, found)
+
+
+def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[Block]:
+    """A point of a link whose rotation is known."""
+    if not about.base.fixed:
+        if here.first:
+            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            yield said(text, point=name_of(about.point), link=about.link)
+            yield from equations(Step((), ()), [about], "v", found, here.omega)
+        yield _turned(here, about)
+        yield here.v.read(here.v.of(about.point))
+    else:
+        yield _turned(here, about)
+
+
+def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
+    """What links turn with, each once, with its sense."""
+    done: set[str] = set()
+    for about in together:
+        if not isinstance(about, About) or about.known or about.link in done:
+            continue
+        done.add(about.link)
+        symbol, value = Symbol("ω", about.link), here.omega.get(about.link, 0.0)
+        v = here.v.relative(about.point, about.base)
+        if not v.segment or not value:
+            yield zero(symbol)
+            continue
+        quotient = Quotient(v.leaf, here.length(about.point, about.base))
+        yield Found(Substitution(symbol, quotient, abs(value), unit("ω")))
+        if here.first:
+            text = _("Vector {v}, carried over to point {point}, turns link {link} {sense}.")
+            yield said(text, v=vector(v.symbol), point=name_of(about.point), link=about.link, sense=sense(value))
+        else:
+            yield said(_("Link {link} turns {sense}."), link=about.link, sense=sense(value))

@@ -1,0 +1,109 @@
+"""Sentences that velocities and accelerations share."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Equation, Line, said
+from tmm_cli.note.kinematics.on_paper import Here, OnPaper
+from tmm_cli.note.math import Letter, row
+from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.vector_equations import About, OnGuide, Spot, Step, VectorEquation
+from tmm_cli.plans.velocity import massive
+
+
+def sense(value: float) -> str:
+    """Of what turns."""
+    return _("counterclockwise") if value > 0 else _("clockwise")
+
+
+def listed(spots: Iterable[Spot]) -> Line:
+    """Points one after another."""
+    found: list[Symbol | str] = []
+    for spot in spots:
+        found += [", "] if found else []
+        found.append(name_of(spot))
+    return tuple(found)
+
+
+def name_of(spot: Spot) -> Symbol:
+    """The name of a point; of one under a stone with the number of its link below the line."""
+    return Symbol(spot.at, spot.name[len(spot.at) :])
+
+
+def direct(step: Step) -> list[About]:
+    """Points that follow from what is known before the equations of a group."""
+    return [e for e in step.equations if isinstance(e, About) and e.known and not e.idle]
+
+
+def solved(step: Step) -> list[VectorEquation]:
+    """What is solved together; not what a higher pair gives, nor what follows by itself."""
+    given = [e for e in step.equations if isinstance(e, OnGuide) and e.known]
+    alone = direct(step)
+    return [e for e in step.equations if e not in given and e not in alone]
+
+
+def sought(step: Step, known: Collection[str]) -> list[Spot]:
+    """Points that the equations give, but for those that move as others."""
+    own = {about.point.name for about in direct(step)}
+    own |= {e.point.name for e in step.equations if isinstance(e, OnGuide) and e.known}
+    idle = {e.point.name for e in step.equations if isinstance(e, About) and e.idle}
+    spots = [s for e in solved(step) for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])]
+    taken = {*known, *own, *idle}
+    return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
+
+
+def further(step: Step) -> list[About]:
+    """Further points of links that turn."""
+    return [about for about in step.after if not about.idle]
+
+
+def points_of(step: Step) -> set[str]:
+    """Points that are told in a step."""
+    found = {s.name for e in step.equations for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])}
+    return found | {about.point.name for about in further(step)}
+
+
+def equal(*symbols: Symbol) -> Block:
+    """Quantities that are one."""
+    letters = [Letter(one) for one in symbols]
+    return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
+
+
+def turning_as_one(step: Step, rates: Collection[str], letter: str) -> Iterable[Block]:
+    """Links that turn as others do."""
+    for links in step.same:
+        if links[0] in rates:
+            yield equal(*(Symbol(letter, link) for link in links))
+
+
+def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Block]:
+    """Points that no equation needed, and centres of mass: by similarity."""
+    linkage = here.motion.linkage
+    names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in massive(linkage)]
+    if not names:
+        return
+    if here.first:
+        yield said(
+            _(
+                "The ends of the vectors of all other points and of the centres of mass are found by similarity: "
+                "the figure of a link on the plan is similar to the link."
+            )
+        )
+    named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
+    for name in names:
+        vector = plan.of(name)
+        twin = next((other for other in named if vector.segment and plan.same(name, other)), None)
+        yield plan.read(vector) if twin is None else equal(vector.symbol, plan.of(twin).symbol)
+
+
+def not_on_paper() -> Block:
+    """Of a group that no polygon solves."""
+    return said(
+        _(
+            "More magnitudes are unknown in these equations than a polygon of vectors gives, and none of them is "
+            "found before the others. The equations of the group were solved together, numerically; the plan shows "
+            "their solution."
+        )
+    )
