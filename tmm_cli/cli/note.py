@@ -12,7 +12,7 @@ from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import OK, say
 from tmm_cli.draw import remarks
-from tmm_cli.language import _, language
+from tmm_cli.language import _
 from tmm_cli.note import note as note_of
 from tmm_cli.note.formats import FORMATS, formats_of
 from tmm_cli.results.files import folder_name, write_whole
@@ -34,7 +34,7 @@ def note(
         results = solve(opened(file, variant_settings(file, variants, variant, settings)))
         for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
             say(text)
-        written = note_of(results, language())
+        written = note_of(results)
         for name in wanted:
             target = out / folder_name(results.problem.name) / f"note.{name}"
             write_whole(target, FORMATS[name](written))
