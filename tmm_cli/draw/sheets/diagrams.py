@@ -21,7 +21,6 @@ from tmm_cli.draw.paper.sheet import (
     REACTION,
     THIN,
     Sheet,
-    on_paper,
     safe,
     scale_words,
     with_unit,
@@ -29,7 +28,7 @@ from tmm_cli.draw.paper.sheet import (
 from tmm_cli.draw.sheets import over_cycle
 from tmm_cli.draw.sheets.over_cycle import Quantities
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _, numeral
+from tmm_cli.language import _, numeral, printed
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import (
@@ -169,7 +168,7 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
 
 
 def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
-    factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
+    factor, unit = units.factor(found.dimension), printed(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):
         values, points = (np.asarray(v) / factor for v in (course.values, course.points))
