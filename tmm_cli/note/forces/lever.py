@@ -79,7 +79,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
         yield Found(Substitution(pair.symbol, Quotient(couple, apart), size, _("N")))
     acting = {one.symbol: one for one in plan.acting if one.couple}
-    loads = [load for load in subject.results.loads if load_symbols(load)[1].primed in acting]
+    bearing = [load for load in subject.results.loads if load.moment[k] != 0]  # a weight has a couple's letter too
+    loads = [load for load in bearing if load_symbols(load)[1].primed in acting]
     turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
     if turned:
         yield said(
@@ -141,7 +142,8 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
     arm = 1.0 if moment or balance.moment is None else balance.arm  # of a force on a crank's end
-    plan, own = float(balance.generalized[k]) / arm, float(lever.balancing[k]) / arm
+    sense = -1 if lever.balancing[k] < 0 else 1  # the equation has the size, as it is drawn
+    plan, own = sense * float(balance.generalized[k]) / arm, sense * float(lever.balancing[k]) / arm
     largest = float(np.nanmax(np.abs(np.where(results.motion.moving, balance.generalized, 0.0)))) / arm
     if not largest:
         return
