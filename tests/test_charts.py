@@ -167,3 +167,17 @@ def test_a_jump_without_its_values_written_has_no_line_to_a_text():
     panel = Panel(sheet, across(0, 1, 40, 100), upwards(0, 1, 40, 100))
     panel.fill(Plot("F", [], [Jump(0.5, (0.2, 0.8), ("", "0.8"))]))
     assert [label.text for label in sheet.labels] == ["0.8"]
+
+
+def test_a_reaction_jumps_where_friction_turns_about_within_a_stroke():
+    """At 108 deg the rocker of the shaper swings past its upright and link 4 turns back in the hinge D."""
+
+    def jumps(sheet):
+        lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.style == "-." and len(m.places) == 2]
+        (border,) = {round(start.real, 3) for start, end in lines if abs(start.real - end.real) < 1e-6}
+        rings = {round(m.centre.real, 1) for m in sheet.marks if isinstance(m, Circle) and m.face == "white"}
+        return {x for x in rings if x < max(rings) - 2 and abs(x - border) > 2}
+
+    rubbed = shaper((r"\Z", "\nfriction: {coefficient: 0.12, radius: 20 mm}\n"))
+    assert not jumps(drawn("shaper")["reactions"])
+    assert len(jumps(dict(diagrams(rubbed))["reactions"])) == 1

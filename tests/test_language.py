@@ -75,7 +75,7 @@ class Cyrillic(NullTranslations):
         )
 
     def pgettext(self, context, message):
-        return self.gettext(message)
+        return f"{message}_Φ" if context == "symbol" else self.gettext(message)
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ A chapter is a file in `chapters` with a function `blocks(subject)`, and a line 
 from __future__ import annotations
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.language import language
 from tmm_cli.note import blocks
 from tmm_cli.note.chapters import checks, forces, kinematics, literature, structure, synthesis, task, title
 from tmm_cli.note.context import Subject
@@ -13,7 +14,7 @@ from tmm_cli.note.context import Subject
 CHAPTERS = (title, task, synthesis, structure, kinematics, forces, checks, literature)
 
 
-def note(results: Results, language: str = "en", *, drawn: bool = True) -> blocks.Note:
-    """The note of a problem that was computed; drawn: with drawings."""
-    subject = Subject(results, language, drawn)
-    return blocks.Note(results.problem.title, language, blocks.chapters(*(c.blocks(subject) for c in CHAPTERS)))
+def note(results: Results, *, drawn: bool = True) -> blocks.Note:
+    """The note of a problem that was computed, in the language that is spoken; drawn: with drawings."""
+    subject = Subject(results, language(), drawn)
+    return blocks.Note(results.problem.title, language(), blocks.chapters(*(c.blocks(subject) for c in CHAPTERS)))

@@ -166,7 +166,7 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
     """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
     if load.kind == "weight":
-        return lettered("G", load.link), lettered("M", load.link)
+        return lettered("G", load.link), lettered("G", load.link)
     if load.kind == "inertia":
         return lettered("U", load.link), lettered("M", load.link)
     names = load.name, load.couple_name or load.name

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+import numpy as np
+
 Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
 Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
 Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
@@ -36,6 +38,17 @@ class Arc:
     start: float
     end: float
     style: Style = "thin"
+
+
+def circle(centre: complex, radius: float) -> Arc:
+    """A whole circle of construction."""
+    return Arc(centre, radius, 0.0, 2 * np.pi, "dashed")
+
+
+def swept(centre: complex, places: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
+    """The arc about a centre on which places (an array) follow one another, and so far (rad) beyond both ends."""
+    turns = np.unwrap(np.angle(places - centre))
+    return Arc(centre, float(abs(places[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.tolerances import SAME_RATIO
 
@@ -128,20 +128,16 @@ def loop_of(linkage: Linkage) -> Loop | None:
     return None
 
 
-def at_input(results: Results, loop: Loop, phi: Any) -> Motion:
-    """Places of the linkage where AB stands at angles phi (rad) from AD."""
-    linkage = results.linkage
-    frame, crank = linkage.links[FRAME].points, linkage.links[linkage.driver.link].points
-    base = np.angle(frame[loop.d] - frame[loop.a]) - np.angle(crank[loop.b] - crank[loop.a])
-    return move(linkage, results.kernels, np.atleast_1d(phi) + base, PLACES, 0)
-
-
 def pins(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | None:
-    """A, B, C, D (m; A, D single, B, C a place for each angle), nan where it cannot be assembled."""
-    loop = loop_of(results.linkage)
+    """A, B, C, D (m) where AB stands at angles phi (rad) from AD; A, D single, B, C a place for each angle, nan where
+    it cannot be assembled.
+    """
+    linkage, loop = results.linkage, loop_of(results.linkage)
     if loop is None or not results.kernels:
         return None
-    motion, frame = at_input(results, loop, phi), results.linkage.links[FRAME].points
+    frame, crank = linkage.links[FRAME].points, linkage.links[linkage.driver.link].points
+    base = np.angle(frame[loop.d] - frame[loop.a]) - np.angle(crank[loop.b] - crank[loop.a])
+    motion = move(linkage, results.kernels, np.atleast_1d(phi) + base, PLACES, 0)
     return frame[loop.a], motion.spot(loop.b), motion.spot(loop.c), frame[loop.d]
 
 

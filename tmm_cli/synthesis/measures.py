@@ -38,12 +38,6 @@ def ratio(results: Results) -> float:
     return strokes.k if strokes is not None and strokes.strokes else NONE
 
 
-def slower_ratio(results: Results) -> float:
-    """The longer stroke over the shorter."""
-    k = ratio(results)
-    return max(k, 1 / k)
-
-
 def ratio_open(results: Results) -> float:
     """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
     strokes = results.strokes

@@ -53,6 +53,8 @@ MARKS = 90  # computed positions that are marked on a curve; more of them would 
 MOST_PANELS = 5  # of a sheet
 BESIDE = 1e-6  # rad: so far before and after the border of a stroke a curve is computed
 LEAP = 1e-3  # of all a curve runs through: what it does there in one step is a jump
+NOTHING = 1e-9  # of its largest value: what runs through less stays the same
+SUDDEN, STEEP = 0.01, 6.0  # the same away from the borders: of all it runs through, and of its rates before and after
 WRITTEN = 2  # curves in a panel up to which the values of jumps are written
 LINES = (DARK, LOAD, INERTIA, REACTION, NAMES, "#c77700", "#00757d", THIN)
 STYLES: tuple[Style, ...] = ("-", "--", "-.", ":")
@@ -169,7 +171,7 @@ def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Se
             continue
         colour, style = LINES[k % len(LINES)], STYLES[(k // len(LINES) + k) % len(STYLES)]
         values = np.broadcast_to(values, np.shape(xs))
-        leaps = [i for i in borders if abs(values[i + 1] - values[i]) > LEAP * np.ptp(values)]
+        leaps = _leaps(xs, values, borders)
         after = np.array(leaps, dtype=int) + 1
         whole = np.insert(values, after, np.nan)
         curves.append(Curve(np.insert(xs, after, np.nan), whole, course.name, colour, style))
@@ -182,6 +184,21 @@ def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Se
         with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),
         degrees=found.dimension == ANGLE and units.symbol(ANGLE) == "deg",
     )  # fmt: skip
+
+
+def _leaps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
+    """After which places a curve jumps: at ends of strokes, and where it runs far faster than just before and after.
+
+    So it does where friction turns about within a stroke.
+    """
+    steps, whole = np.abs(np.diff(values)), np.ptp(values)
+    if not whole > NOTHING * np.max(np.abs(values)):
+        return []
+    rates = steps / np.maximum(np.abs(np.diff(xs)), BESIDE)
+    inside = np.arange(2, len(steps) - 2)
+    about = np.max([rates[inside + k] for k in (-2, -1, 1, 2)], axis=0)
+    sudden = inside[(steps[inside] > SUDDEN * whole) & (rates[inside] > STEEP * about)]
+    return sorted({*(i for i in borders if steps[i] > LEAP * whole), *map(int, sudden)})
 
 
 def _scale(found: Quantities, units: UnitSystem, unit: str) -> Any:

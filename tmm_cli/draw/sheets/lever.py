@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,9 +17,12 @@ from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
-from tmm_cli.plans.lever import POLE, Pair, lever_plan
+from tmm_cli.plans.bodies import Acting
+from tmm_cli.plans.lever import POLE, LeverPlan, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE
+
+MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
 
 
 def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
@@ -26,6 +30,14 @@ def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(names), at, 11 if pole in names else 10)
+
+
+def weighty(plan: LeverPlan) -> Sequence[Acting]:
+    """Of many forces and couples those that count: no load below a thousandth of the largest force or moment."""
+    if len(plan.acting) <= MANY:
+        return plan.acting
+    force, moment = max(abs(a.force) for a in plan.acting), max(abs(term.moment) for term in plan.equation.terms)
+    return [a for a in plan.acting if a.pair or abs(a.force) > SLIGHT * force or abs(a.moment) > SLIGHT * moment]
 
 
 def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
@@ -55,11 +67,13 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     for bar in plan.bars:
         sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
     bars = sheet.ground.crowd
-    Forces(sheet).draw(plan.acting)
-    arms(sheet, [plan.equation], bars)
+    shown = weighty(plan)
+    Forces(sheet).draw(shown)
+    arms(sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in shown))], bars)
     letter_points(sheet, plan.ends, POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
-    sheet.note(_("forces without scale"))
+    few = len(shown) < len(plan.acting)
+    sheet.note(_("forces without scale, below 0.1 % only in the table") if few else _("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
         sheet.note(_("M′: M times the ratio of the link's speed to the driver's"))

@@ -39,7 +39,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     told = [
-        (name, ROLES[roles[name]], _motion(linkage, name), ", ".join(linkage.links[name].points))
+        (name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
         for name in subject.results.structure.links
     ]
     rows = tuple(tuple(line(text) for text in row) for row in told)
@@ -57,7 +57,12 @@ def _motion(linkage: Linkage, name: str) -> str:
 
 def _pairs(structure: Structure) -> Rows:
     rows = tuple(
-        (line(p.name), line(f"{link_name(p.i)} – {link_name(p.j)}"), line(PAIRS[p.kind]), line("1" if p.lower else "2"))
+        (
+            line(p.name),
+            line(f"{link_name(p.i)} – {link_name(p.j)}"),
+            line(_(PAIRS[p.kind])),
+            line("1" if p.lower else "2"),
+        )
         for p in structure.pairs
     )
     head = tuple(line(text) for text in (_("pair"), _("links"), _("kind"), _("freedoms")))

@@ -69,7 +69,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        (line(name), line(link.label or ROLES[roles[name]]), _lengths(subject, link) or line("—"))
+        (line(name), line(link.label or _(ROLES[roles[name]])), _lengths(subject, link) or line("—"))
         for name, link in linkage.links.items() if name != FRAME
     )  # fmt: skip
     head = (line(_("link")), line(_("is called")), line(_("sizes")))

@@ -79,7 +79,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
         yield Found(Substitution(pair.symbol, Quotient(couple, apart), size, _("N")))
     acting = {one.symbol: one for one in plan.acting if one.couple}
-    loads = [load for load in subject.results.loads if load_symbols(load)[1].primed in acting]
+    bearing = [load for load in subject.results.loads if load.moment[k] != 0]  # a weight has a couple's letter too
+    loads = [load for load in bearing if load_symbols(load)[1].primed in acting]
     turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
     if turned:
         yield said(

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style
+from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style, swept
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses
 from tmm_cli.synthesis.coupler_positions.lines import frame, lines
 
@@ -40,9 +40,7 @@ def construction(
         dyad, inverted = (one, other)[k], by_pivot[k]
         places, pivot = rows[k]
         first = complex(places[0])
-        radius = abs(first - pivot)
-        turns = np.unwrap(np.angle(places - pivot))
-        arcs.append(Arc(pivot, float(radius), float(turns.min()), float(turns.max()), "thin"))
+        arcs.append(swept(pivot, places))
         segments.append(Segment(pivot, first, "link", "l1" if name == "A" else "l3"))
         spots += [Spot(name, pivot, "support"), Spot(f"{pin}1", first, "hinge")]
         spots += [Spot(f"{pin}{n + 1}", complex(places[n]), "dot") for n in range(1, count)]
@@ -52,8 +50,7 @@ def construction(
         if inverted:
             local = np.asarray(poses.in_plane(dyad.pivot), complex)
             row, centre = [complex(z) for z in np.asarray(poses.on_frame(local), complex)[:, 0]], first
-            about = np.unwrap(np.angle(np.array(row) - centre))
-            arcs.append(Arc(centre, float(radius), float(about.min()), float(about.max()), "dashed"))
+            arcs.append(swept(centre, np.array(row), "dashed"))
             spots += [Spot(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
         for before, here in pairwise(row):
             segments += [Segment(before, here, "thin"), Segment((before + here) / 2, centre, "dashed")]

@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.language import N_, _
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, beside, by_turn, centre, marks, unit
-from tmm_cli.synthesis.coupler_positions.search import FULL, THOROUGH, Limits
+from tmm_cli.synthesis.coupler_positions.search import Limits
 from tmm_cli.synthesis.coupler_positions.search import best as best_on_curves
 from tmm_cli.synthesis.coupler_positions.task import SIDES, Side, Task
 from tmm_cli.synthesis.record import Infeasible
@@ -87,8 +87,10 @@ def dyad(task: Task, name: str) -> Dyads:
 
 def given_on_curves(task: Task) -> dict[str, Dyads]:
     """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
-    found = {name: of_turn(task, name) if side.near is None else of_near(task, name)
-             for name, side in task.sides.items()}  # fmt: skip
+    found = {
+        name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch) if side.near is None
+        else of_near(task, name) for name, side in task.sides.items()
+    }  # fmt: skip
     for name, own in found.items():
         if not exists(task, own):
             reason = _(
@@ -97,12 +99,6 @@ def given_on_curves(task: Task) -> dict[str, Dyads]:
             )
             raise Infeasible(f"{name}_turn", reason, search=_quick(task))
     return found
-
-
-def of_turn(task: Task, name: str) -> Dyads:
-    """The dyad of four positions that turns as wanted; nan where there is none."""
-    side = task.sides[name]
-    return by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
 
 
 def of_near(task: Task, name: str) -> Dyads:
@@ -141,9 +137,8 @@ def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
     box = None if task.within is None else task.outside
     bounds = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
-    # another layout of the curves may find a strip that one passes over; at last one whose branches are not the same
-    for effort, loose in ((FULL, False), (THOROUGH, False), (FULL, True)):
-        found = best_on_curves(task.poses, size, bounds, given, loose, effort)
+    for loose in (False, True):  # at last one whose branches are not the same
+        found = best_on_curves(task.poses, size, bounds, given, loose)
         if found is None or found[2] > SURE:
             break
     if found is not None:

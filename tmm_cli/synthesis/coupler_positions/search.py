@@ -23,7 +23,7 @@ OUTER, INNER = 9, 17  # places of AB, and of DC for each of them, that are compa
 
 @dataclass(frozen=True)
 class Effort:
-    """How thorough a search is: one that finds a sound four-bar shows that there is one, however short it was.
+    """How thorough a search is.
 
     count: places on a curve, about; starts, and rounds in which all of them are improved; last: how many are searched
     on, for how many rounds, and rounds within a round. Of a loop: places that are looked at first, then rounds between
@@ -40,7 +40,6 @@ class Effort:
 
 
 FULL: Final = Effort(400, 160, 24, ((10, 10, 8), (2, 20, 12)), 512, 9, 60)
-THOROUGH: Final = Effort(120, 40, 12, ((4, 6, 5), (1, 10, 8)), 256, 9, 24)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box
+from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box, circle
 
 if TYPE_CHECKING:
     from tmm_cli.synthesis.crank_slider.solver import Found
@@ -31,7 +31,7 @@ def construction(found: Found) -> Construction:
         Segment(o, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
         Segment(pin2, o, "link2", "r"), Segment(o, b2, "link2", "l − r"),
     ]  # fmt: skip
-    arcs = [Arc(o, r, 0.0, 2 * np.pi, "dashed")]
+    arcs = [circle(o, r)]
     spots = [
         Spot("O", o, "support"), Spot("A1", pin1, "hinge"), Spot("A2", pin2, "hinge"),
         Spot("B1", b1, "slider"), Spot("B2", b2, "slider"),

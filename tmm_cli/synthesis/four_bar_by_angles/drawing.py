@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.synthesis.construction import Arc, Construction, Segment, Spot
+from tmm_cli.synthesis.construction import Arc, Construction, Segment, Spot, swept
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
 
 
@@ -23,12 +23,9 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
     ]  # fmt: skip
     spots = [Spot("A", a, "support"), Spot("D", d, "support"), Spot("B1", complex(b[0]), "hinge"),
              Spot("C1", complex(c[0]), "hinge")]  # fmt: skip
-    about = np.unwrap(np.angle(back - b[0]))
-    low, high = float(about.min()) - 0.3, float(about.max()) + 0.3
-    arcs = [Arc(complex(b[0]), float(abs(c[0] - b[0])), low, high, "dashed")]
+    arcs = [swept(complex(b[0]), back, "dashed", beyond=0.3)]
     for name, row, centre in (("C", c, d), ("B", b, a)):
-        ends = np.unwrap(np.angle(row - centre))
-        arcs.append(Arc(centre, float(abs(row[0] - centre)), float(ends.min()), float(ends.max()), "thin"))
+        arcs.append(swept(centre, row))
         for k in range(1, len(row)):
             segments.append(Segment(centre, complex(row[k]), "thin"))
             spots.append(Spot(f"{name}{k + 1}", complex(row[k]), "dot"))

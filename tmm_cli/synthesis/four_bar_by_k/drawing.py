@@ -8,7 +8,18 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box
+from tmm_cli.synthesis.construction import (
+    Angle,
+    Centre,
+    Construction,
+    Curve,
+    Diagram,
+    Line,
+    Segment,
+    Spot,
+    box,
+    circle,
+)  # fmt: skip
 from tmm_cli.synthesis.four_bar_by_k.arcs import Found, Task
 from tmm_cli.synthesis.record import Listing
 
@@ -33,7 +44,7 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
         Spot("C1", c1, "hinge"), Spot("C2", c2, "hinge"),
     ]  # fmt: skip
     middle, theta, half = (c1 + c2) / 2, float(task.theta), abs(c2 - c1) / 2
-    arcs = [Arc(a, float(found.l1), 0.0, 2 * np.pi, "dashed")]
+    arcs = [circle(a, float(found.l1))]
     angles = [Angle(d, c1, c2, "ψ")]
     centres, wishes = [], [box(a, float(found.l1))]
     if theta > 0:
@@ -41,7 +52,7 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
         angles.append(Angle(a, c1, c2, "θ"))
         for f in sorted(family, key=lambda one: int(one.side) != int(found.side)):
             centre = middle + int(f.side) * out * half / float(np.tan(theta))
-            arcs.append(Arc(centre, radius, 0.0, 2 * np.pi, "dashed"))
+            arcs.append(circle(centre, radius))
             if int(f.side) == int(found.side):
                 centres.append(Centre(centre, radius, (c1, c2)))
                 name = "90° − θ" if theta < np.pi / 2 else "θ − 90°"

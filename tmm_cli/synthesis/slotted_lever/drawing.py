@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box
+from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box, circle
 from tmm_cli.synthesis.record import Listing
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot
         Segment(c, ends[1], "link2"), Segment(o, pins[1], "link2", "OA"),
         Segment(c, o, "axis", "OC"), Segment(o, top, "axis"),
     ]  # fmt: skip
-    arcs = [Arc(o, crank, 0.0, 2 * np.pi, "dashed"), Arc(c, lever, first, last, "dashed")]
+    arcs = [circle(o, crank), Arc(c, lever, first, last, "dashed")]
     spots = [
         Spot("C", c, "support"), Spot("O", o, "support"), Spot("A1", pins[0], "stone", ways[0]),
         Spot("A2", pins[1], "stone", ways[1]), Spot(f"{end}1", ends[0], "hinge"), Spot(f"{end}2", ends[1], "hinge"),

@@ -113,7 +113,8 @@ class K(OfStrokes):
         return ratio(lambda shares: curve("slope", shares), scan)
 
     def measured(self, results: Results, ends: Ends) -> float:
-        return measures.slower_ratio(results)
+        k = measures.ratio(results)
+        return max(k, 1 / k)
 
     def open(self, results: Results) -> float:
         return measures.ratio_open(results)

@@ -1,0 +1,57 @@
+"""A single run of a machine that is given by its reduced inertia and moment, against what is known in closed form."""
+
+import numpy as np
+import pytest
+
+from tmm_cli.dynamics.motors import Kloss, Linear
+from tmm_cli.dynamics.reduced import reduced
+from tmm_cli.dynamics.run import RunTask, run
+from tmm_cli.errors import StandstillError
+
+TURN = 2 * np.pi
+
+
+def machine(inertia=2.0, load=0.0, until=np.pi, ripple=0.0):
+    def sample(x):
+        own, slope = inertia + ripple * np.cos(2 * x), -2 * ripple * np.sin(2 * x)
+        return own, slope, np.where(x < until, load, 0.0)
+
+    return reduced(sample, [0, until, TURN])
+
+
+def test_a_constant_moment_speeds_a_rotor_up_evenly():
+    found = run(machine(), RunTask(drive=lambda t, x: 6.0 + 0 * t))
+    assert found.ending == "way"
+    assert found.time[-1] == pytest.approx(np.sqrt(2 * TURN / 3), rel=1e-10)
+    assert found.speed[-1] == pytest.approx(np.sqrt(2 * 3 * TURN), rel=1e-10)
+    assert found.acceleration == pytest.approx(3.0 + 0 * found.time)
+
+
+def test_a_brake_stops_a_rotor_where_its_energy_is_used_up():
+    found = run(machine(), RunTask(speed=3.0, brake=4.0))
+    assert found.ending == "standstill"
+    assert found.way[-1] == pytest.approx(9 / 4, rel=1e-10)  # J w^2 / 2 over the moment
+    assert found.time[-1] == pytest.approx(3 / 2, rel=1e-10)
+
+
+def test_a_motor_of_direct_current_comes_to_its_speed_exponentially():
+    found = run(machine(), RunTask(motor=Linear(50.0, 10.0), longest=0.7))
+    assert found.ending == "time"
+    assert found.speed == pytest.approx(10 * (1 - np.exp(-50 / (2 * 10) * found.time)), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("task", [
+    RunTask(motor=Linear(500.0, 12.0)), RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
+    RunTask(speed=10.0, brake=200.0), RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
+    RunTask(drive=lambda t, x: np.where(t < 0.4, 250.0, 20.0), edges=(0.4,)),
+])  # fmt: skip
+def test_works_are_the_change_of_kinetic_energy(task):
+    found = run(machine(load=-80.0, ripple=0.6), task)
+    assert found.balance < 1e-10
+    assert found.ending in ("way", "standstill")
+
+
+def test_what_drives_less_than_the_load_does_not_start():
+    with pytest.raises(StandstillError) as stands:
+        run(machine(load=-80.0), RunTask(drive=lambda t, x: 79.0 + 0 * t))
+    assert stands.value.place == 0

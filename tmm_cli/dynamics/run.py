@@ -1,0 +1,139 @@
+"""A single run: starting, stopping, a press that works once, a cylinder under pressure.
+
+J w' + J' w^2 / 2 = M + Md along the way x of the driver, by time, until that is gone or the machine stands. Works are
+integrated beside it. By the method of Dormand and Prince of order 8, in pieces at whose ends moments may jump:
+E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from tmm_cli.dynamics.curves import Curve
+from tmm_cli.dynamics.motors import Motor
+from tmm_cli.dynamics.reduced import Reduced
+from tmm_cli.errors import StandstillError
+from tmm_cli.vectors import Real
+
+TOLERANCE = 1e-12  # of a step, relative
+NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
+
+Drive = Callable[[Real, Real], Real]  # moment (N m, or N) by time (s) and way
+Ending = Literal["way", "standstill", "time"]
+
+
+@dataclass(frozen=True)
+class RunTask:
+    """What drives a run, and from what speed (rad/s, or m/s). flywheel: kg m2, or kg; brake: moment against the motion.
+
+    motor: by its characteristic; drive: by time and way, which jumps at the times `edges`. longest: time of a run (s).
+    """
+
+    speed: float = 0.0
+    motor: Motor | None = None
+    drive: Drive | None = None
+    brake: float = 0.0
+    flywheel: float = 0.0
+    edges: tuple[float, ...] = ()
+    longest: float = 3600.0
+
+
+@dataclass(frozen=True)
+class Run:
+    """By steps: time (s), way, speed and acceleration of the driver; kinetic energy (J), and works (J) of what drives,
+    of the loads and of the brake. ending: what ended it."""
+
+    time: Real
+    way: Real
+    speed: Real
+    acceleration: Real
+    kinetic: Real
+    driven: Real
+    loaded: Real
+    braked: Real
+    ending: Ending
+
+    @property
+    def balance(self) -> float:
+        """What the works leave of the change of kinetic energy, over the largest of these energies."""
+        parts = (self.kinetic, self.driven, self.loaded, self.braked)
+        size = max(float(np.max(np.abs(part))) for part in parts)
+        left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
+        return float(np.max(np.abs(left))) / size if size > 0 else 0.0
+
+
+def run(machine: Reduced, task: RunTask) -> Run:
+    """From the beginning of the machine's way to its end. Raises StandstillError where it does not start."""
+    state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
+    if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
+        raise StandstillError(0.0)
+    times, states, time = [], [], 0.0
+    ending: Ending = "time"
+    for low, high in _pieces(machine.moment):
+        for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
+            done = _until(machine, task, (low, high), (time, end), state)
+            times.append(done.t)
+            states.append(done.y)
+            time, state = float(done.t[-1]), done.y[:, -1]
+            if done.status == 1:
+                break
+        ending = "time" if done.status == 0 else "standstill" if len(done.t_events[1]) else "way"
+        if ending != "way":
+            break
+    return _record(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
+
+
+def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real) -> Any:
+    """A piece, to its end, to rest, or as long as that."""
+
+    def gone(t: float, y: Real) -> float:
+        return float(y[0] - piece[1])
+
+    def rests(t: float, y: Real) -> float:
+        return float(y[1])
+
+    gone.terminal = rests.terminal = True  # type: ignore[attr-defined]
+    gone.direction, rests.direction = 1.0, -1.0  # type: ignore[attr-defined]
+    scale = max(abs(state[1]), 1e-3)
+    energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
+    return solve_ivp(
+        lambda t, y: _rates(machine, task, piece, t, y), times, state, "DOP853", events=(gone, rests), rtol=TOLERANCE,
+        atol=[TOLERANCE * machine.length, TOLERANCE * scale, *[TOLERANCE * energy] * 3],
+    )  # fmt: skip
+
+
+def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
+    """Of way, speed, and the works of what drives, of the loads, of the brake."""
+    speed = float(state[1])
+    x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
+    load, driving = float(machine.moment(x)[0]), _driving(task, t, x, speed)
+    inertia = task.flywheel + float(machine.inertia(x)[0])
+    own = driving + load - task.brake - float(machine.slope(x)[0]) * speed**2 / 2
+    return [speed, own / inertia, driving * speed, load * speed, -task.brake * speed]
+
+
+def _driving(task: RunTask, t: float, x: Real, speed: float) -> float:
+    found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0][0])
+    return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
+
+
+def _pieces(moment: Curve) -> Iterator[tuple[float, float]]:
+    """Between the places where a moment jumps."""
+    inner = moment.edges[1:-1]
+    before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
+    jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
+    yield from pairwise([0.0, *jumps, moment.length])
+
+
+def _record(machine: Reduced, task: RunTask, time: Real, states: Real, ending: Ending) -> Run:
+    way, speed, driven, loaded, braked = states
+    x = np.clip(way, 0.0, np.nextafter(machine.length, 0.0))
+    acceleration = [_rates(machine, task, (0.0, machine.length), t, y)[1] for t, y in zip(time, states.T, strict=True)]
+    kinetic = (task.flywheel + machine.inertia(x)) * speed**2 / 2
+    return Run(time, way, speed, np.array(acceleration), kinetic, driven, loaded, braked, ending)
