@@ -538,7 +538,7 @@ def test_a_slip_beside_or_in_the_name_of_the_block_is_told_in_terms_of_such_a_fi
     with pytest.raises(ProblemError) as error:
         spatial(f"pairs: {PAIRS}", "tmm: 1\ndriver: {link: 1}\nstructure:\n  spatial:\n")
     assert str(error.value) == (
-        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, title, description, structure"
+        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, lang, title, description, structure"
     )
 
 
