@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -32,7 +33,7 @@ WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawin
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (whole_scheme, 110), "groups": (all_groups, 70), "synthesis": (synthesised, 140),
+    "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
@@ -68,7 +69,7 @@ class Subject:
     def value(self, si: float, dimension: Dimension, digits: int = 4) -> str:
         """A number of the file with its unit there."""
         units = self.results.problem.units
-        return f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip()
+        return with_degrees(f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip())
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
@@ -94,18 +95,25 @@ class Subject:
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
-    def figures(self, name: str, sentence: str, caption: str, k: int | None = None, only: str = "") -> Iterable[Block]:
+    def figures(
+        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = ""
+    ) -> Iterable[Block]:
         """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
 
-        only: those of this stem, and what is continued of it.
+        caption: else the drawing's own heading. only: those of this stem, and what is continued of it.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and stem != only and not stem.startswith(f"{only}-sheet-"):
                 continue
             yield said(sentence, figure=Ref(stem))
-            yield Figure(caption, drawing, stem)
+            yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
 
 
 def figures(text: str, language: str) -> str:
     """Figures with the decimal mark and the minus of a language."""
     return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
+
+
+def with_degrees(text: str) -> str:
+    """90 deg is 90°."""
+    return re.sub(r"(?<=\d) deg\b", "°", text)
