@@ -131,7 +131,7 @@ def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]
     """Size, and angle within a turn; a force that is only rounding has none."""
     if not abs(force) > NO_FORCE * largest:
         return "0", "-"
-    angle = math.degrees(math.atan2(force.imag, force.real)) % 360
+    angle = round(math.degrees(math.atan2(force.imag, force.real)), 1) % 360
     return numeral(units.from_si(abs(force), FORCE), f".{FIGURES}g"), numeral(angle, ".1f")
 
 
