@@ -26,8 +26,6 @@ CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by l
 
 Found = TypeVar("Found")
 
-_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
 _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
 
@@ -73,12 +71,7 @@ def spelt(unit: str) -> str:
     """A unit as the language spells it: rad/s is рад/с in Russian, rpm is o/min in Serbian."""
     if _spoken.get() == ENGLISH:
         return unit
-    return printed(re.sub(r"[A-Za-zµμ°]+", lambda name: _in_context("unit", name[0]), unit))
-
-
-def printed(unit: str) -> str:
-    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
-    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
+    return re.sub(r"[A-Za-zµμ°]+", lambda name: _in_context("unit", name[0]), unit)
 
 
 def symbol(letter: str) -> str:

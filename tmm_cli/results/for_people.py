@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any, Literal
 
-from tmm_cli.language import _, printed
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.results.table import Column, Table
 from tmm_cli.results.terminal import figures
 from tmm_cli.results.text import csv_cell
@@ -63,7 +63,7 @@ def _rounded(value: float, count: int) -> float | None:
 
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
-    yield "\ufeff" + ";".join(csv_cell(printed(column.heading(units))) for column in table.columns) + "\n"
+    yield "\ufeff" + ";".join(csv_cell(on_paper(column.heading(units))) for column in table.columns) + "\n"
     for row in zip(*(cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_text, row)) + "\n"
 
@@ -102,7 +102,7 @@ def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 
 def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
     """Title, headings, rows, notes."""
-    heads = [printed(column.heading(units)) for column in table.columns]
+    heads = [on_paper(column.heading(units)) for column in table.columns]
     columns = [cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
         sheet.set_column(k, k, _width(head, column))

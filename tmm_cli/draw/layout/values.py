@@ -13,10 +13,10 @@ from tmm_cli.draw.layout.tables import table
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
-from tmm_cli.language import _, numeral, printed, translated
+from tmm_cli.language import _, numeral, translated
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,
@@ -91,7 +91,7 @@ def _over_positions(results: Results, title: str, columns: Sequence[Quantity]) -
     crank = results.linkage.driver.kind == "turn"
     place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
-    heads: list[Words] = [_("No."), *((name, f", {printed(units.spelt(kind))}") for name, __, kind in every)]
+    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.spelt(kind))}") for name, __, kind in every)]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
     cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
@@ -119,8 +119,8 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     largest = max((abs(force) for __, force in forces), default=0.0)
     rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
     rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]
-    heads = [_("force or moment"), _("size, {unit}").format(unit=printed(units.spelt(FORCE))), _("angle from x, °"),
-             _("moment, {unit}").format(unit=printed(units.spelt(MOMENT)))]  # fmt: skip
+    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))), _("angle from x, °"),
+             _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT)))]  # fmt: skip
     place = place_of_driver(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the indices of two links: from the first one on the second")]

@@ -18,9 +18,9 @@ from tmm_cli.draw.paper.labels import Label, place
 from tmm_cli.draw.paper.labels import extent as label_extent
 from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.paper.room import Room
-from tmm_cli.language import numeral, printed, spelt
+from tmm_cli.language import numeral, spelt
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import Dimension
 from tmm_cli.vectors import unit
 
@@ -278,7 +278,7 @@ def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """A title of an axis."""
-    return ", ".join(part for part in (words, printed(units.spelt(dimension))) if part)
+    return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
 
 
 def safe(name: str) -> str:
