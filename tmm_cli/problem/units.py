@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
@@ -32,6 +33,7 @@ class UnitError(ProblemError):
     """A unit that is not known, or that measures something else."""
 
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LONG: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
 
@@ -253,3 +255,9 @@ class UnitSystem:
 def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:
     powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
     return [(base, power) for base, power in zip((LENGTH, MASS, TIME, ANGLE), powers, strict=True) if power]
+
+
+@cache
+def on_paper(unit: str) -> str:
+    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
+    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")

@@ -67,12 +67,14 @@ def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool) -> It
 
 
 def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> float:
-    """By how much later boxes stand before earlier ones, from the upper left corner to the lower right one."""
+    """By how much boxes stand before those that come earlier, the more so the earlier, on the way right and down."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
         for (x, y), (width, height) in zip(places, sizes, strict=True)
     ]
-    return sum(max(earlier - later, 0.0) for earlier, later in combinations(middles, 2))
+    return sum(
+        (late - early) * max(middles[early] - middles[late], 0.0) for early, late in combinations(range(len(sizes)), 2)
+    )
 
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int) -> Iterator[Sequence[int]]:

@@ -32,13 +32,14 @@ class Picture(Drawing):
     """A drawing with its heading, no larger than they are.
 
     longest: side (mm) that it was drawn for; figure: what of it grows with that (mm), None: all; mu: SI a millimetre,
-    None where it is not to scale; stem: its name.
+    None where it is not to scale; stem: its name; title: its heading, also where it is not written.
     """
 
     longest: float = 0.0
     figure: Size | None = None
     mu: float | None = None
     stem: str = ""
+    title: str = ""
 
 
 @dataclass(frozen=True)
@@ -109,17 +110,17 @@ def picture(
     notes: Sequence[str] = (),
 ) -> Picture:  # fmt: skip
     """What was drawn, cut out of its paper, below its title and notes."""
-    drawn, title = list(marks), title if written_here() else ""
+    drawn, heading = list(marks), title if written_here() else ""
     low, high = extremes(drawn)
     room = max((high - low).real, NARROW)
     y = high.imag + AIR
-    for text, size, bold in reversed([(title, HEAD, True), *((note, NOTE, False) for note in notes)]):
+    for text, size, bold in reversed([(heading, HEAD, True), *((note, NOTE, False) for note in notes)]):
         for line in reversed(wrap(text, size, room, MOST, bold=bold)):
             drawn.append(Text(complex(low.real, y + LINE * size / 2), line, size, DARK, bold=bold))
             y += LINE * size
     low, high = extremes(drawn)
     moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
-    return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu)
+    return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu, title=title)
 
 
 def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:

@@ -73,14 +73,14 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     higher = structure.higher
     n, lower = len(structure.links), len(structure.pairs) - structure.higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
-    counted = _("{n} moving links, {p1} lower pairs ({turning} turning, {sliding} sliding) and {p2} higher pairs")
     yield said(
         _(
             "The mobility of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
-            "moving links, {lower} that of lower pairs and {higher} that of higher pairs. There are {counted}:"
+            "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
+            "higher pairs:"
         ),
-        n=N, lower=LOWER, higher=HIGHER, source=Link("artobolevskii"),
-        counted=counted.format(n=n, p1=lower, p2=higher, turning=turning, sliding=lower - turning),
+        source=Link("artobolevskii"), n=N, lower=LOWER, higher=HIGHER,
+        turning=str(turning), sliding=str(lower - turning),
     )  # fmt: skip
     yield Found(Substitution(W, chebyshev(n, lower, higher), structure.mobility, whole=True))
     if structure.passive:
@@ -116,20 +116,20 @@ def _groups(subject: Subject) -> Iterable[Block]:
         yield Rows(
             _("Assur groups, in the order in which they are joined"), tuple(line(h) for h in head), rows, "groups"
         )
-    yield from _apart(subject)
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
     yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+    yield from _apart(subject)
 
 
 def _apart(subject: Subject) -> Iterable[Block]:
     """The drawings of the parts, one after the other."""
     drawn = subject.drawings("groups")
     if drawn:
-        sentence = _("The primary mechanism and the groups are shown apart in figures {first} to {last}.")
+        sentence = _("The parts of the mechanism are shown in figures {first} to {last}.")
         if len(drawn) == 1:
-            sentence = _("The primary mechanism is shown in figure {first}.")
+            sentence = _("The only part of the mechanism is shown in figure {first}.")
         yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
     for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")

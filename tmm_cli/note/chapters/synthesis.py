@@ -14,6 +14,7 @@ from tmm_cli.plans.record import Symbol
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.results.reports.synthesis import tables_of
 from tmm_cli.synthesis.check import measured_on
+from tmm_cli.synthesis.construction import Diagram
 from tmm_cli.synthesis.mean_ratio import theta_of
 
 FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
@@ -29,7 +30,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Synthesis of the mechanism"))
     yield paragraph(_("The sizes of the mechanism are found from what it must do."))
-    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units)}
+    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
     if "synthesis-asked" in tables:
         yield rows_of(subject, tables.pop("synthesis-asked"), _("What is asked"), digits=FOUND)
     yield paragraph(_("The way of the solution: {source}.").format(source=task.outcome.source.rstrip(".")))
@@ -40,8 +41,13 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield rows_of(subject, found, _("What is found"), digits=FOUND)
         yield from (paragraph(note) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
-    sentence, caption = _("The construction is shown in figure {figure}."), _("Synthesis of the mechanism")
-    yield from subject.figures("synthesis", sentence, caption)
+    for drawn in task.outcome.drawings:
+        sentence = _("The construction is drawn in figure {figure}.")
+        if isinstance(drawn, Diagram):
+            sentence = _("How what is found changes with what may be chosen is shown in figure {figure}.")
+        yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
+    sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
+    yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
         yield paragraph(_("On the mechanism with these sizes the same quantities are measured."))
         yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), digits=FOUND)

@@ -30,7 +30,10 @@ def blocks(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Task and data"))
     if problem.description:
         yield paragraph(problem.description.strip())
-    yield said(_("The sizes of the links are given in table {table}."), table=Ref("sizes"))
+    sentence = _("The sizes of the links are given in table {table}.")
+    if problem.synthesis is not None:
+        sentence = _("The sizes of the links, those among them that the synthesis finds, are given in table {table}.")
+    yield said(sentence, table=Ref("sizes"))
     yield _sizes(subject)
     yield said(_("The places of the fixed points and guides are given in table {table}."), table=Ref("fixed"))
     yield _fixed(subject)
@@ -47,6 +50,8 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield said(_("The loads are given in table {table}."), table=Ref("loads"))
         yield _loads(subject)
     for table in given(problem):
+        if table.name == "drivers" and not linkage.others:
+            continue
         if table.name in FURTHER or table.name.startswith("load_table"):
             yield rows_of(subject, table)
             yield from (paragraph(note) for note in table.notes)
@@ -149,7 +154,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
     if load.table is not None:
         size = _("by a table")
     when = _("in the working stroke") if load.working_stroke_only else _("always")
-    return line(load.name), line(link_name(load.link)), line(place if load.force else ""), line(size), line(when)
+    return line(load.name), line(link_name(load.link)), line(place if load.force else "—"), line(size), line(when)
 
 
 def _wanted(subject: Subject) -> Iterable[str]:

@@ -142,7 +142,8 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
     arm = 1.0 if moment or balance.moment is None else balance.arm  # of a force on a crank's end
-    plan, own = float(balance.generalized[k]) / arm, float(lever.balancing[k]) / arm
+    sense = -1 if lever.balancing[k] < 0 else 1  # the equation has the size, as it is drawn
+    plan, own = sense * float(balance.generalized[k]) / arm, sense * float(lever.balancing[k]) / arm
     largest = float(np.nanmax(np.abs(np.where(results.motion.moving, balance.generalized, 0.0)))) / arm
     if not largest:
         return

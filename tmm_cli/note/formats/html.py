@@ -36,6 +36,8 @@ from tmm_cli.note.math import Letter, Node
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
+WHOLE = 13  # rows of a table that is not parted between pages
+
 
 def html(note: Note) -> bytes:
     """The page in UTF-8."""
@@ -132,9 +134,10 @@ class Writer:
             ) + "</tr>\n"
             for row in rows.rows
         )  # fmt: skip
+        whole = ' class="whole"' if len(rows.rows) <= WHOLE else ""
         return (
-            f"<table{self.place(rows.key)}><caption>{data(caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
-            f"<tbody>{body}</tbody></table>"
+            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'
+            f"<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
         )
 
     def figure(self, figure: Figure) -> str:
