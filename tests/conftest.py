@@ -9,11 +9,21 @@ import gc
 import os
 import sys
 
+import mpmath as mp
 import numpy as np
+import pytest
 from hypothesis import settings
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.load_profile("steady")
+
+
+@pytest.fixture
+def fifty_digits():
+    """Arithmetic of mpmath in 50 digits."""
+    with mp.workdps(50):
+        yield
+
 
 gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often
 sys.dont_write_bytecode = False  # or each process that a test starts would compile the whole product

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import cmath
 import json
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
@@ -26,6 +27,16 @@ sketch: {at: 60 deg, B: [350, 86]}
 masses: {2: {mass: 3 kg, inertia: 0.1, centre: {on: AB}}}
 positions: {count: 12, detail: [0, 1]}
 """
+CLASS_III = """tmm: 1
+points: {O: [0, 0], D: [300, 0], G: [200, 300]}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: {A: [0, 0], B: [200, 0], E: [100, 120]}}
+  3: {points: [D, B], length: 150}
+  4: {points: [E, F], length: 120}
+  5: {points: [G, F], length: 90}
+driver: {link: 5, speed: 1 rad/s}
+"""
 SI = {"length": "m", "angle": "rad", "mass": "kg", "force": "N", "moment": "N*m", "inertia": "kg*m^2"}
 
 
@@ -33,6 +44,12 @@ def results_of(content: dict[str, Any], stage: str = "forces", positions: list[i
     """Write a problem file and solve it."""
     text = json.dumps(content, ensure_ascii=False)  # JSON is YAML
     return solve(build(read_text(text, "case.yaml")), stage, positions)  # type: ignore[arg-type]
+
+
+@cache
+def solved_text(text: str, stage: Literal["kinematics", "forces"] = "forces") -> Results:
+    """The results of a problem file as a student writes it, solved once."""
+    return solve(build(read_text(text, "x.yaml")), stage)
 
 
 def linkage_of(name: str) -> Linkage:

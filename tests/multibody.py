@@ -101,7 +101,7 @@ class Multibody:
         self.size = 3 * len(it.moving)
         # with several drivers the clock starts in the sketch, with one in position 0
         self.began = it.sketch.at if it.others else float(motion.q[0] - self._way_before(motion))
-        self._walked = {}
+        self.known = {}
 
     @staticmethod
     def _way_before(motion):
@@ -186,18 +186,18 @@ class Multibody:
 
     def walked(self, q):
         """All coordinates at a place of the first driver, from the sketch on in small steps."""
-        nearest = min(self._walked, key=lambda place: abs(place - q), default=None)
+        nearest = min(self.known, key=lambda place: abs(place - q), default=None)
         if nearest is None:
             nearest = self.it.sketch.at
-            self._walked[nearest] = self._newton(self._sketched(), nearest)
-        X, place, before = self._walked[nearest], nearest, None
+            self.known[nearest] = self._newton(self._sketched(), nearest)
+        X, place, before = self.known[nearest], nearest, None
         stride = STRIDE if self.it.driver.kind == "turn" else STRIDE / 20
         steps = max(1, int(np.ceil(abs(q - place) / stride)))
         for step in range(1, steps + 1):
             here = place + (q - place) * step / steps
             guess = X if before is None else 2 * X - before
             before, X = X, self._newton(guess, here)
-        self._walked[q] = X
+        self.known[q] = X
         return X
 
     def _sketched(self):

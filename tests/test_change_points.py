@@ -20,10 +20,7 @@ from tmm_cli.results.warnings import warnings
 DIGITS = 1e-12  # rad
 
 
-@pytest.fixture(autouse=True)
-def fifty_digits():
-    with mp.workdps(50):
-        yield
+pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 
 class Plate:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from models import solved_text
 
-from tmm_cli import solve
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
 
 SWINGING = """tmm: 1
 points: {O: [0, -300], D: [350, 0]}
@@ -24,18 +22,14 @@ positions: {count: 5}
 """
 
 
-def solved(text):
-    return solve(build(read_text(text, "cylinder.yaml")))
-
-
 def test_the_positions_go_from_end_to_end_of_the_stroke():
-    results = solved(SWINGING)
+    results = solved_text(SWINGING)
     assert np.allclose(results.motion.q, [0.4, 0.45, 0.5, 0.55, 0.6], rtol=0, atol=1e-15)
     assert results.structure.formula == "I(1,2) -> II(1,2,3)"
 
 
 def test_the_lever_is_where_the_triangle_of_the_cylinder_puts_it():
-    results = solved(SWINGING)
+    results = solved_text(SWINGING)
     base, arm, length = 0.35 + 0.3j, 0.2, results.motion.q
     cosine = (abs(base) ** 2 + arm**2 - length**2) / (2 * abs(base) * arm)
     angle = np.angle(-base) + 2 * np.pi - np.arccos(cosine)
@@ -46,13 +40,13 @@ def test_the_lever_is_where_the_triangle_of_the_cylinder_puts_it():
 
 
 def test_the_force_of_the_cylinder_follows_from_virtual_work():
-    results = solved(SWINGING)
+    results = solved_text(SWINGING)
     work = 800 * results.motion.named("E").v.imag
     assert np.allclose(results.reactions.balance.force * 0.15, work, rtol=0, atol=1e-12)
 
 
 def test_it_pushes_along_its_own_axis_and_the_hinges_feel_nothing_else():
-    results = solved(SWINGING)
+    results = solved_text(SWINGING)
     force = results.reactions.of("O").onto("1")
     along = results.motion.named("B").x - (0 - 0.3j)
     assert np.max(np.abs((force * np.conj(along)).imag)) < 1e-12
@@ -61,9 +55,9 @@ def test_it_pushes_along_its_own_axis_and_the_hinges_feel_nothing_else():
 
 def test_a_sketch_beyond_the_stroke_is_refused():
     with pytest.raises(ProblemError) as caught:
-        solved(SWINGING.replace("at: 550", "at: 650"))
+        solved_text(SWINGING.replace("at: 550", "at: 650"))
     assert str(caught.value) == (
-        "cylinder.yaml:8:14: sketch.at: the sketch shows the driver beyond its stroke\n  found:   650"
+        "x.yaml:8:14: sketch.at: the sketch shows the driver beyond its stroke\n  found:   650"
     )
 
 
@@ -79,7 +73,7 @@ def test_a_cylinder_that_pushes_at_its_ends_only_is_a_spring_without_rate():
         "loads: {F: {on: 3, at: E, force: [0, -800]}}",
         "springs: {c: {between: [0, 3], at: [[0, -300], B], rate: 0, preload: -500}}",
     )
-    results = solved(text.replace("output: 3\n", "").replace("points: {O: [0, -300], D", "points: {D"))
+    results = solved_text(text.replace("output: 3\n", "").replace("points: {O: [0, -300], D", "points: {D"))
     pivot, end = 0.35 + 0j, results.motion.named("B").x
     push = 500 * (end + 0.3j) / np.abs(end + 0.3j)
     moment = (np.conj(end - pivot) * push).imag

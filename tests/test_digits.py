@@ -54,6 +54,7 @@ from tmm_cli.results.reports import tables_of
 from tmm_cli.results.table import true_digits
 from tmm_cli.results.terminal import cells as shown
 from tmm_cli.structure.assur import analyse
+from tmm_cli.tolerances import ROUNDOFF
 
 BARRED = """tmm: 1
 units: {length: m, angle: rad}
@@ -65,7 +66,6 @@ links:
 driver: {link: 1, speed: 10}
 sketch: {at: 1, B: [1.05, 0.6]}
 """
-U = 2.0**-53
 NOTHING = 1e-22  # of a value: less is what 60 digits and their differences leave
 CLASSES = [
     (3, ("RRR",)), (36, ("RRP",)), (41, ("RPR",)), (24, ("RPP", "PRP")), (53, ("RRP", "RPR", "RRR")), (0, ("III",)),
@@ -185,7 +185,7 @@ def near_the_ends(seed, kinds):
 
 
 def widths(rows):
-    return [bound / max(error, U / 4 * size) for _, size, error, bound in rows if error > 0]
+    return [bound / max(error, ROUNDOFF / 4 * size) for _, size, error, bound in rows if error > 0]
 
 
 def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_narrow():

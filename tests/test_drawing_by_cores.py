@@ -6,15 +6,11 @@ from functools import partial
 
 import pytest
 from bank import moved
-from test_commands import ROOT
 
-from tmm_cli import solve
 from tmm_cli.cli import drawing
 from tmm_cli.cli.drawing import FEW, by_all_cores
 from tmm_cli.draw import files, parts
 from tmm_cli.draw.layout.files import files_of_sheets
-from tmm_cli.problem.build import build
-from tmm_cli.problem.reader import read_text
 
 
 @pytest.fixture(autouse=True)
@@ -40,10 +36,7 @@ def lasting(folder, n):
 
 
 def test_several_processes_write_the_same_files_in_the_same_order():
-    text = (
-        (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8").replace("detail: [2]", "detail: [0, 1, 2, 3, 4]")
-    )
-    results = solve(build(read_text(text, "sine.yaml")), "kinematics")
+    results = moved("sine")
     assert len(parts(results)) >= FEW
     assert list(files(results, way=by_all_cores)) == list(files(results))
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from bank import solved
 from fuzz import beyond
+from models import PROBLEMS
 
 from tmm_cli import solve
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.reports.energy import tables
-
-PROBLEMS = Path(__file__).parent.parent / "problems"
 
 
 @pytest.mark.parametrize("name, header", [("crank-slider", "dJ/dphi, SI"), ("cylinder", "dm/ds, SI")])

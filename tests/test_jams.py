@@ -4,29 +4,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from functools import cache
 
 import blocks
 import numpy as np
 import pytest
+from models import solved_text
 from test_bad_input import place, refusal
 from test_bad_linkages import changed
 from test_commands import tmm
 
-from tmm_cli import solve
 from tmm_cli.double_double import exactly
 from tmm_cli.groups.linear import solve as solve_linear
 from tmm_cli.pairs.cam_law import CamLaw, Piece
-from tmm_cli.problem.build import build
-from tmm_cli.problem.reader import read_text
 from tmm_cli.results.as_json import to_json
 from tmm_cli.results.warnings import warnings as words
-
-
-@cache
-def solved(text):
-    return solve(build(read_text(text, "x.yaml")))
-
 
 # ---------------------------------------------------------------- wheels
 
@@ -34,7 +25,7 @@ def solved(text):
 def test_an_idle_wheel_in_a_ring_that_agrees_is_a_result():
     """3 turns with 1 inside an annulus and meets it through 2 as well: all ratios agree, one gear is passive."""
     text = changed(blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [3, 1], ratio: 0.5, inner: true}")
-    results = solved(text)
+    results = solved_text(text)
     omega = [float(results.motion.link(n).omega[0]) for n in "123"]
     assert omega == pytest.approx([1, -1, 2])
     assert bool(results.motion.moving.all())
@@ -43,7 +34,7 @@ def test_an_idle_wheel_in_a_ring_that_agrees_is_a_result():
 def test_an_idle_wheel_in_a_ring_gives_its_group_no_higher_class():
     """Without the gear that only repeats the others each wheel hangs by its axis and one gear: class II, order 2."""
     text = changed(blocks.RING, "c: {between: [3, 1], ratio: 0.5}", "c: {between: [3, 1], ratio: 0.5, inner: true}")
-    structure = solved(text).structure
+    structure = solved_text(text).structure
     assert structure.formula == "I(0,1) -> II(2) -> II(3)"
     assert [group.order for group in structure.groups] == [2, 2]
     assert (structure.mechanism_class, structure.redundant, structure.passive[0].pair) == (2, 1, "c")
@@ -65,7 +56,7 @@ def test_contradictory_offsets_in_a_ring_are_refused(offsets, wanted):
     assert wanted == a - b / 2
     if c == wanted:
         for rounding in (0, 2e-5):
-            assert solved(text(a, b, c + rounding)).structure.redundant == 1
+            assert solved_text(text(a, b, c + rounding)).structure.redundant == 1
     else:
         assert refusal(text(*offsets)) == (
             f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: gear c contradicts those before it: the wheels lock "
@@ -92,7 +83,7 @@ def planets(number, driver):
 @pytest.mark.parametrize("driver, ratio", [("h", 3.0), ("s", 1 / 3)])
 def test_further_planets_share_the_load_and_leave_the_class_as_it_is(driver, ratio):
     """Willis: (omega_s - omega_h)/(0 - omega_h) = -80/40. Each planet beyond the first brings one passive gear."""
-    alone, three = solved(planets(1, driver)), solved(planets(3, driver))
+    alone, three = solved_text(planets(1, driver)), solved_text(planets(3, driver))
     for results in (alone, three):
         assert float(results.motion.link("s" if driver == "h" else "h").omega[0]) == pytest.approx(ratio)
     assert three.structure.redundant == 2
@@ -108,7 +99,7 @@ def train(number, teeth):
 
 
 def test_40_wheels_in_a_train_are_solved():
-    results = solved(train(40, [20, 21]))
+    results = solved_text(train(40, [20, 21]))
     assert float(results.motion.link("w39").omega[0]) == pytest.approx(-((20 / 21) ** 39))
     assert any(word.startswith("no number of turns was found") for word in words(results))
 
@@ -116,10 +107,8 @@ def test_40_wheels_in_a_train_are_solved():
 @pytest.mark.parametrize("number, teeth, turns", [(2, [20, 40], 2), (3, [20, 40], 4), (4, [20, 40], 8), (3, [3, 1], 1)])
 def test_a_train_comes_back_when_its_last_wheel_does(number, teeth, turns):
     """Each halving of the speed doubles the turns of the driver after which all is as it was."""
-    assert (solved(train(number, teeth)).driver_range.turns, solved(train(number, teeth)).driver_range.repeats) == (
-        turns,
-        True,
-    )
+    reach = solved_text(train(number, teeth)).driver_range
+    assert (reach.turns, reach.repeats) == (turns, True)
 
 
 def test_a_system_with_only_one_side_in_double_doubles_is_solved_in_double_doubles():
@@ -131,9 +120,9 @@ def test_a_system_with_only_one_side_in_double_doubles_is_solved_in_double_doubl
 
 def test_wheels_next_to_a_dead_position_are_solved():
     text = changed(blocks.GEARED, "{at: 90 deg, B: [139, 120]}", "{at: 90 deg, B: [139, 120]}\npositions: {at: [DEAD]}")
-    end = solved(text.replace("DEAD", "0")).driver_range.limits
+    end = solved_text(text.replace("DEAD", "0")).driver_range.limits
     place = end[0].place if end else 0.0
-    results = solved(text.replace("DEAD", f"{place!r} rad"))
+    results = solved_text(text.replace("DEAD", f"{place!r} rad"))
     assert np.isfinite(results.motion.point("2", 0j).x).all()
 
 
@@ -153,7 +142,7 @@ def test_a_law_of_many_pieces_is_looked_up():
 
 def test_a_jump_of_the_followers_speed_is_named():
     text = changed(blocks.CAM, "{over: 120 deg, rise: 20}", "{over: 120 deg, rise: 20, law: linear}")
-    assert list(words(solved(text))) == [
+    assert list(words(solved_text(text))) == [
         "the law of cam 1 lets the speed of follower 2 jump (0, 120 deg of the cam): a hard impact, the acceleration "
         "there is not finite and is not in the tables"
     ]
@@ -164,7 +153,7 @@ def test_a_jump_of_the_followers_speed_is_named():
 
 def test_a_torsion_spring_past_half_a_turn_is_named():
     spring = "springs: {t: {between: [0, 1], torsion: 2 N*m/rad, free: 30 deg}}\ndriver:"
-    results = solved(changed(blocks.SLIDER, "driver:", spring))
+    results = solved_text(changed(blocks.SLIDER, "driver:", spring))
     assert (
         "torsion spring t is turned by more than half a turn from its free angle at 209.5 deg: its moment jumps there, "
         "as angles are counted within half a turn"
@@ -178,7 +167,7 @@ def test_a_torsion_spring_past_half_a_turn_is_named():
 def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coefficient, locks):
     """At 270 deg the rod leans by asin(1/3): it cannot push the slider where mu tan(lean) > 1, mu > 2.828."""
     friction = f"{{pairs: {{x: {{coefficient: {coefficient}}}}}}}"
-    results = solved(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
+    results = solved_text(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
     assert bool(results.locked[9]) is locks
     said = [word for word in words(results) if "locks itself" in word]
     moment = results.reactions.balance.moment[9]
@@ -210,7 +199,7 @@ def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
 def test_a_cylinder_driven_beyond_its_range_says_how_far():
     """Piston and lever reach 300 + 150 from the cylinder's hinge: at 460 mm they are 10 mm short."""
     text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", "at: [140, 300, 460, 1000]")
-    results = solved(text)
+    results = solved_text(text)
     assert results.motion.moving.tolist() == [False, True, False, False]
     said = [word for word in words(results) if "cannot be assembled" in word]
     assert said == [
@@ -221,7 +210,7 @@ def test_a_cylinder_driven_beyond_its_range_says_how_far():
 
 def test_where_the_first_of_two_drivers_stops_its_way_ends():
     text = changed(blocks.TWO, "1 rad/s}", "1 rad/s, acceleration: -1 rad/s^2}")
-    results = solved(text)
+    results = solved_text(text)
     assert results.driver_range.end == pytest.approx(math.pi / 2 + 0.5, abs=1e-7)
     assert "driving link 1 goes from -90 deg to 118.64789 deg only: it slows down and stops there" in " ".join(
         words(results)
@@ -230,19 +219,19 @@ def test_where_the_first_of_two_drivers_stops_its_way_ends():
 
 
 def test_the_limits_of_two_drivers_that_never_come_back_together_are_not_taken_from_a_turn_later():
-    results = solved(changed(blocks.TWO, "2 rad/s", "3.14159265 rad/s"))
+    results = solved_text(changed(blocks.TWO, "2 rad/s", "3.14159265 rad/s"))
     assert [limit.group for limit in results.driver_range.limits] == ["II(2,3)"]
     assert bool(results.motion.moving.all())
 
 
 def test_a_second_driver_at_rest_is_a_link_that_stands():
-    results = solved(changed(blocks.TWO, "2 rad/s", "0"))
+    results = solved_text(changed(blocks.TWO, "2 rad/s", "0"))
     assert np.max(np.abs(results.motion.link("4").omega)) == 0
 
 
 def test_the_output_of_a_cylinder_is_what_it_lifts_and_two_points_of_a_link_are_its_guide():
     text = blocks.CYLINDER.replace("slides: {on: 1, along: OP}", "slides: {on: 1}")
-    assert solved(text).travels[0].link == "3"
+    assert solved_text(text).travels[0].link == "3"
 
 
 def test_positions_of_a_cylinder_do_not_start_somewhere():
@@ -255,7 +244,7 @@ def test_positions_of_a_cylinder_do_not_start_somewhere():
 
 def test_positions_out_of_reach_are_not_named_one_by_one_without_end():
     text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", f"at: {[300, *range(500, 900)]}")
-    said = [word for word in words(solved(text)) if "cannot be" in word]
+    said = [word for word in words(solved_text(text)) if "cannot be" in word]
     assert (len(said), said[-1]) == (101, "... and 300 positions more that cannot be reached or are dead")
 
 
@@ -291,7 +280,7 @@ def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
         f"x.yaml:{place(text, 'links:')}: links: a group of so many links is not solved: III(a,t0,g0,t1,"
     )
     assert refusal(text).endswith("found:   98\n  allowed: at most 16 in one group; any number of groups")
-    results = solved(ladder(2))
+    results = solved_text(ladder(2))
     assert results.structure.groups[0].title == "III(a,t0,g0,t1,g1,e)"
     assert bool(results.motion.moving.all())
 
@@ -315,7 +304,7 @@ def test_no_size_of_a_mechanism_is_special(name, unit, size):
     text = blocks.EVERYTHING[name]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        one, other = solved(text).motion, solved(text.replace("length: mm", f"length: {unit}")).motion
+        one, other = solved_text(text).motion, solved_text(text.replace("length: mm", f"length: {unit}")).motion
     assert one.moving.tolist() == other.moving.tolist()
     assert bool(one.moving.all())
     for link in one.linkage.moving:
@@ -328,6 +317,6 @@ def test_no_size_of_a_mechanism_is_special(name, unit, size):
 def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
     text = blocks.EVERYTHING[name]
     text = "\n".join(line for line in text.splitlines() if not line.startswith(("masses", "loads", "springs")))
-    results = solved(text.replace("points: [A, B], length: 20}", "points: {A: [0, 0], B: [20, 0]}}") + "\n")
+    results = solved_text(text.replace("points: [A, B], length: 20}", "points: {A: [0, 0], B: [20, 0]}}") + "\n")
     assert all(np.all(r.force[results.motion.moving] == 0) for r in results.reactions.all)
     assert results.lever_holds

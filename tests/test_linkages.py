@@ -5,11 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from bank import solved
+from bank import problem, solved
+from models import PROBLEMS
 from multibody import compared
 
 from tmm_cli import load, solve
@@ -23,7 +23,6 @@ from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
 
-BANK = Path(__file__).parent.parent / "problems"
 FORMULAS = {
     "positioner": "I(1,2) -> II(1,2,3) -> II(4,5) -> II(6,7)",
     "clamp": "I(0,1) -> II(2,3) -> II(4,5) -> II(6,7)",
@@ -74,7 +73,7 @@ def by_cosines(a, b, opposite):
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_formula_of_structure(name):
-    structure = analyse(load(str(BANK / f"{name}.yaml")).linkage)
+    structure = analyse(problem(name).linkage)
     assert structure.formula == FORMULAS[name]
     assert structure.mobility == len(structure.drivers)
 
@@ -207,7 +206,7 @@ def test_class_iv_ratio_by_instant_centres():
 
 
 def test_class_iv_is_one_of_class_iii_when_driven_from_the_other_end():
-    problem = load(str(BANK / "class-iv.yaml"))
+    problem = load(str(PROBLEMS / "class-iv.yaml"))
     assert analyse(problem.linkage).mechanism_class == 4
     assert analyse(redriven(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
 
@@ -275,7 +274,7 @@ def test_geared_cranks_draw_an_exact_straight_line():
 @pytest.mark.parametrize("ratio", ["teeth: [100, 40]", "teeth: [61, 53]", "ratio: sqrt(2)"])
 def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
     """The sector only swings, so that its wheel is back when it is; of wheels that go round teeth would tell."""
-    text = (BANK / "gear-doubling.yaml").read_text(encoding="utf-8")
+    text = (PROBLEMS / "gear-doubling.yaml").read_text(encoding="utf-8")
     results = solve(build(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics")
     assert (results.driver_range.full, results.driver_range.turns, results.driver_range.repeats) == (True, 1, True)
     run = at_places(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x
@@ -363,7 +362,7 @@ def test_loader_angle_by_cosines():
 
 def test_a_tabulated_load_acts_on_near_dead_positions_too(tmp_path):
     """One degree from where l = r + 0.01 mm is all but dead, numbers are extended, and the table is read with them."""
-    text = (BANK / "crank-slider.yaml").read_text(encoding="utf-8")
+    text = (PROBLEMS / "crank-slider.yaml").read_text(encoding="utf-8")
     text = text.replace("l: 220", "l: 60.01").replace("B: [245, 0]", "B: [60, 0]")
     text = text.replace("{count: 12, from: working stroke, detail: [10]}", "{at: [89, 29]}")
     (tmp_path / "near-dead.yaml").write_text(text, encoding="utf-8")

@@ -14,10 +14,7 @@ from tmm_cli.analysis.pipeline import at_positions
 DIGITS = 1e-12  # rad (m for a cylinder)
 
 
-@pytest.fixture(autouse=True)
-def fifty_digits():
-    with mp.workdps(50):
-        yield
+pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 
 def case(points, links, driver, sketch, **more):

@@ -1,11 +1,11 @@
 """Every quantity stands once: tables, result.json, its schema, bounds of rounding and `prepare` read the same list."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 from bank import solved
+from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.accuracy.digits import quantities
@@ -20,7 +20,6 @@ from tmm_cli.results.digits import accuracy
 from tmm_cli.results.reports import tables
 from tmm_cli.results.terminal import cells
 
-PROBLEMS = Path(__file__).parent.parent / "problems"
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
     "kinematics.points": (POINT, set()),
     "kinematics.centres": (POINT, set()),

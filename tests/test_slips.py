@@ -7,9 +7,9 @@ import warnings
 
 import numpy as np
 import pytest
+from models import solved_text
 from test_bad_input import changed, refusal
 
-from tmm_cli import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.expressions import evaluate
@@ -39,10 +39,6 @@ TOP = (
 def told(old: str, new: str) -> str:
     assert old in FOUR_BAR
     return refusal(FOUR_BAR.replace(old, new))
-
-
-def solved(text: str):
-    return solve(build(read_text(text, "x.yaml")))
 
 
 @pytest.mark.parametrize(
@@ -199,7 +195,7 @@ def test_what_is_accepted_gives_no_warning(factor: str) -> None:
         text = text.replace(number, ", ".join(f"{one}*{factor}" for one in number.split(", ")), 1)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert np.isfinite(solved(text).motion.poses["3"].z).all()
+        assert np.isfinite(solved_text(text).motion.poses["3"].z).all()
 
 
 def test_a_bare_number_and_one_with_a_unit_have_the_same_decimals() -> None:
@@ -212,4 +208,4 @@ def test_a_bare_number_and_one_with_a_unit_have_the_same_decimals() -> None:
 def test_a_guide_may_run_through_a_share_of_the_way_between_two_points() -> None:
     text = changed("along: CD", "through: {on: CD, at: 0.3}")
     assert build(read_text(text, "x.yaml")).linkage.slides[0].through == pytest.approx(0.195)
-    assert np.isfinite(solved(text).motion.poses["5"].x).all()
+    assert np.isfinite(solved_text(text).motion.poses["5"].x).all()

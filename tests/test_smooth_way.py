@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
-from models import PARALLELOGRAM
+from models import PARALLELOGRAM, solved_text
 
-from tmm_cli import solve
 from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
 from tmm_cli.results.reports.quality import tables
 from tmm_cli.results.warnings import warnings
 
@@ -44,8 +43,7 @@ sketch: {at: 60 deg, D: [100, 200]}
 """
 
 
-def solved(text):
-    return solve(build(read_text(text, "x.yaml")), "kinematics")
+moved = partial(solved_text, stage="kinematics")
 
 
 def everywhere(results, number=701):
@@ -57,7 +55,7 @@ def everywhere(results, number=701):
 @pytest.mark.parametrize("at, B", [("60 deg", "[350, 86]"), ("-100 deg", "[283, -98]"), ("179 deg", "[200, 2]")])
 def test_a_parallelogram_stays_one_wherever_its_sketch_is_drawn(at, B):
     text = PARALLELOGRAM.replace("60 deg", at).replace("[350, 86]", B)
-    results = solved(text)
+    results = moved(text)
     motion = everywhere(results)
     assert np.allclose(motion.first["3"].w, 1, rtol=0, atol=1e-7)
     assert np.allclose(motion.poses["2"].z, 1, rtol=0, atol=1e-7)
@@ -65,12 +63,12 @@ def test_a_parallelogram_stays_one_wherever_its_sketch_is_drawn(at, B):
 
 
 def test_an_antiparallelogram_stays_one_too():
-    motion = everywhere(solved(PARALLELOGRAM.replace("B: [350, 86]", "B: [286, -99]")))
+    motion = everywhere(moved(PARALLELOGRAM.replace("B: [350, 86]", "B: [286, -99]")))
     assert np.all(motion.first["3"].w < 0)
 
 
 def test_the_warning_says_what_is_done_and_how_to_ask_for_the_other():
-    said = list(warnings(solved(PARALLELOGRAM)))
+    said = list(warnings(moved(PARALLELOGRAM)))
     assert said[0] == (
         "change point of II(2,3) inside the cycle at 0 deg (margin 0): there the group may go over into another "
         "assembly; the results go smoothly through, as a machine that runs does (the other: `change points: keep side`)"
@@ -78,7 +76,7 @@ def test_the_warning_says_what_is_done_and_how_to_ask_for_the_other():
 
 
 def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparallelogram():
-    results = solved(PARALLELOGRAM + "change points: keep side\n")
+    results = moved(PARALLELOGRAM + "change points: keep side\n")
     motion = everywhere(results)
     half = np.mod(motion.q, 2 * np.pi) < np.pi
     assert np.allclose(motion.first["3"].w[half], 1) and np.all(motion.first["3"].w[~half] < 0)
@@ -89,13 +87,13 @@ def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparall
 
 def test_another_word_there_is_refused():
     with pytest.raises(ProblemError, match=r"(?s)x.yaml:11:16: change points: .*allowed: smooth, keep side"):
-        solved(PARALLELOGRAM + "change points: keep\n")
+        moved(PARALLELOGRAM + "change points: keep\n")
 
 
 @pytest.mark.parametrize("text, turns", [(KITE, 2), (LEVER, 2), (ISOSCELES, 1)])
 def test_other_linkages_with_change_points_move_without_a_jump(text, turns):
     """A kite (Galloway) and a lever whose stone comes over its pivot go half a turn in one of the crank."""
-    results = solved(text)
+    results = moved(text)
     motion = everywhere(results, 1001)
     assert (results.driver_range.turns, results.driver_range.repeats) == (turns, True)
     w = motion.first["3"].v.real if text is ISOSCELES else motion.first["3"].w
@@ -108,6 +106,6 @@ def test_other_linkages_with_change_points_move_without_a_jump(text, turns):
 
 
 def test_a_place_is_found_alone():
-    results = solved(PARALLELOGRAM)
+    results = moved(PARALLELOGRAM)
     alone = [float(at_positions(results, np.array([q])).first["3"].w[0]) for q in (-20.0, -1.0, 1.0, 4.0, 100.0)]
     assert alone == pytest.approx([1.0] * 5)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import random_linkages
 from bank import NAMES, moved, problem
+from models import CLASS_III
 from test_commands import ROOT, described, tmm
 
 from tmm_cli import load
@@ -26,16 +27,6 @@ from tmm_cli.structure.spatial import KINDS, SpatialChain, SpatialPair, examine
 
 LETTERS = {"R": "turning", "P": "sliding", "H": "screw", "C": "cylindrical", "U": "universal", "S": "spherical",
            "E": "planar", "L": "cylinder on plane", "B": "sphere on plane"}  # fmt: skip
-CLASS_III = """tmm: 1
-points: {O: [0, 0], D: [300, 0], G: [200, 300]}
-links:
-  1: {points: [O, A], length: 60}
-  2: {points: {A: [0, 0], B: [200, 0], E: [100, 120]}}
-  3: {points: [D, B], length: 150}
-  4: {points: [E, F], length: 120}
-  5: {points: [G, F], length: 90}
-driver: {link: 5, speed: 1 rad/s}
-"""
 
 
 def chain(text):
@@ -547,7 +538,7 @@ def test_a_slip_beside_or_in_the_name_of_the_block_is_told_in_terms_of_such_a_fi
     with pytest.raises(ProblemError) as error:
         spatial(f"pairs: {PAIRS}", "tmm: 1\ndriver: {link: 1}\nstructure:\n  spatial:\n")
     assert str(error.value) == (
-        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, title, description, structure"
+        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, lang, title, description, structure"
     )
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from bank import NAMES, moved, problem, solved
-from models import SI, results_of
+from models import CLASS_III, SI, results_of
 from test_commands import SHAPER
 
 from tmm_cli import solve
@@ -68,18 +68,6 @@ def test_groups_do_not_depend_on_the_order_in_which_links_are_written(order):
     structure = results_of(problem, "structure").structure
     assert sorted(sorted(g.links) for g in structure.groups) == [["2", "3"], ["4", "5"], ["6", "7"]]
     assert len([p for p in structure.pairs if p.point == "B"]) == 3
-
-
-CLASS_III = """tmm: 1
-points: {O: [0, 0], D: [300, 0], G: [200, 300]}
-links:
-  1: {points: [O, A], length: 60}
-  2: {points: {A: [0, 0], B: [200, 0], E: [100, 120]}}
-  3: {points: [D, B], length: 150}
-  4: {points: [E, F], length: 120}
-  5: {points: [G, F], length: 90}
-driver: {link: 5, speed: 1 rad/s}
-"""
 
 
 def test_a_class_iii_group_is_named_and_solved():

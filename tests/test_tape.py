@@ -10,7 +10,8 @@ from bank import NAMES, problem
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import linkage_of
-from random_linkages import TYPES, linkage
+from random_linkages import linkage
+from test_properties import CHAINS
 
 import tmm_cli
 from tmm_cli import load, solve
@@ -21,7 +22,6 @@ from tmm_cli.variants.batch import CHECKS, everything, prepare
 from tmm_cli.variants.stack import NotAlikeError, varying
 
 Q = np.linspace(0.1, 6.3, 24)
-KINDS = st.lists(st.sampled_from(TYPES), min_size=1, max_size=4).map(tuple)
 
 
 def kind(name):
@@ -48,7 +48,7 @@ def plainly(batch, q):
     return {name: value for name, value in found.items() if name not in CHECKS}
 
 
-@given(st.integers(0, 2**32 - 1), KINDS)
+@given(st.integers(0, 2**32 - 1), CHAINS)
 @settings(max_examples=12)
 def test_a_tape_plays_what_the_stages_do(seed, kinds):
     it = linkage(seed, kinds)
@@ -63,7 +63,7 @@ def test_a_tape_plays_what_the_stages_do(seed, kinds):
         agree({n: batch(q)[n] for n in batch(q)}, plainly(batch, q), 1e-9)
 
 
-@given(st.integers(0, 2**32 - 1), KINDS)
+@given(st.integers(0, 2**32 - 1), CHAINS)
 @settings(max_examples=6)
 def test_variants_at_once_are_the_variants_one_by_one(seed, kinds):
     random = np.random.default_rng(seed)

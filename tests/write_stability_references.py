@@ -336,7 +336,7 @@ def starts(family, n):
         scene = family.scene(n, distance)
         way = mp.sqrt(2 * (mp.mpf(scene.q) - q) / bend)
         if distance >= Decimal("0.001"):
-            fold._walked.clear()  # from the sketch, not from near the fold
+            fold.known.clear()  # from the sketch, not from near the fold
             found[distance] = mp.matrix([mp.mpf(float(x)) for x in fold.walked(scene.q)]), None
         else:
             found[distance] = X + side * way * along, fold.watched(X - side * way * along)

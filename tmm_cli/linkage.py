@@ -7,7 +7,7 @@ the axes of the drawing. Lengths may be numbers or arrays that broadcast against
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
@@ -40,6 +40,11 @@ class Hinge:
 
     point: str
     links: tuple[str, ...]
+
+
+def hinged(hinges: Iterable[Hinge], one: str, other: str) -> str | None:
+    """The point in which two links are hinged to one another."""
+    return next((hinge.point for hinge in hinges if {one, other} <= set(hinge.links)), None)
 
 
 @dataclass(frozen=True)
@@ -235,7 +240,7 @@ class Linkage:
 
     def shared(self, one: str, other: str) -> str | None:
         """The point in which two links are hinged to one another."""
-        return next((h.point for h in self.hinges if {one, other} <= set(h.links)), None)
+        return hinged(self.hinges, one, other)
 
     @property
     def moving(self) -> tuple[str, ...]:

@@ -127,11 +127,17 @@ class Results:
         """The driver's place at position 0."""
         return float(self.asked[0])
 
+    @property
+    def turns(self) -> int:
+        """Of the driver, after which all comes again; 0 where it goes to and fro."""
+        reach = self.driver_range
+        return reach.turns if reach is not None and reach.full and self.linkage.driver.kind == "turn" else 0
+
     def closely(self, count: int) -> Real:
         """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
         driver = self.linkage.driver
-        if self.mechanism.driver_range.full and driver.kind == "turn":
-            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.mechanism.driver_range.turns, count)
+        if self.turns:
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.turns, count)
         asked = self.asked
         return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
 

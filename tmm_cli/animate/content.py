@@ -26,15 +26,9 @@ FRAMES = 180  # a turn
 SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 
 
-def loops(results: Results) -> int:
-    """Turns of the driver after which all comes again; 0 where it goes to and fro."""
-    reach = results.driver_range
-    return reach.turns if reach is not None and reach.full and results.linkage.driver.kind == "turn" else 0
-
-
 def frames(results: Results, count: int) -> Results:
     """The same results at about so many places a turn at which the mechanism moves. Raises ProblemError."""
-    q = results.closely(count * (loops(results) or 1) + 1)
+    q = results.closely(count * (results.turns or 1) + 1)
     moved = at_places(results, q)
     assert moved.motion is not None
     moves = moved.motion.moving
@@ -47,7 +41,7 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
     """Everything that the script needs; places in mm of a sheet with y down, angles in rad, plans in SI."""
     motion = picture.motion
     names = list(picture.bodies)
-    driver, turns = results.linkage.driver, loops(results)
+    driver, turns = results.linkage.driver, results.turns
     units, measure = results.problem.units, ANGLE if driver.kind == "turn" else LENGTH
     return {
         "comma": language() != ENGLISH,

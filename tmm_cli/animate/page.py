@@ -15,7 +15,7 @@ from string import Template
 from typing import Any
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.animate.content import FRAMES, content, frames, loops, paths, picture_of, view
+from tmm_cli.animate.content import FRAMES, content, frames, paths, picture_of, view
 from tmm_cli.draw.formats.svg import element
 from tmm_cli.language import _, language
 
@@ -55,7 +55,7 @@ def _page(results: Results, count: int) -> str:
         data=data_text(content(results, whole, picture)),
         script=script,
         hint=escape(_("Space: play or stop. Left and right: step. Up and down: speed. Drag in a diagram to go there.")),
-        back="" if loops(results) else escape(_("The way back is played backwards: all is shown as on the way there.")),
+        back="" if results.turns else escape(_("The way back is played backwards: all is shown as on the way there.")),
         play=escape(_("play or stop")),
         position=escape(_("position")),
         speed=escape(_("speed")),

@@ -16,35 +16,24 @@ from tmm_cli.draw.paper.picture import Space, within
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
-from tmm_cli.draw.sheets.groups import groups
+from tmm_cli.draw.sheets.groups import all_groups
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
-from tmm_cli.draw.sheets.structure import at_sketch, scheme
+from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import plain, rounded
+from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
 
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
 
 
-def _scheme(results: Results) -> Drawn:
-    found = at_sketch(results)
-    if found is not None:
-        yield "structure", scheme(results.problem.title, *found).finish()
-
-
-def _groups(results: Results) -> Drawn:
-    found = at_sketch(results)
-    if found is not None:
-        yield from groups(results.problem.title, *found, results.roles)
-
-
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (_scheme, 100), "groups": (_groups, 45), "synthesis": (synthesised, 110),
+    "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
@@ -84,7 +73,7 @@ class Subject:
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
-        return printed_unit(self.results.problem.units.spelt(dimension))
+        return on_paper(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
@@ -128,8 +117,3 @@ def figures(text: str, language: str) -> str:
 def with_degrees(text: str) -> str:
     """90 deg is 90°."""
     return re.sub(r"(?<=\d) deg\b", "°", text)
-
-
-def printed_unit(text: str) -> str:
-    """kg*m^2 is kg·m², also in a heading."""
-    return text.replace("*", "·").replace("^2", "²").replace("^3", "³")

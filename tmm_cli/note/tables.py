@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tmm_cli.note.blocks import Line, Rows
-from tmm_cli.note.context import Subject, printed_unit, with_degrees
+from tmm_cli.note.context import Subject, with_degrees
+from tmm_cli.problem.units import on_paper
 from tmm_cli.results.table import Table
 from tmm_cli.results.terminal import cells
 
@@ -17,8 +18,7 @@ def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", di
     """The same table in the units of the file; columns in which nothing stands are left out."""
     units, every = subject.results.problem.units, range(table.rows)
     columns = [
-        (printed_unit(c.heading(units)), cells(replace(c, digits=digits), units, every), c.dimension)
-        for c in table.columns
+        (on_paper(c.heading(units)), cells(replace(c, digits=digits), units, every), c.dimension) for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
     shown = [

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Hinge, Link, Slide
+from tmm_cli.linkage import FRAME, Hinge, Link, Slide, hinged
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
 from tmm_cli.problem.tree import Path
@@ -28,7 +28,7 @@ class Members:
 
     def hinge(self, link: str, base: str) -> str | None:
         """The point in which two links are hinged."""
-        return next((h.point for h in self.hinges if {link, base} <= set(h.links)), None)
+        return hinged(self.hinges, link, base)
 
     def slide(self, link: str, base: str) -> Slide | None:
         """The sliding pair of two links."""

@@ -7,10 +7,11 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
-from tmm_cli.language import _, spelt
+from tmm_cli.language import ENGLISH, _, language, spelt
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (
@@ -32,6 +33,7 @@ class UnitError(ProblemError):
     """A unit that is not known, or that measures something else."""
 
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LONG: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
 
@@ -239,8 +241,9 @@ class UnitSystem:
         return product_text({self._names[base]: power for base, power in _bases(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
-        """The same for people, as their language spells it."""
-        return spelt(self.symbol(dimension))
+        """The same for people, as their language spells it: N*m, and Н·м in Russian."""
+        unit = self.symbol(dimension)
+        return unit if language() == ENGLISH else on_paper(spelt(unit))
 
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
@@ -253,3 +256,9 @@ class UnitSystem:
 def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:
     powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
     return [(base, power) for base, power in zip((LENGTH, MASS, TIME, ANGLE), powers, strict=True) if power]
+
+
+@cache
+def on_paper(unit: str) -> str:
+    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
+    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")

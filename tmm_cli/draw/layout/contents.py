@@ -12,12 +12,12 @@ from tmm_cli.draw.layout.values import balance_table, forces_table, motion_table
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
-from tmm_cli.draw.sheets.groups import groups
+from tmm_cli.draw.sheets.groups import all_groups
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, detailed, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
-from tmm_cli.draw.sheets.structure import at_sketch, scheme
+from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import N_
 
@@ -69,21 +69,9 @@ def chosen(results: Results, *, every: bool) -> Choice:
     return Choice(results, tuple(plans), detail)
 
 
-def _structure(results: Results) -> Drawn:
-    found = at_sketch(results)
-    if found is not None:
-        yield "structure", scheme(results.problem.title, *found).finish()
-
-
-def _groups(results: Results) -> Drawn:
-    found = at_sketch(results)
-    if found is not None:
-        yield from groups(results.problem.title, *found, results.roles)
-
-
 CONTENTS = (
-    Source(0, _structure, 240),
-    Source(0, _groups, 150),
+    Source(0, whole_scheme, 240),
+    Source(0, all_groups, 150),
     Source(0, synthesised, 200),
     Source(0, structure_tables),
     Source(1, all_positions, 240),

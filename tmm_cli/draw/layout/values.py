@@ -12,12 +12,11 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.layout.tables import table
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.script import Words
-from tmm_cli.draw.paper.sheet import on_paper
 from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,

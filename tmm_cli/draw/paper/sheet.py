@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -21,7 +20,7 @@ from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large
 from tmm_cli.draw.paper.room import Room
 from tmm_cli.language import numeral, spelt
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import Dimension
 from tmm_cli.vectors import unit
 
@@ -34,7 +33,6 @@ COLOURS = {
 GREY_TEXT = "#505050"  # of titles of columns
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Sheet:
@@ -281,11 +279,6 @@ def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """A title of an axis."""
     return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
-
-
-def on_paper(unit: str) -> str:
-    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
-    return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(RAISED), unit).replace("*", "·")
 
 
 def safe(name: str) -> str:

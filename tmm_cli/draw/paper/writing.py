@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from tmm_cli.draw.paper.drawing import Align, Text
-from tmm_cli.draw.paper.fonts import width
+from tmm_cli.draw.paper.fonts import SHARE, width
 
 DARK = "#1a1a1a"
 CUT = "…"
 LEAST = 0.75  # of its size: a text is made that much smaller before it is cut
 GAP = 0.8  # mm between a text and the lines of its cell
 LINE = 1.25  # of the size: from line to line
-CELLS = {"left": 0.0, "center": 0.5, "right": 1.0}
 
 
 def cut(text: str, size: float, room: float, *, bold: bool = False) -> str:
@@ -46,7 +45,7 @@ def written(
     room = (high - low).real - 2 * GAP
     smaller = next((s for s in (size, 0.87 * size, LEAST * size) if _fits(text, s, room, lines, bold)), LEAST * size)
     found = wrap(text, smaller, room, lines, bold=bold)
-    x = low.real + GAP + CELLS[align] * room
+    x = low.real + GAP + SHARE[align] * room
     top = (low + high).imag / 2 + LINE * smaller * (len(found) - 1) / 2
     places = [complex(x, top - LINE * smaller * k) for k in range(len(found))]
     return [Text(at, line, smaller, DARK, align, bold) for at, line in zip(places, found, strict=True)]

@@ -21,7 +21,6 @@ from tmm_cli.draw.paper.sheet import (
     REACTION,
     THIN,
     Sheet,
-    on_paper,
     safe,
     scale_words,
     with_unit,
@@ -31,7 +30,7 @@ from tmm_cli.draw.sheets.over_cycle import Quantities
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,
@@ -93,7 +92,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 def _closely(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
-    turns, sense = _turns(results), results.linkage.driver.sense
+    turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
         return places, []
@@ -109,7 +108,7 @@ def _closely(results: Results) -> tuple[Real, list[int]]:
 
 def _strokes(results: Results) -> list[tuple[float, float, bool]]:
     """Strokes in what is drawn, from position 0 on: start, length (rad), whether it is a working one."""
-    turns, strokes = _turns(results), results.strokes
+    turns, strokes = results.turns, results.strokes
     if not turns or strokes is None:
         return []
     end, found = 2 * np.pi * turns, []
@@ -121,12 +120,6 @@ def _strokes(results: Results) -> list[tuple[float, float, bool]]:
             if high - low > BESIDE:
                 found.append((low, end - low if end - high < BESIDE else high - low, stroke.working))
     return found
-
-
-def _turns(results: Results) -> int:
-    """Of a crank, after which all comes again; 0 where there are none."""
-    reach = results.driver_range
-    return reach.turns if reach is not None and reach.full and results.linkage.driver.kind == "turn" else 0
 
 
 def _turned(results: Results, q: Real) -> Any:
@@ -141,7 +134,7 @@ def _sheet(
 ) -> Drawing:
     assert results.motion is not None
     sheet = Sheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
-    xs, marks, end = _turned(results, motion.q), _turned(results, results.motion.q), 360 * _turns(results)
+    xs, marks, end = _turned(results, motion.q), _turned(results, results.motion.q), 360 * results.turns
     numbers = list(zip(marks.tolist(), map(str, results.numbers), strict=True))
     if end:
         marks = np.mod(marks + BESIDE, end) - BESIDE

@@ -8,12 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.ground import Ground
 from tmm_cli.draw.paper.picture import on_large_sheet
 from tmm_cli.draw.paper.room import snug
 from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet, cells, safe
-from tmm_cli.draw.sheets.structure import Part, counted, parts
+from tmm_cli.draw.sheets.structure import Part, at_sketch, counted, parts
 from tmm_cli.draw.symbols.forms import Form
 from tmm_cli.draw.symbols.parts import FREE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
@@ -30,6 +31,12 @@ A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
 LINE, PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
 WORDS = 110.0  # mm: width of a caption on a large sheet
 STUB = 8.0  # mm of what a lead would be joined to
+
+
+def all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Sheets of the groups at the sketch; none when the linkage cannot be assembled there."""
+    found = at_sketch(results)
+    return () if found is None else groups(results.problem.title, *found, results.roles)
 
 
 def groups(

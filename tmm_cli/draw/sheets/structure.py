@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.labels import extent
 from tmm_cli.draw.paper.picture import on_large_sheet
 from tmm_cli.draw.paper.room import snug
@@ -96,6 +97,13 @@ def _clearness(scenes: Sequence[Scene]) -> Real:
     size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
     gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
     return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
+
+
+def whole_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """The sheet of the scheme at the sketch; none when the linkage cannot be assembled there."""
+    found = at_sketch(results)
+    if found is not None:
+        yield "structure", scheme(results.problem.title, *found).finish()
 
 
 def scheme(title: str, place: str, scene: Scene) -> Sheet:

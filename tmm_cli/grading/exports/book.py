@@ -8,13 +8,14 @@ import unicodedata
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 from typing import Literal
 
 from tmm_cli.grading.readings import factor
 from tmm_cli.grading.record import Mark, StudentMarks
 from tmm_cli.grading.task import Asked, Task
 from tmm_cli.language import N_, _, numeral
+from tmm_cli.problem.units import on_paper
 from tmm_cli.results.files import folder_name
 
 STATES = {
@@ -40,7 +41,7 @@ class Answer:
         size: that of a vector without its direction.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
-        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {_printed(unit or self.unit)}".rstrip()
+        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {on_paper(unit or self.unit)}".rstrip()
         if not self.asked.quantity.vector or size:
             return number
         return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))
@@ -105,11 +106,6 @@ class Gradebook:
 
 
 Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # files by name, piece by piece
-
-
-@cache
-def _printed(unit: str) -> str:
-    return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
 
 
 @lru_cache(maxsize=1024)
