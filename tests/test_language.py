@@ -136,7 +136,8 @@ def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tm
 TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grading/exports")
 TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
     "draw/formats/*", "animate/page.py", "animate/courses.py", "grading/exports/tables_csv.py", "cli/bench/*",
-    "grading/exports/rows.py", "grading/exports/xlsx.py", "note/expression.py", "note/forces/words.py",
+    "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
+    "note/forces/words.py",
 }  # fmt: skip
 
 
