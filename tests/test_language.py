@@ -70,6 +70,17 @@ def test_a_translation_has_the_fields_of_its_message(tongue):
             assert messages.fields(message.string) == messages.fields(message.id), message.id
 
 
+@pytest.mark.parametrize("tongue", messages.FINISHED)
+def test_every_message_is_translated(tongue):
+    assert messages.missing(messages.updated(tongue)) == []  # python -m tests.messages writes them down
+
+
+@pytest.mark.parametrize("tongue", messages.FINISHED)
+def test_a_catalogue_has_no_message_that_is_said_no_more(tongue):
+    here, there = (messages.translations(found) for found in (messages.updated(tongue), messages.catalogue(tongue)))
+    assert set(there) == set(here)
+
+
 @pytest.mark.parametrize("tongue", messages.TRANSLATED)
 def test_what_the_program_reads_is_made_of_the_catalogue(tongue):
     assert messages.read(tongue) == messages.translations(messages.catalogue(tongue))
@@ -125,7 +136,8 @@ def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tm
 TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grading/exports")
 TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
     "draw/formats/*", "animate/page.py", "animate/courses.py", "grading/exports/tables_csv.py", "cli/bench/*",
-    "grading/exports/rows.py", "grading/exports/xlsx.py", "note/expression.py", "note/forces/words.py",
+    "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
+    "note/forces/words.py",
 }  # fmt: skip
 
 
