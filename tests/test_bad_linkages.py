@@ -154,7 +154,7 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, title, description, units, parameters, synthesis, variants, grading, points, guides, links, "
+        "  allowed: tmm, lang, title, description, units, parameters, synthesis, variants, grading, points, guides, links, "
         "driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
         "positions, checks, sheet\n"
         "  did you mean 'gears'?",
