@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -60,10 +61,8 @@ class Run:
             low, high = step.ts[0], step.ts[-1]
             here = (way >= step(low)[0]) & (way <= step(high)[0])
             if here.any():
-                places = way[here]
-                found = roots(
-                    lambda t, step=step, places=places: step(t)[0] - places, low + 0 * places, high + 0 * places
-                )
+                missed = partial(_short_of, step, way[here])
+                found = roots(missed, low + 0 * way[here], high + 0 * way[here])
                 time[here], speed[here] = found, step(found)[1]
         return time, speed
 
@@ -109,6 +108,12 @@ def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: t
         dense_output=True,
         atol=[TOLERANCE * machine.length, TOLERANCE * scale, *[TOLERANCE * energy] * 3],
     )  # fmt: skip
+
+
+def _short_of(step: Any, way: Real, time: Real) -> Real:
+    """How much the way of a step of integration is beyond another one."""
+    found: Real = step(time)[0] - way
+    return found
 
 
 def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: Real) -> Real:

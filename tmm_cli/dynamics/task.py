@@ -49,8 +49,8 @@ class Profile:
 class RunTask:
     """What drives a single run, and from what speed (rad/s, or m/s).
 
-    first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for. motor: by
-    its characteristic; drive: a profile, with it or alone. brake: moment against the motion; flywheel: kg m2, or kg.
+    first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for.
+    motor: by its characteristic; drive: a profile, with it or alone. brake: moment against the motion; flywheel: kg m2, or kg.
     longest: time of a run (s).
     """
 
