@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -28,6 +28,7 @@ class SteadyTask:
     motor: Motor | None = None
     flywheel: float = 0.0
     ratio: float = 1.0
+    cyclic: ClassVar[Literal[True]] = True
     size: Size = field(default_factory=partial(Disk, 7800.0, 0.2))
 
 
@@ -50,8 +51,8 @@ class RunTask:
     """What drives a single run, and from what speed (rad/s, or m/s).
 
     first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for.
-    motor: by its characteristic; drive: a profile, with it or alone. brake: moment against the motion; flywheel: kg m2, or kg.
-    longest: time of a run (s).
+    motor: by its characteristic; drive: a profile, with it or alone. brake: moment against the motion.
+    flywheel: kg m2, or kg. longest: time of a run (s).
     """
 
     speed: float = 0.0
@@ -62,6 +63,7 @@ class RunTask:
     first: float | None = None
     last: float | None = None
     longest: float = 3600.0
+    cyclic: ClassVar[Literal[False]] = False
 
     @property
     def edges(self) -> tuple[float, ...]:
