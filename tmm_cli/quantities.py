@@ -111,8 +111,6 @@ KINDS: Final[Mapping[str, Kind]] = {
     "force": Kind(FORCE, "N", "1500 N or 1.5 kN"),
     "moment of force": Kind(MOMENT, "N*m", "20 N*m"),
     "moment of inertia": Kind(INERTIA, "kg*m^2", "1.1 kg*m^2"),
-    "area": Kind(AREA, "mm^2", "5000 mm^2"),
-    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
     "speed": Kind(SPEED, "m/s", "0.2 m/s"),
     "acceleration": Kind(ACCELERATION, "m/s^2", "3 m/s^2"),
     "angular speed": Kind(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
@@ -121,6 +119,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
 }
 
 
