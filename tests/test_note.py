@@ -19,7 +19,7 @@ from models import PROBLEMS
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Found, Heading, Note
+from tmm_cli.note.blocks import Found, Heading
 from tmm_cli.note.expression import Sum
 from tmm_cli.note.formats.html import html
 from tmm_cli.quantities import KINDS
