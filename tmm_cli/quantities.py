@@ -91,6 +91,8 @@ MASS: Final = Dimension(mass=1)
 FORCE: Final = Dimension(1, 1, -2)
 MOMENT: Final = Dimension(2, 1, -2)
 INERTIA: Final = Dimension(2, 1)
+AREA: Final = Dimension(2)
+PRESSURE: Final = Dimension(-1, 1, -2)
 SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
@@ -117,6 +119,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
 }
 
 

@@ -23,6 +23,7 @@ from tmm_cli.quantities import (
     MASS,
     MOMENT,
     NUMBER,
+    PRESSURE,
     TIME,
     Dimension,
     product_text,
@@ -103,6 +104,10 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("Nm Нм", MOMENT, "1"),
     ("kNm кНм", MOMENT, "1000"),
     ("Nmm Нмм", MOMENT, "1/1000"),
+    ("Pa Па", PRESSURE, "1"),
+    ("kPa кПа", PRESSURE, "1000"),
+    ("MPa МПа", PRESSURE, "1000000"),
+    ("bar бар", PRESSURE, "100000"),
     ("%", NUMBER, "1/100"),
 )
 SYMBOLS: Final[Mapping[str, Unit]] = {
