@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.analysis.jumps import jumps
 from tmm_cli.double_double import rounded
 from tmm_cli.dynamics.reduced import Reduced, reduced
 from tmm_cli.dynamics.steady import Steady, steady
@@ -38,25 +38,8 @@ def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
         found = energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
         return found.inertia, sense * found.slope, sense * found.moment
 
-    inner = np.mod(sense * (np.array([*_jumps(mechanism)]) - start), length)
+    inner = np.mod(sense * (np.array([*jumps(mechanism)]) - start), length)
     return reduced(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
-
-
-def _jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Places of the driver (rad) where loads jump, or bend: ends of strokes, rows of tables by the crank."""
-    linkage = mechanism.linkage
-    sense, turn = linkage.driver.sense, 2 * np.pi
-    turns = mechanism.driver_range.turns
-    strokes = mechanism.strokes.strokes if mechanism.strokes else ()
-    first = strokes[0].start if strokes else linkage.sketch.at
-    for stroke in strokes:
-        yield from (stroke.start, stroke.start + sense * stroke.length)
-    for load in linkage.loads:
-        if load.table is not None and load.table.against != "stroke":
-            begin = 0.0 if load.table.against == "crank angle" else first
-            way = 1 if load.table.against == "crank angle" else sense
-            for row in (*load.table.arguments, 0.0):
-                yield from (begin + way * row + turn * k for k in range(turns))
 
 
 @dataclass(frozen=True)
