@@ -135,6 +135,13 @@ def test_newton_at_a_tight_tolerance_says_that_it_does_not_converge():
     assert all(row.wrong == 0 for row in found) and found[-1].said == found[-1].scenes
 
 
+def test_a_plan_has_letters_at_all_ends_where_rounding_parts_them():
+    at = near("dead-position", "1e-15")
+    with np.errstate(all="ignore"):
+        answers = METHODS["board-0.25"].prepare(Case.of(at.scene.linkage))(np.array([at.scene.q]))
+    assert isinstance(answers, Answers)
+
+
 @pytest.mark.parametrize("family", ["dead-position", "short-rod", "inner-tangent"])
 def test_differencing_lies_as_soon_as_its_step_is_no_longer_short(family):
     found = rows(family, "differences-4", reduced=False)

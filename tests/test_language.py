@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from gettext import NullTranslations
 from pathlib import Path
 
@@ -17,6 +18,10 @@ from tmm_cli.cli.reporting import bounds_of
 from tmm_cli.cli.talk import speaking
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, spoken, translated
 from tmm_cli.results.output import write_results
+
+
+def parsed(file: Path) -> ast.AST:
+    return ast.parse(file.read_text(encoding="utf-8"))
 
 
 def said_at_import(tree: ast.AST) -> Iterator[int]:
@@ -34,7 +39,11 @@ def said_at_import(tree: ast.AST) -> Iterator[int]:
 
 def test_no_sentence_is_said_when_a_module_is_imported():
     # who will read it is not known yet: it is marked N_() there, and said where it is used
-    found = [(file.name, line) for file in messages.sources() for line in said_at_import(ast.parse(file.read_text()))]
+    found = [
+        (file.name, line)
+        for file in messages.sources()
+        for line in said_at_import(ast.parse(file.read_text(encoding="utf-8")))
+    ]
     assert found == []
 
 
@@ -59,6 +68,17 @@ def test_a_translation_has_the_fields_of_its_message(tongue):
     for message in messages.catalogue(tongue):
         if message.id and message.string:
             assert messages.fields(message.string) == messages.fields(message.id), message.id
+
+
+@pytest.mark.parametrize("tongue", messages.FINISHED)
+def test_every_message_is_translated(tongue):
+    assert messages.missing(messages.updated(tongue)) == []  # python -m tests.messages writes them down
+
+
+@pytest.mark.parametrize("tongue", messages.FINISHED)
+def test_a_catalogue_has_no_message_that_is_said_no_more(tongue):
+    here, there = (messages.translations(found) for found in (messages.updated(tongue), messages.catalogue(tongue)))
+    assert set(there) == set(here)
 
 
 @pytest.mark.parametrize("tongue", messages.TRANSLATED)
@@ -111,3 +131,32 @@ def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tm
             speaking(lambda files=files: each(files, work))(lang=asked)
     assert heard == ["ru", "en", "sr"]
     assert language() == "en"
+
+
+TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grading/exports")
+TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
+    "draw/formats/*", "animate/page.py", "animate/courses.py", "grading/exports/tables_csv.py", "cli/bench/*",
+    "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
+    "note/forces/words.py",
+}  # fmt: skip
+
+
+def decimals(tree: ast.AST) -> Iterator[int]:
+    """Lines that format a number with decimals: `{value:.4g}`; not where it is made a number again."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("float", "numeral"):
+            continue
+        if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
+            form = "".join(part.value for part in node.format_spec.values if isinstance(part, ast.Constant))
+            if re.search(r"\.(?!0f)\d*[gfe]$", form):
+                yield node.lineno
+        yield from decimals(node)
+
+
+def test_numbers_for_people_have_the_decimal_mark_of_their_language():
+    found = {}
+    for file in messages.sources():
+        name = file.relative_to(messages.PACKAGE).as_posix()
+        if name.startswith(TO_PEOPLE) and not any(fnmatch(name, known) for known in TO_MACHINES):
+            found |= {f"{name}:{line}": line for line in decimals(parsed(file))}
+    assert not found  # numeral(value, ".4g") writes them

@@ -72,6 +72,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
     "grading.tables": "an extra: xlsxwriter",
+    "results.for_people": "an extra: xlsxwriter",
     "grading.exports.xlsx": "an extra: xlsxwriter",
     "grading.submissions.template": "an extra: xlsxwriter",
 }

@@ -91,12 +91,12 @@ MASS: Final = Dimension(mass=1)
 FORCE: Final = Dimension(1, 1, -2)
 MOMENT: Final = Dimension(2, 1, -2)
 INERTIA: Final = Dimension(2, 1)
+AREA: Final = Dimension(2)
+PRESSURE: Final = Dimension(-1, 1, -2)
 SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
 ANGULAR_ACCELERATION: Final = Dimension(0, 0, -2, 1)
-PRESSURE: Final = Dimension(-1, 1, -2)
-AREA: Final = Dimension(length=2)
 STIFFNESS: Final = Dimension(0, 1, -2)
 TORSION: Final = Dimension(2, 1, -2, -1)
 DAMPING: Final = Dimension(0, 1, -1)
@@ -111,7 +111,6 @@ KINDS: Final[Mapping[str, Kind]] = {
     "force": Kind(FORCE, "N", "1500 N or 1.5 kN"),
     "moment of force": Kind(MOMENT, "N*m", "20 N*m"),
     "moment of inertia": Kind(INERTIA, "kg*m^2", "1.1 kg*m^2"),
-    "pressure": Kind(PRESSURE, "MPa", "0.6 MPa or 6 bar"),
     "speed": Kind(SPEED, "m/s", "0.2 m/s"),
     "acceleration": Kind(ACCELERATION, "m/s^2", "3 m/s^2"),
     "angular speed": Kind(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
@@ -120,6 +119,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
 }
 
 

@@ -17,6 +17,7 @@ from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.language import _, language, spoken
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import folder_name
+from tmm_cli.results.for_people import Kind
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
@@ -44,6 +45,11 @@ Variant = Annotated[
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
+]
+
+Tables = Annotated[
+    Kind | None,
+    typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
 ]
 
 

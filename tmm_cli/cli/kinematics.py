@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.assembly.enumerate import listed
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Variants, WithDigits, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
@@ -36,6 +36,7 @@ def kinematics(
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
+    tables: Tables = None,
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
@@ -46,9 +47,8 @@ def kinematics(
 
         if assemblies:
             return _list_assemblies(file, as_json, out, position, own)
-        return report(
-            solve(opened(file, own, position, digits), "kinematics", position, asked), names, as_json, out, digits
-        )
+        results = solve(opened(file, own, position, digits), "kinematics", position, asked)
+        return report(results, names, as_json, out, digits, tables)
 
     each(files, work, as_json=as_json, out=out)
 

@@ -20,6 +20,7 @@ from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.digits import AccuracyReport, accuracy, beside
 from tmm_cli.results.files import Staged, folder_name, listed
+from tmm_cli.results.for_people import Kind
 from tmm_cli.results.output import Written, write_results
 from tmm_cli.results.reports import walk
 from tmm_cli.results.table import Table
@@ -73,11 +74,12 @@ def bounds_of(results: Results | ChainResults, digits: bool, shown: Collection[s
 
 
 def report(
-    results: Results | ChainResults, names: Collection[str], as_json: bool, out: Path | None, digits: bool = False
-) -> int:
+    results: Results | ChainResults, names: Collection[str], as_json: bool, out: Path | None, digits: bool = False,
+    people: Kind | None = None,
+) -> int:  # fmt: skip
     """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
 
-    digits: show bounds and sensitivities beside the values.
+    digits: show bounds and sensitivities beside the values; people: write tables for spreadsheets too.
     """
     found = bounds_of(results, digits, () if as_json or out is not None else names)
     if as_json:
@@ -85,7 +87,7 @@ def report(
     else:
         show(results, names, found)
     if out is not None:
-        say_written(write_results(results, out, digits=found))
+        say_written(write_results(results, out, digits=found, people=people))
     for warning in warnings(results):
         say(_("warning: {warning}").format(warning=warning))
     return checked(results)

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.cli.common import Files, Json, Position, Settings, Variant, Variants, WithDigits, each
+from tmm_cli.cli.common import Files, Json, Position, Settings, Tables, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
 from tmm_cli.cli.talk import say
@@ -30,6 +30,7 @@ def run(
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
+    tables: Tables = None,
     drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
 ) -> None:
     """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
@@ -44,7 +45,7 @@ def run(
 
             pictures = drawn(results, say, partial(by_all_cores, quiet=len(files) > 1))
         found = bounds_of(results, digits)
-        written = write_results(results, out, pictures, found)
+        written = write_results(results, out, pictures, found, tables)
         if as_json:
             emit_results(results, found)
         elif len(files) == 1:

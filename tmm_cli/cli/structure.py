@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.cli.common import Files, Json, Out, Settings, Variant, Variants, each
+from tmm_cli.cli.common import Files, Json, Out, Settings, Tables, Variant, Variants, each
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
@@ -31,6 +31,7 @@ def structure(
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
+    tables: Tables = None,
 ) -> None:
     """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
     names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
@@ -39,7 +40,7 @@ def structure(
         own = variant_settings(file, variants, variant, settings)
         results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:
-            return report(results, names, as_json, out)
+            return report(results, names, as_json, out, people=tables)
         from tmm_cli.draw import files as drawn
 
         code = report(results, names, as_json, None)

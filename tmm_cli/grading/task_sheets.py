@@ -17,7 +17,7 @@ from tmm_cli.errors import LinkageError
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.task import Asked, Task
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.library import structure_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -158,7 +158,9 @@ def _told(table: Table) -> Table:
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
     kept = [row for row in rows if row[0] in (_("driver"), _("gravity"), _("positions"))]
-    return table_of_words(table.name, _("Driver, positions"), [column.header for column in table.columns], kept)
+    return table_of_words(
+        table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept
+    )
 
 
 def _measures(task: Task) -> dict[str, Dimension | None]:
@@ -219,7 +221,7 @@ def _markdown(title: str, student: str, picture: str, tables: Iterable[Table]) -
     if picture:
         parts.append(f"![{plain(_('scheme'))}](<{picture}>)")
     for table in tables:
-        rows = [[plain(column.header) for column in table.columns], ["---"] * len(table.columns)]
+        rows = [[plain(translated(column.header)) for column in table.columns], ["---"] * len(table.columns)]
         rows += [[plain(str(cell)) for cell in row] for row in zip(*(c.values for c in table.columns), strict=True)]
         parts += [f"## {plain(table.title)}", "\n".join(f"| {' | '.join(row)} |" for row in rows)]
         parts += map(plain, table.notes)
@@ -234,7 +236,7 @@ def _page(title: str, student: str, picture: bytes | None, tables: Iterable[Tabl
             f'<img alt="{escape(_("scheme"))}" src="data:image/png;base64,{base64.b64encode(picture).decode()}">'
         )
     for table in tables:
-        head = "".join(f"<th>{escape(column.header)}</th>" for column in table.columns)
+        head = "".join(f"<th>{escape(translated(column.header))}</th>" for column in table.columns)
         rows = "\n".join(
             "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>"
             for row in zip(*(column.values for column in table.columns), strict=True)

@@ -87,10 +87,10 @@ def _corners(pairs: Sequence[Pair], ends: Mapping[str, complex], least: float) -
 
 
 def _segment(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
-    """The letters of a vector's ends; nothing where it is zero."""
+    """The letters of a vector's ends, of the nearest places: near a dead position rounding parts them; nothing where
+    it is zero."""
     if abs(vector.value) <= least:
         return ""
     return "".join(
-        next(letter for letter, place in lettered.items() if abs(place - end) <= least)
-        for end in (vector.start, vector.end)
+        min(lettered, key=lambda letter: max(abs(lettered[letter] - end), least)) for end in (vector.start, vector.end)
     )

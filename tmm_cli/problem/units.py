@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
-from tmm_cli.language import _, spelt
+from tmm_cli.language import ENGLISH, _, language, spelt
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (
@@ -101,13 +101,13 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("N Н", FORCE, "1"),
     ("kN кН", FORCE, "1000"),
     ("MN МН", FORCE, "1000000"),
+    ("Nm Нм", MOMENT, "1"),
+    ("kNm кНм", MOMENT, "1000"),
+    ("Nmm Нмм", MOMENT, "1/1000"),
     ("Pa Па", PRESSURE, "1"),
     ("kPa кПа", PRESSURE, "1000"),
     ("MPa МПа", PRESSURE, "1000000"),
     ("bar бар", PRESSURE, "100000"),
-    ("Nm Нм", MOMENT, "1"),
-    ("kNm кНм", MOMENT, "1000"),
-    ("Nmm Нмм", MOMENT, "1/1000"),
     ("%", NUMBER, "1/100"),
 )
 SYMBOLS: Final[Mapping[str, Unit]] = {
@@ -246,8 +246,9 @@ class UnitSystem:
         return product_text({self._names[base]: power for base, power in _bases(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
-        """The same for people, as their language spells it."""
-        return spelt(self.symbol(dimension))
+        """The same for people, as their language spells it: N*m, and Н·м in Russian."""
+        unit = self.symbol(dimension)
+        return unit if language() == ENGLISH else on_paper(spelt(unit))
 
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""

@@ -174,7 +174,7 @@ def listed(folder: Path) -> set[str]:
         names = json.loads(end[end.rindex('"files": [') + len('"files": ') :].rstrip().removesuffix("}"))
     except (OSError, ValueError, RecursionError):
         return set()
-    return {n for n in names if isinstance(n, str) and re.fullmatch(r"\w[\w(),-]*\.(csv|png|svg)", n)}
+    return {n for n in names if isinstance(n, str) and re.fullmatch(r"\w[\w(),-]*\.(csv|png|svg|xlsx)", n)}
 
 
 def held(folder: Path) -> str | None:

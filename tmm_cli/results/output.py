@@ -13,7 +13,9 @@ from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.digits import AccuracyReport
 from tmm_cli.results.files import Staged, folder_of
+from tmm_cli.results.for_people import Kind, files
 from tmm_cli.results.reports import walk
+from tmm_cli.results.table import Table
 from tmm_cli.results.text import csv_text, json_text
 
 NAMED = 6  # positions that stand in the name of a folder; of more of them the first and the last
@@ -45,24 +47,29 @@ class Written(NamedTuple):
 
 def write_results(
     results: Results | ChainResults, out: Path, drawings: Iterable[tuple[str, bytes]] | None = None,
-    digits: AccuracyReport | None = None,
+    digits: AccuracyReport | None = None, people: Kind | None = None,
 ) -> Written:  # fmt: skip
     """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
 
     Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
-    an interruption before the end leaves the old one as it was.
+    an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too.
     """
     part = part_of(results, drawings is not None)
     folder, kept = folder_of(out, results.problem.name, part)
-    shown = walk(results) if digits is None else digits.with_bounds(walk(results))
+
+    def tables() -> Iterable[Table]:
+        return walk(results) if digits is None else digits.with_bounds(walk(results))
+
     with Staged(folder) as staged:
         with spoken(ENGLISH):
-            for table in shown:
+            for table in tables():
                 staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
+        for name, content in files(people, tables(), results.problem.units) if people else ():
+            staged.write(name, content)
         for name, picture in drawings or ():
             staged.write(name, (picture,))
         names = sorted(staged.names)
-        content = sections(results, None if digits is None else digits.json())
+        parts = sections(results, None if digits is None else digits.json())
         with spoken(ENGLISH):
-            staged.write("result.json", json_text(chain(content, [("part", part)] if part else [], [("files", names)])))
+            staged.write("result.json", json_text(chain(parts, [("part", part)] if part else [], [("files", names)])))
     return Written(folder, staged.removed, kept)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from rich import box
@@ -26,17 +26,23 @@ def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
     """Words as they are, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
         return [str(column.values[k]) for k in rows]
-    values, figures = column.numbers(units), column.true_figures(units)
-    if figures is None:
+    values, count = column.numbers(units), figures(column, units)
+    return [_number(float(values[k]), int(count[k])) for k in rows]
+
+
+def figures(column: Column, units: UnitSystem) -> Any:
+    """How many figures of each number are worth printing: 0 of what is only rounding, -1 where there is none."""
+    values, found = column.numbers(units), column.true_figures(units)
+    if found is None:
         nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
-        figures = np.where(np.abs(values) <= nothing, 0, np.where(np.isfinite(values), 17, -1))
-    return [_number(float(values[k]), min(column.digits, int(figures[k]))) for k in rows]
+        found = np.where(np.abs(values) <= nothing, 0, 17)
+    return np.where(np.isfinite(values), np.minimum(found, column.digits), -1)
 
 
-def _number(value: float, figures: int) -> str:
-    if figures < 0 or not math.isfinite(value):
+def _number(value: float, count: int) -> str:
+    if count < 0:
         return "-"
-    return numeral(value, f".{figures}g") if figures else "0"
+    return numeral(value, f".{count}g") if count else "0"
 
 
 def show(

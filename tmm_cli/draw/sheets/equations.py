@@ -121,7 +121,7 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
 def figure(value: float) -> str:
     """A number with four figures, without powers of ten as far as people write it so."""
     rounded = float(f"{value:.4g}")
-    if "e-" not in f"{rounded:.4g}":
+    if not 0 < abs(rounded) < 1e-4:  # no power of ten
         return numeral(rounded, ".10g")
     places = len(np.format_float_positional(rounded).partition(".")[2])
     return numeral(rounded, f".{places}f" if abs(value) > PLAIN else ".4g")

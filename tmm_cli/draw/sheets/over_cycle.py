@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import angle, followers, named
-from tmm_cli.language import _
+from tmm_cli.language import _, translated
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import balance_name, reaction_name
 from tmm_cli.quantities import (
@@ -63,7 +63,7 @@ def output(results: Results, motion: Motion, link: str) -> list[Quantities]:
         if dimension == ANGLE:
             values = np.unwrap(values)
             points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
-        found.append(Quantities(name, dimension, [Course("", values, points)]))
+        found.append(Quantities(translated(name), dimension, [Course("", values, points)]))
     return found
 
 

@@ -14,7 +14,7 @@ from typing import Literal
 from tmm_cli.grading.readings import factor
 from tmm_cli.grading.record import Mark, StudentMarks
 from tmm_cli.grading.task import Asked, Task
-from tmm_cli.language import N_, _, numeral
+from tmm_cli.language import N_, _, numeral, spelt
 from tmm_cli.problem.units import on_paper
 from tmm_cli.results.files import folder_name
 
@@ -41,7 +41,7 @@ class Answer:
         size: that of a vector without its direction.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
-        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {on_paper(unit or self.unit)}".rstrip()
+        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {on_paper(spelt(unit or self.unit))}".rstrip()
         if not self.asked.quantity.vector or size:
             return number
         return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))
@@ -110,8 +110,8 @@ Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # f
 
 @lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
-    """Points as people write them: 4, 3.5."""
-    return numeral(rounded(points), ".10g")
+    """Points in a file: 4, 3.5."""
+    return f"{rounded(points):.10g}"
 
 
 def rounded(points: float) -> float:

@@ -6,10 +6,10 @@ import cmath
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, points_text, share_text
+from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, rounded, share_text
 from tmm_cli.grading.record import Mark, State, StudentMarks
 from tmm_cli.grading.shown import sentence, shown
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, numeral
 
 WIDENED = 1.05  # times the usual error: less more is not worth telling
 UNSAID = "†"  # marks answers without a unit
@@ -64,13 +64,17 @@ def _unsaid() -> str:
 
 def _total(student: StudentMarks) -> str:
     share = percent(student)
-    points = _("{points} of {of} points").format(points=points_text(student.points), of=points_text(student.of))
-    return points if share is None else f"{points} ({share:g} %)"
+    points = _("{points} of {of} points").format(points=_points(student.points), of=_points(student.of))
+    return points if share is None else f"{points} ({numeral(share, 'g')} %)"
+
+
+def _points(points: float) -> str:
+    return numeral(rounded(points), ".10g")
 
 
 def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
     right = (answer.text(mark.right) if mark.judged else "-",) if reveal else ()
-    points = f"{points_text(mark.points)} / {points_text(mark.of)}"
+    points = f"{_points(mark.points)} / {_points(mark.of)}"
     return (answer.name, written(answer, mark), *right, _error(answer, mark), _allowed(answer, mark), points,
             _(STATES[mark.state]))  # fmt: skip
 
