@@ -209,6 +209,12 @@ def test_what_was_understood_of_loads_is_told():
         ("loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
          "x.yaml:12:9: loads.f: one part of this load resists a motion, the other does not\n"
          "  found:   both\n  allowed: two loads"),
+        ("loads: {f: {on: 3, force: [-9, 0]}}\nfriction: {coefficient: 0.1}\ndynamics: {delta: 1/30}",
+         "x.yaml:13:1: friction: a law of motion is not found where forces hang on reactions or on speeds\n"
+         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
+        ("springs: {s: {between: [0, 3], rate: 1, free: 9, damping: 3}}\ndynamics: {delta: 1/30}",
+         "x.yaml:12:50: springs.s.damping: a law of motion is not found where forces hang on reactions or on speeds\n"
+         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
         ("masses: {2: {inertia: 1, points: []}}",
          "x.yaml:12:10: masses.2: one of these keys is wanted\n  allowed: mass, weight"),
     ],

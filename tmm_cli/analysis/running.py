@@ -11,7 +11,7 @@ from tmm_cli.analysis.jumps import jumps
 from tmm_cli.double_double import rounded
 from tmm_cli.dynamics.reduced import Reduced, reduced
 from tmm_cli.dynamics.steady import Steady, steady
-from tmm_cli.errors import NoCycleError
+from tmm_cli.errors import BySpeedError, NoCycleError
 from tmm_cli.forces.energy import energy
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 
 def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
-    """Over a cycle from the driver's place `start` on (rad), by the way in its sense. Raises NoCycleError."""
+    """Over a cycle from the driver's place `start` on (rad), by the way in its sense.
+
+    Raises NoCycleError, BySpeedError.
+    """
     linkage, whole = mechanism.linkage, mechanism.driver_range
     if linkage.driver.kind != "turn" or not whole.full:
         raise NoCycleError
@@ -33,10 +36,16 @@ def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
 
 
 def reduced_between(mechanism: Mechanism, start: float, sense: int, length: float) -> Reduced:
-    """Over a way of this length (rad, or m) of the driver from `start` on, in a sense. Raises NoCycleError."""
+    """Over a way of this length (rad, or m) of the driver from `start` on, in a sense.
+
+    Raises NoCycleError, BySpeedError.
+    """
     linkage = mechanism.linkage
     if linkage.others:
         raise NoCycleError
+    damped = [spring.name for spring in linkage.springs if spring.damping]
+    if linkage.friction or damped:
+        raise BySpeedError(("springs", damped[0], "damping") if damped else ("friction",))
     strokes = mechanism.strokes if any(x.working_stroke_only or x.table for x in linkage.loads) else None
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
@@ -84,6 +93,6 @@ class Running:
 def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
     """Of a mechanism with its loads, from the driver's place `start` on (rad).
 
-    Raises NoCycleError, StandstillError, NoFlywheelError.
+    Raises NoCycleError, BySpeedError, StandstillError, NoFlywheelError.
     """
     return Running(steady(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import reduce
 
 import numpy as np
 
@@ -67,7 +68,7 @@ def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
     spin = sense * (first.w - turn)
     if motion.order > 1:
         second, own = motion.second[load.link], motion.second[base]
-        reach = max((kernel.size for kernel in motion.kernels), default=1.0)
+        reach = reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
         gain = second.at(arm, first.w) - own.at(other, turn)
         velocity = np.where(np.abs(velocity) > SETS_OFF * reach, velocity, gain)
         spin = np.where(np.abs(spin) > SETS_OFF, spin, second.e - own.e)
