@@ -43,7 +43,7 @@ def _links(subject: Subject) -> Rows:
         for name in subject.results.structure.links
     ]
     rows = tuple(tuple(line(text) for text in row) for row in told)
-    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("points")))
+    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("its points")))
     return Rows(_("Moving links"), head, rows, "links")
 
 
