@@ -115,5 +115,5 @@ def figures(text: str, language: str) -> str:
 
 
 def with_degrees(text: str) -> str:
-    """90 deg is 90°."""
-    return re.sub(r"(?<=\d) deg\b", "°", text)
+    """90 deg is 90°, in every language."""
+    return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text)

@@ -43,7 +43,7 @@ def _links(subject: Subject) -> Rows:
         for name in subject.results.structure.links
     ]
     rows = tuple(tuple(line(text) for text in row) for row in told)
-    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("its points")))
+    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("points")))
     return Rows(_("Moving links"), head, rows, "links")
 
 
@@ -118,8 +118,8 @@ def _groups(subject: Subject) -> Iterable[Block]:
         )
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
-    text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
-    yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+    text = _("The class of a mechanism is the highest of its groups' classes {source}; it is of class {number}.")
+    yield said(text, source=Link("frolov"), number=ROMAN[min(structure.mechanism_class, 10)])
     yield from _apart(subject)
 
 

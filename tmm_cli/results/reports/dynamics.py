@@ -3,26 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.running import Running
 from tmm_cli.dynamics.sizes import Disk
 from tmm_cli.dynamics.steady import Steady
-from tmm_cli.language import N_, _
-from tmm_cli.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension
+from tmm_cli.language import N_, _, numeral
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+)  # fmt: skip
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.reports.quality import of_rows
 from tmm_cli.results.table import Column, Table
 
+if TYPE_CHECKING:
+    from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
+
 Row = tuple[str, Any, Dimension]
+STEPS = 25  # of a single run, that are shown
 
 
 def tables(results: Results) -> Iterable[Table]:
     """What was found, then the law of motion."""
-    assert results.running is not None
-    steady = results.running.steady
+    running = results.running
+    assert running is not None
+    if not isinstance(running, Running):
+        yield from _single(results, running)
+        return
+    steady = running.steady
     yield Table("dynamics", _("Steady running"), of_rows([*_driving(steady), *_flywheel(steady)], results))
     if results.motion is not None:
         yield _law(results)
@@ -61,7 +82,7 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
 
 def _law(results: Results) -> Table:
     motion, running = results.motion, results.running
-    assert motion is not None and running is not None
+    assert motion is not None and isinstance(running, Running)
     way = running.way(motion.q)
     work = running.steady.law.energy(way) - running.steady.law.energy(0 * way)
     driving = running.sense * running.steady.law.driving(way)
@@ -74,5 +95,41 @@ def _law(results: Results) -> Table:
             Column(N_("epsilon"), motion.acceleration, ANGULAR_ACCELERATION),
             Column(N_("driving moment"), driving, MOMENT),
             Column(N_("work of all moments, J"), work, NUMBER),
+        ),
+    )  # fmt: skip
+
+
+def _single(results: Results, single: SingleRun) -> Iterable[Table]:
+    """A single run: its sums, and as many of its steps as one reads."""
+    run, turns = single.run, results.linkage.driver.kind == "turn"
+    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": _("the time is over")}
+    place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
+    rows: list[Row] = [
+        (_("begins at"), single.first, place),
+        (_("ends at"), single.first + single.sense * run.way[-1], place),
+        (_("lasts, s"), run.time[-1], NUMBER),
+        (_("speed at its end"), run.speed[-1], speed),
+        (_("work of what drives, J"), run.driven[-1], NUMBER),
+        (_("work of the loads, J"), run.loaded[-1], NUMBER),
+        (_("work of the brake, J"), run.braked[-1], NUMBER),
+        (_("kinetic energy at the beginning, J"), run.kinetic[0], NUMBER),
+        (_("kinetic energy at the end, J"), run.kinetic[-1], NUMBER),
+    ]
+    balance = _("what works and energies leave of one another: {share} of the largest").format(
+        share=numeral(run.balance, ".1g")
+    )
+    note = _("the run ends: {why}").format(why=endings[run.ending])
+    yield Table("dynamics", _("Single run"), of_rows(rows, results), notes=(note, balance))
+    at = single.evenly(STEPS)
+    rate = single.speed(at)
+    acceleration = ANGULAR_ACCELERATION if turns else ACCELERATION
+    yield Table(
+        "law-of-motion", _("Law of motion of the driver"),
+        (
+            Column(N_("t, s"), single.time(at), NUMBER),
+            Column(N_("driver"), at, place),
+            Column(N_("speed"), rate, speed),
+            Column(N_("acceleration"), single.accelerated(at), acceleration),
+            Column(N_("kinetic energy, J"), single.kinetic(at), NUMBER),
         ),
     )  # fmt: skip

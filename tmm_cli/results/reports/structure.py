@@ -60,7 +60,7 @@ def tables(results: Results) -> Iterable[Table]:
     links, roles = [linkage.links[name] for name in structure.links], results.roles
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
-        "links", _("Links"), (_("link"), _("is a"), _("called"), _("its points")),
+        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points")),
         [(x.name, _(ROLES[roles[x.name]]), x.label, ", ".join(x.points)) for x in links],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
