@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.draw.paper import script
+from tmm_cli.draw.paper import fonts, script
 from tmm_cli.draw.paper.blocks import Block, Row, nearest_free, roomiest
 from tmm_cli.draw.paper.boxes import about, outside, row, wider
 from tmm_cli.draw.paper.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
@@ -67,8 +67,11 @@ class Sheet:
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
-        self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
-        self.text(complex(MARGIN, height - MARGIN - 8), self.caption[:120], 9, colour="#404040")
+        title, caption, room = title[:90], self.caption[:120], (width - 2 * MARGIN) / POINT
+        bold = min(12.0, room / (fonts.width(title, 1, bold=True) or 1.0))
+        self.text(complex(MARGIN, height - MARGIN - 2), title, bold, weight="bold")
+        plain = min(9.0, room / (fonts.width(caption, 1) or 1.0))
+        self.text(complex(MARGIN, height - MARGIN - 8), caption, plain, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
