@@ -67,7 +67,6 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "cli.synthesis_report": "drawing",
     "grading.exports.group": "drawing",
     "note.formats": "an extra: python-docx",
-    "draw.formats.pdf": "matplotlib's PDF",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
     "grading.tables": "an extra: xlsxwriter",
