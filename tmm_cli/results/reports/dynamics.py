@@ -11,7 +11,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.running import Running
 from tmm_cli.dynamics.sizes import Disk
 from tmm_cli.dynamics.steady import Steady
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, numeral
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,
@@ -116,7 +116,7 @@ def _single(results: Results, single: SingleRun) -> Iterable[Table]:
         (_("kinetic energy at the end, J"), run.kinetic[-1], NUMBER),
     ]
     balance = _("what works and energies leave of one another: {share} of the largest").format(
-        share=f"{run.balance:.1g}"
+        share=numeral(run.balance, ".1g")
     )
     note = _("the run ends: {why}").format(why=endings[run.ending])
     yield Table("dynamics", _("Single run"), of_rows(rows, results), notes=(note, balance))
