@@ -49,7 +49,7 @@ def _tables(path: str) -> dict[str, bytes]:
     return {name.decode("latin-1"): data[start : start + length] for name, start, length in entries}
 
 
-def _parts(shape: bytes) -> Iterator[int]:
+def _parts(shape: bytearray) -> Iterator[int]:
     """Where a composite glyph says the numbers of its parts."""
     if len(shape) < 10 or shape[0] < 0x80:  # its number of contours is not negative
         return
