@@ -21,6 +21,7 @@ TOP = {
     "__main__",
     "library",
     "linkage",
+    "interpolation",
     "vectors",
     "roots",
     "errors",

@@ -120,6 +120,14 @@ class OutOfRangeError(LinkageError):
         self.start, self.end = start, end
 
 
+class BySpeedError(LinkageError):
+    """A law of motion is wanted where what acts hangs on it in more than the inertia; path: of it in the file."""
+
+    def __init__(self, path: tuple[str, ...]) -> None:
+        super().__init__(".".join(path))
+        self.path = path
+
+
 class StandstillError(LinkageError):
     """The machine comes to rest at the way `place` of its cycle (rad): its energy is used up there."""
 

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from tmm_cli.errors import (
     AmbiguousSketchError,
     AssemblyError,
+    BySpeedError,
     GroupTooLargeError,
     LinkageError,
     MissingStrokesError,
@@ -127,6 +128,11 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             return ProblemError(
                 _("the run goes where the driver does not come"), path=("dynamics", "run"), key=True,
                 allowed=_("{first} to {last}").format(first=shown(first), last=shown(last)),
+            )  # fmt: skip
+        case BySpeedError(path=path):
+            return ProblemError(
+                _("a law of motion is not found where forces hang on reactions or on speeds"), path=path, key=True,
+                allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
             )  # fmt: skip
         case StandstillError() if problem.dynamics is not None and not problem.dynamics.cyclic:
             return ProblemError(

@@ -253,7 +253,7 @@ class UnitSystem:
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:
-            return f"a bare number ({quantity.value:.6g})"
+            return _("a bare number ({number})").format(number=f"{quantity.value:.6g}")
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
         return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
 
