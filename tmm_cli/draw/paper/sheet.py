@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.draw.paper import fonts, script
+from tmm_cli.draw.paper import script
 from tmm_cli.draw.paper.blocks import Block, Row, nearest_free, roomiest
 from tmm_cli.draw.paper.boxes import about, outside, row, wider
 from tmm_cli.draw.paper.drawing import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
@@ -18,6 +18,7 @@ from tmm_cli.draw.paper.labels import Label, place
 from tmm_cli.draw.paper.labels import extent as label_extent
 from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.paper.room import Room
+from tmm_cli.draw.paper.writing import in_a_line
 from tmm_cli.language import numeral, spelt
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
 from tmm_cli.problem.units import UnitSystem, on_paper
@@ -67,11 +68,10 @@ class Sheet:
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
-        title, caption, room = title[:90], self.caption[:120], (width - 2 * MARGIN) / POINT
-        bold = min(12.0, room / (fonts.width(title, 1, bold=True) or 1.0))
-        self.text(complex(MARGIN, height - MARGIN - 2), title, bold, weight="bold")
-        plain = min(9.0, room / (fonts.width(caption, 1) or 1.0))
-        self.text(complex(MARGIN, height - MARGIN - 8), caption, plain, colour="#404040")
+        told, size = in_a_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
+        self.text(complex(MARGIN, height - MARGIN - 2), told, size / POINT, weight="bold")
+        told, size = in_a_line(self.caption, 9 * POINT, width - 2 * MARGIN)
+        self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
