@@ -24,6 +24,7 @@ from tmm_cli.errors import (
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
+    UnsettledError,
 )
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -123,10 +124,17 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
         case NoTurnError(turns=turns):
             full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=turns)
             return ProblemError(full, path=("cycle",), key=True)
-        case NoCycleError():
+        case NoCycleError(path=path):
+            wanted = _("a law of motion is found for one crank that turns fully")
+            if path == ("balancing",):
+                wanted = _("what shakes is found for one crank that turns fully")
             return ProblemError(
-                _("a law of motion is found for one crank that turns fully"), path=("dynamics",), key=True,
-                allowed=_("one driver that turns round and round"),
+                wanted, path=path, key=True, allowed=_("one driver that turns round and round"),
+            )  # fmt: skip
+        case UnsettledError():
+            return ProblemError(
+                _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
+                path=("balancing", "counterweights"), key=True, allowed=_("larger radii, or other points of the links"),
             )  # fmt: skip
         case OutOfRangeError(start=first, end=last):
             return ProblemError(

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
@@ -332,4 +333,5 @@ class File(Strict):
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
+    balancing: Balancing | None = Field(default=None, description="what shakes the frame, and counterweights")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
