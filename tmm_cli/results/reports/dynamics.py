@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.dynamics.sizes import Disk
-from tmm_cli.dynamics.steady import Steady
 from tmm_cli.language import N_, _
 from tmm_cli.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.reports.quality import of_rows
 from tmm_cli.results.table import Column, Table
+
+if TYPE_CHECKING:
+    from tmm_cli.dynamics.steady import Steady
 
 Row = tuple[str, Any, Dimension]
 
@@ -54,7 +55,7 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
         yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
     size = steady.task.size
     diameter = size.diameter(steady.on_shaft)
-    yield _("diameter of a disk") if isinstance(size, Disk) else _("mean diameter of a rim"), diameter, LENGTH
+    yield _("diameter of a disk") if size.shape == "disk" else _("mean diameter of a rim"), diameter, LENGTH
     yield _("its width"), size.width * diameter, LENGTH
     yield _("its mass"), size.mass(diameter), MASS
 
