@@ -17,6 +17,7 @@ from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import all_groups
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
@@ -34,7 +35,7 @@ WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawin
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
-    "positions": (all_positions, 130), "diagrams": (diagrams, 170),
+    "positions": (all_positions, 130), "diagrams": (diagrams, 170), "law": (law_of_motion, 170),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),

@@ -66,11 +66,11 @@ class Square:
 
 
 @dataclass(frozen=True)
-class Raised:
-    """To a power that is a number."""
+class NthRoot:
+    """A root of a degree, written as a power."""
 
     of: Expression
-    power: float
+    degree: int
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Function:
     of: Expression
 
 
-Expression = Leaf | Constant | Sum | Product | Quotient | Square | Raised | SquareRoot | Function
+Expression = Leaf | Constant | Sum | Product | Quotient | Square | NthRoot | SquareRoot | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "cos": math.cos, "sin": math.sin, "tan": math.tan, "abs": abs,
     "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
@@ -153,8 +153,8 @@ def evaluate(expression: Expression, figures: int) -> float:
             return of(over) / of(under)
         case Square(base):
             return of(base) ** 2
-        case Raised(base, power):
-            return float(of(base) ** power)
+        case NthRoot(base, degree):
+            return float(of(base) ** (1 / degree))
         case SquareRoot(base):
             return math.sqrt(max(of(base), 0.0))
         case Function(name, argument):
@@ -227,8 +227,9 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             node = of(base)
             simple = isinstance(node, paper.Number | paper.Letter | paper.Brackets)
             return paper.Power(node if simple else paper.Brackets(node), paper.Number("2"))
-        case Raised(base, power):
-            return paper.Power(paper.Brackets(of(base)), paper.Number(f"{power:g}"))
+        case NthRoot(base, degree):
+            exponent = paper.Fraction(paper.Number("1"), paper.Number(str(degree)))
+            return paper.Power(paper.Brackets(of(base)), exponent)
         case SquareRoot(base):
             return paper.Root(of(base))
         case Function(name, argument):

@@ -77,7 +77,6 @@ def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Q
     ]  # fmt: skip
 
 
-
 def _moving(results: Results, running: Running, way: Real, here: Real) -> list[Quantities]:
     """Inertia of each link and the sum, and its slope; speed, acceleration, time."""
     steady = running.steady
