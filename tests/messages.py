@@ -7,6 +7,7 @@ a message has changed, and after translating. Measurements (bench) are for maint
 
 from __future__ import annotations
 
+import ast
 import io
 import string
 from collections.abc import Iterator
@@ -44,8 +45,19 @@ def messages() -> Iterator[tuple[str, str, str]]:
                 text = found if isinstance(found, str) else found[0]
                 if text:
                     yield KEYWORDS[name], text, file.relative_to(ROOT).as_posix()
+        for text in described(file):
+            yield "", text, file.relative_to(ROOT).as_posix()
     for unit in UNITS:
         yield "unit", unit, "tmm_cli/problem/units.py"
+
+
+def described(file: Path) -> Iterator[str]:
+    """What the keys of files are for, `Field(description=...)`, and what their values must be: refusals say it."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            texts = [word.value for word in node.keywords if word.arg == "description" and node.func.id == "Field"]
+            texts += node.args[1:2] if node.func.id == "PydanticCustomError" else []
+            yield from (text.value for text in texts if isinstance(text, ast.Constant))
 
 
 def _marked(stream: io.BufferedReader) -> Iterator[tuple[int, str, object, list[str]]]:

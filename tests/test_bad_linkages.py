@@ -154,9 +154,9 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, title, description, units, parameters, synthesis, variants, grading, points, guides, links, "
-        "driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
-        "positions, checks, sheet\n"
+        "  allowed: tmm, lang, title, description, units, parameters, synthesis, variants, grading, points, guides, "
+        "links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
+        "positions, checks, dynamics, sheet\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (

@@ -19,7 +19,7 @@ from models import PROBLEMS
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Found
+from tmm_cli.note.blocks import Found, Heading
 from tmm_cli.note.expression import Sum
 from tmm_cli.note.formats.html import html
 from tmm_cli.quantities import KINDS
@@ -171,3 +171,21 @@ def test_texts_of_the_file_are_data_in_the_page():
     assert "default-src 'none';style-src 'sha256-" in text, "and nothing could run or be loaded if it were not"
     assert not re.search(r'(src|href|xlink:href)="(?!#)', text), "it opens without a network"
     assert not re.search(r"<\w+[^>]*\son\w+=", text)
+
+
+def test_every_source_of_the_list_is_referred_to():
+    listed = re.search(r'<ol class="sources">.*?</ol>', page("shaper"), re.S)
+    assert listed
+    places = re.findall(r'<li id="(\w+)">', listed[0])
+    assert places and all(f'[<a href="#{place}">' in page("shaper") for place in places)
+
+
+def test_what_a_note_refers_to_is_in_it():
+    for name in ("shaper", "press-synthesis", "planetary-dwell-press"):
+        text = html(note(solved(name))).decode()
+        assert set(re.findall(r'href="#([^"]+)"', text)) <= set(re.findall(r'id="([^"]+)"', text))
+
+
+def test_a_note_without_loads_has_no_chapter_on_forces():
+    headings = {block.text for block in written("four-positions").blocks if isinstance(block, Heading)}
+    assert "Kinematic analysis" in headings and "Force analysis" not in headings

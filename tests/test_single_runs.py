@@ -1,13 +1,18 @@
 """A single run of a machine that is given by its reduced inertia and moment, against what is known in closed form."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from tmm_cli import load, solve
 from tmm_cli.dynamics.motors import Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
-from tmm_cli.dynamics.run import RunTask, run
+from tmm_cli.dynamics.run import acceleration, run
+from tmm_cli.dynamics.task import Profile, RunTask
 from tmm_cli.errors import StandstillError
 
+PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
 
 
@@ -43,7 +48,7 @@ def test_a_motor_of_direct_current_comes_to_its_speed_exponentially():
 @pytest.mark.parametrize("task", [
     RunTask(motor=Linear(500.0, 12.0)), RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
     RunTask(speed=10.0, brake=200.0), RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
-    RunTask(drive=lambda t, x: np.where(t < 0.4, 250.0, 20.0), edges=(0.4,)),
+    RunTask(drive=Profile("time", (0.0, 0.4, 0.41, 9.0), (250.0, 250.0, 20.0, 20.0))),
 ])  # fmt: skip
 def test_works_are_the_change_of_kinetic_energy(task):
     found = run(machine(load=-80.0, ripple=0.6), task)
@@ -55,3 +60,35 @@ def test_what_drives_less_than_the_load_does_not_start():
     with pytest.raises(StandstillError) as stands:
         run(machine(load=-80.0), RunTask(drive=lambda t, x: 79.0 + 0 * t))
     assert stands.value.place == 0
+
+
+def test_a_place_of_the_way_is_passed_once_at_its_time_and_speed():
+    own, task = machine(load=-80.0, ripple=0.6), RunTask(motor=Linear(500.0, 12.0))
+    found = run(own, task)
+    time, speed = found.at(found.way[1:-1])
+    assert time == pytest.approx(found.time[1:-1], rel=1e-9)
+    assert speed == pytest.approx(found.speed[1:-1], rel=1e-9)
+    assert np.isnan(found.at(np.array([7.0]))[0]).all()
+    changes = acceleration(own, task, time, found.way[1:-1], speed)
+    assert changes == pytest.approx(found.acceleration[1:-1], rel=1e-7, abs=1e-6)
+
+
+def test_a_lifted_boom_stores_the_work_of_the_oil_and_forces_follow_the_run():
+    results = solve(load(PROBLEMS / "boom-lift.yaml"))
+    run = results.running.run
+    assert run.ending == "way" and run.balance < 1e-10
+    pressed = 1963e-6 * np.trapezoid([4.6e6, 4.0e6, 3.2e6, 2.45e6], [0, 0.1, 0.24, 0.34])
+    assert run.driven[-1] == pytest.approx(pressed, rel=1e-9)
+    q = results.motion.q
+    assert abs(results.motion.rate[0]) < 1e-12 and results.motion.acceleration[0] > 0  # kinetostatics at rest
+    table = np.interp(q - 0.64, [0, 0.1, 0.24, 0.34], 1963e-6 * np.array([4.6e6, 4.0e6, 3.2e6, 2.45e6]))
+    assert results.reactions.balance.force == pytest.approx(table, rel=1e-8)
+
+
+def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
+    results = solve(load(PROBLEMS / "press-single-run.yaml"))
+    found = results.running
+    assert found.run.balance < 1e-10
+    motor = found.task.motor.moment(np.abs(results.motion.rate))[0]
+    speeding = found.task.flywheel * results.motion.acceleration
+    assert results.reactions.balance.moment == pytest.approx(motor - speeding, rel=1e-7, abs=1e-4)

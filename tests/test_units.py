@@ -93,7 +93,7 @@ def test_products_of_any_two(a: str, b: str, sign: str) -> None:
 def test_defaults_of_bare_numbers() -> None:
     units = UnitSystem()
     symbols = ["", "mm", "deg", "s", "kg", "N", "N*m", "kg*m^2", "m/s", "m/s^2", "rad/s", "rad/s^2", "N/m", "N*m/rad",
-               "N*s/m", "N*m*s/rad"]  # fmt: skip
+               "N*s/m", "N*m*s/rad", "MPa"]  # fmt: skip
     assert [units.symbol(kind.dimension) for kind in KINDS.values()] == symbols
     assert units.factor(LENGTH) == 0.001
     assert units.factor(NUMBER) == 1
@@ -119,7 +119,7 @@ def test_a_file_chooses() -> None:
         ({"lenght": "mm"}, "lenght: unknown key\n  found:   'lenght'"
          "\n  allowed: length, angle, time, mass, force, moment, "
          "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
-         "torsional stiffness, damping, torsional damping"
+         "torsional stiffness, damping, torsional damping, pressure"
           "\n  did you mean 'length'?"),
     ],
 )  # fmt: skip

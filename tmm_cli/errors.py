@@ -112,6 +112,14 @@ class NoCycleError(LinkageError):
     """A law of motion is wanted where there is no cycle: the driver slides, does not turn fully, or is not alone."""
 
 
+class OutOfRangeError(LinkageError):
+    """A run is to go where the driver does not come: beyond its range from `start` to `end` (rad, or m)."""
+
+    def __init__(self, start: float, end: float) -> None:
+        super().__init__(start, end)
+        self.start, self.end = start, end
+
+
 class StandstillError(LinkageError):
     """The machine comes to rest at the way `place` of its cycle (rad): its energy is used up there."""
 

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.language import N_
+from tmm_cli.language import N_, _
 
 
 @dataclass(frozen=True)
@@ -64,15 +64,15 @@ class Dimension:
     def __str__(self) -> str:
         """With its article: `a length`, `an angle`."""
         if name := self.name:
-            return f"an {name}" if name[0] in "aeiou" else f"a {name}"
+            return _(ARTICLED[name])
         bases = {"m": self.length, "kg": self.mass, "s": self.time, "rad": self.angle}
-        return f"a quantity in {product_text(bases)}"
+        return _("a quantity in {unit}").format(unit=product_text(bases))
 
     @property
     def example(self) -> str:
         """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
         name = self.name
-        return f"{self}, e.g. {KINDS[name].example}" if name else str(self)
+        return _("{kind}, e.g. {example}").format(kind=self, example=KINDS[name].example) if name else str(self)
 
 
 class Kind(NamedTuple):
@@ -91,6 +91,8 @@ MASS: Final = Dimension(mass=1)
 FORCE: Final = Dimension(1, 1, -2)
 MOMENT: Final = Dimension(2, 1, -2)
 INERTIA: Final = Dimension(2, 1)
+AREA: Final = Dimension(2)
+PRESSURE: Final = Dimension(-1, 1, -2)
 SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
@@ -117,7 +119,18 @@ KINDS: Final[Mapping[str, Kind]] = {
     "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
 }
+
+
+ARTICLED: Final[Mapping[str, str]] = {
+    "number": N_("a number"), "length": N_("a length"), "angle": N_("an angle"), "time": N_("a time"),
+    "mass": N_("a mass"), "force": N_("a force"), "moment of force": N_("a moment of force"),
+    "moment of inertia": N_("a moment of inertia"), "speed": N_("a speed"), "acceleration": N_("an acceleration"),
+    "angular speed": N_("an angular speed"), "angular acceleration": N_("an angular acceleration"),
+    "stiffness": N_("a stiffness"), "torsional stiffness": N_("a torsional stiffness"), "damping": N_("a damping"),
+    "torsional damping": N_("a torsional damping"),
+}  # fmt: skip
 
 
 def product_text(powers: Mapping[str, int]) -> str:

@@ -28,7 +28,7 @@ from tmm_cli.structure.naming import output_link, roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.task import SteadyTask
+    from tmm_cli.dynamics.task import RunTask, SteadyTask
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
 
@@ -49,7 +49,7 @@ class Inputs:
     lever_limit: float = 0.05
     extended: Callable[[], Inputs] | None = None
     sized: bool = True
-    dynamics: SteadyTask | None = None
+    dynamics: SteadyTask | RunTask | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,8 +38,9 @@ from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.analysis.running import Running
+    from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
-    from tmm_cli.dynamics.task import SteadyTask
+    from tmm_cli.dynamics.task import RunTask, SteadyTask
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -65,7 +66,7 @@ class Results:
     friction: FrictionSolution | None = None
     losses: Losses | None = None
     energy: Energy | None = None
-    running: Running | None = None
+    running: Running | SingleRun | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
@@ -147,6 +148,11 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
@@ -182,7 +188,7 @@ def solve(
     _need_strokes(results)
     _need_rows(results)
     if inputs.dynamics is not None:
-        results = replace(results, running=_running(results.mechanism, results.start, inputs.dynamics))
+        results = replace(results, running=_running(results, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(results.asked):
@@ -191,10 +197,15 @@ def solve(
     return results if stage == "kinematics" else with_forces(results)
 
 
-def _running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
-    from tmm_cli.analysis.running import running  # nothing of it is there unless it is asked for
+def _running(results: Results, task: SteadyTask | RunTask) -> Running | SingleRun:
+    """Nothing of it is imported unless it is asked for, and scipy for single runs alone."""
+    if task.cyclic:
+        from tmm_cli.analysis.running import running
 
-    return running(mechanism, start, task)
+        return running(results.mechanism, results.start, task)
+    from tmm_cli.analysis.single_run import single_run
+
+    return single_run(results.mechanism, results.asked, task)
 
 
 def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:

@@ -27,10 +27,16 @@ if TYPE_CHECKING:
 def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
     """Over a cycle from the driver's place `start` on (rad), by the way in its sense. Raises NoCycleError."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
-    if linkage.others or linkage.driver.kind != "turn" or not whole.full:
+    if linkage.driver.kind != "turn" or not whole.full:
         raise NoCycleError
-    sense = linkage.driver.sense
-    length = 2 * np.pi * whole.turns
+    return reduced_between(mechanism, start, linkage.driver.sense, 2 * np.pi * whole.turns)
+
+
+def reduced_between(mechanism: Mechanism, start: float, sense: int, length: float) -> Reduced:
+    """Over a way of this length (rad, or m) of the driver from `start` on, in a sense. Raises NoCycleError."""
+    linkage = mechanism.linkage
+    if linkage.others:
+        raise NoCycleError
     strokes = mechanism.strokes if any(x.working_stroke_only or x.table for x in linkage.loads) else None
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
@@ -38,7 +44,8 @@ def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
         found = energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
         return found.inertia, sense * found.slope, sense * found.moment
 
-    inner = np.mod(sense * (np.array([*_jumps(mechanism)]) - start), length)
+    jumps = np.array([*_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
+    inner = np.mod(sense * (jumps - start), 2 * np.pi * mechanism.driver_range.turns)
     return reduced(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
 
 
@@ -67,6 +74,10 @@ class Running:
     start: float
     sense: int
 
+    @property
+    def task(self) -> SteadyTask:
+        return self.steady.task
+
     def way(self, q: Real) -> Real:
         """How far the driver has gone in the cycle at its place q, rad."""
         gone = np.mod(self.sense * (rounded(np.asarray(q)) - self.start) + SEAM, self.steady.machine.length) - SEAM
@@ -85,6 +96,14 @@ class Running:
     def time(self, q: Real) -> Real:
         """s, since the beginning of the cycle."""
         return self.steady.law.time(self.way(q))
+
+    def driving(self, q: Real) -> Real:
+        """Moment of what drives, along the sense of the driver, N m."""
+        return self.steady.law.driving(self.way(q))
+
+    def work(self, q: Real) -> Real:
+        """Of all moments since the beginning of the cycle, J."""
+        return self.steady.work(self.way(q))
 
 
 def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:

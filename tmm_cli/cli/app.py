@@ -21,7 +21,7 @@ COMMANDS = {
     "structure": "Mobility, pairs, Assur groups, names of links, contours.",
     "kinematics": "Positions, velocities, accelerations, transfer functions.",
     "forces": "Loads, reactions, what balances the driver, Zhukovsky lever.",
-    "dynamics": "Law of motion: driving moment or motor, flywheel, speeds and accelerations of the driver.",
+    "dynamics": "Law of motion: driving moment or motor, flywheel, speed.",
     "check": "Compute problems again, compare them with what is expected.",
     "explain": "Say what a file was understood to mean, what is computed.",
     "new": "Start a problem file from a commented template.",

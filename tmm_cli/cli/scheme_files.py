@@ -73,8 +73,8 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     """
     if len(found) > MOST_FILES:
         raise ProblemError(
-            "these are too many files", path=("--out",), found=f"{len(found)} schemes",
-            allowed=f"at most {MOST_FILES}: fewer links, or fewer types of groups (--groups)",
+            _("these are too many files"), path=("--out",), found=_("{count} schemes").format(count=len(found)),
+            allowed=_("at most {most}: fewer links, or fewer types of groups (--groups)").format(most=MOST_FILES),
         )  # fmt: skip
     digits = max(2, len(str(len(found))))
     texts: dict[Path, str] = {}
@@ -88,8 +88,8 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     for path, text in texts.items():
         if path.exists() and path.read_bytes() != text.encode():
             raise ProblemError(
-                "there is another file of that name, perhaps your own work", path=("--out",), found=str(path),
-                allowed="another folder",
+                _("there is another file of that name, perhaps your own work"), path=("--out",), found=str(path),
+                allowed=_("another folder"),
             )  # fmt: skip
     for path, text in texts.items():
         write_whole(path, text.encode())

@@ -7,8 +7,9 @@ E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -16,38 +17,22 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from tmm_cli.dynamics.curves import Curve
-from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
+from tmm_cli.dynamics.task import RunTask
 from tmm_cli.errors import StandstillError
+from tmm_cli.roots import roots
 from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
-Drive = Callable[[Real, Real], Real]  # moment (N m, or N) by time (s) and way
 Ending = Literal["way", "standstill", "time"]
-
-
-@dataclass(frozen=True)
-class RunTask:
-    """What drives a run, and from what speed (rad/s, or m/s). flywheel: kg m2, or kg; brake: moment against the motion.
-
-    motor: by its characteristic; drive: by time and way, which jumps at the times `edges`. longest: time of a run (s).
-    """
-
-    speed: float = 0.0
-    motor: Motor | None = None
-    drive: Drive | None = None
-    brake: float = 0.0
-    flywheel: float = 0.0
-    edges: tuple[float, ...] = ()
-    longest: float = 3600.0
 
 
 @dataclass(frozen=True)
 class Run:
     """By steps: time (s), way, speed and acceleration of the driver; kinetic energy (J), and works (J) of what drives,
-    of the loads and of the brake. ending: what ended it."""
+    of the loads and of the brake. ending: what ended it; steps: what the integration gives between its times."""
 
     time: Real
     way: Real
@@ -58,6 +43,7 @@ class Run:
     loaded: Real
     braked: Real
     ending: Ending
+    steps: tuple[Any, ...] = ()
 
     @property
     def balance(self) -> float:
@@ -67,26 +53,41 @@ class Run:
         left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
         return float(np.max(np.abs(left))) / size if size > 0 else 0.0
 
+    def at(self, way: Real) -> tuple[Real, Real]:
+        """Time (s) and speed when the driver has come so far; nan where it does not."""
+        way = np.asarray(way, float)
+        time, speed = np.full(way.shape, np.nan), np.full(way.shape, np.nan)
+        for step in self.steps:
+            low, high = step.ts[0], step.ts[-1]
+            here = (way >= step(low)[0]) & (way <= step(high)[0])
+            if here.any():
+                missed = partial(_short_of, step, way[here])
+                found = roots(missed, low + 0 * way[here], high + 0 * way[here])
+                time[here], speed[here] = found, step(found)[1]
+        return time, speed
+
 
 def run(machine: Reduced, task: RunTask) -> Run:
     """From the beginning of the machine's way to its end. Raises StandstillError where it does not start."""
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
-    times, states, time = [], [], 0.0
+    times, states, steps, time = [], [], [], 0.0
     ending: Ending = "time"
     for low, high in _pieces(machine.moment):
         for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
             done = _until(machine, task, (low, high), (time, end), state)
             times.append(done.t)
             states.append(done.y)
+            steps.append(done.sol)
             time, state = float(done.t[-1]), done.y[:, -1]
             if done.status == 1:
                 break
         ending = "time" if done.status == 0 else "standstill" if len(done.t_events[1]) else "way"
         if ending != "way":
             break
-    return _record(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
+    record = _record(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
+    return replace(record, steps=tuple(steps))
 
 
 def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real) -> Any:
@@ -104,8 +105,24 @@ def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: t
     energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
     return solve_ivp(
         lambda t, y: _rates(machine, task, piece, t, y), times, state, "DOP853", events=(gone, rests), rtol=TOLERANCE,
+        dense_output=True,
         atol=[TOLERANCE * machine.length, TOLERANCE * scale, *[TOLERANCE * energy] * 3],
     )  # fmt: skip
+
+
+def _short_of(step: Any, way: Real, time: Real) -> Real:
+    """How much the way of a step of integration is beyond another one."""
+    found: Real = step(time)[0] - way
+    return found
+
+
+def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
+    """Of the driver (rad/s2, or m/s2) at such times, ways and speeds."""
+    states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
+    return np.array([
+        _rates(machine, task, (0.0, machine.length), float(t), y)[1] if np.isfinite(t) else np.nan
+        for t, y in zip(np.ravel(time), states.reshape(-1, 5), strict=True)
+    ]).reshape(np.shape(way))  # fmt: skip
 
 
 def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
@@ -134,6 +151,6 @@ def _pieces(moment: Curve) -> Iterator[tuple[float, float]]:
 def _record(machine: Reduced, task: RunTask, time: Real, states: Real, ending: Ending) -> Run:
     way, speed, driven, loaded, braked = states
     x = np.clip(way, 0.0, np.nextafter(machine.length, 0.0))
-    acceleration = [_rates(machine, task, (0.0, machine.length), t, y)[1] for t, y in zip(time, states.T, strict=True)]
+    changes = acceleration(machine, task, time, way, speed)
     kinetic = (task.flywheel + machine.inertia(x)) * speed**2 / 2
-    return Run(time, way, speed, np.array(acceleration), kinetic, driven, loaded, braked, ending)
+    return Run(time, way, speed, changes, kinetic, driven, loaded, braked, ending)

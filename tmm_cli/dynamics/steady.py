@@ -46,6 +46,27 @@ class Steady:
         return self.law.flywheel / self.task.ratio**2
 
     @property
+    def errors(self) -> tuple[float, float]:
+        """Of Wittenbauer's way and of Mertsalov's, shares of the exact flywheel."""
+        exact = float("nan") if self.found is None else self.found.inertia
+        return self.wittenbauer / exact - 1, self.mertsalov / exact - 1
+
+    @property
+    def diameter(self) -> float:
+        """Of the flywheel, or the mean one of its rim, m."""
+        return self.task.size.diameter(self.on_shaft)
+
+    @property
+    def width(self) -> float:
+        """Of the flywheel, m."""
+        return self.task.size.width * self.diameter
+
+    @property
+    def mass(self) -> float:
+        """Of the flywheel, kg."""
+        return self.task.size.mass(self.diameter)
+
+    @property
     def speeds(self) -> tuple[float, float]:
         """The least and the largest speed of the driver, rad/s or m/s."""
         return extremes(self.law)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
+from typing import ClassVar, Literal
+
+import numpy as np
 
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.sizes import Disk, Size
+from tmm_cli.vectors import Real
 
 
 @dataclass(frozen=True)
@@ -23,4 +28,44 @@ class SteadyTask:
     motor: Motor | None = None
     flywheel: float = 0.0
     ratio: float = 1.0
+    cyclic: ClassVar[Literal[True]] = True
     size: Size = field(default_factory=partial(Disk, 7800.0, 0.2))
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A moment (N m), or a force (N), by the time (s) or the way of the driver, linear between its rows."""
+
+    against: Literal["time", "way"]
+    arguments: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __call__(self, time: Real, way: Real) -> Real:
+        """Before the first row as there, after the last as there."""
+        found: Real = np.interp(time if self.against == "time" else way, self.arguments, self.values)
+        return found
+
+
+@dataclass(frozen=True)
+class RunTask:
+    """What drives a single run, and from what speed (rad/s, or m/s).
+
+    first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for.
+    motor: by its characteristic; drive: a profile, with it or alone. brake: moment against the motion.
+    flywheel: kg m2, or kg. longest: time of a run (s).
+    """
+
+    speed: float = 0.0
+    motor: Motor | None = None
+    drive: Callable[[Real, Real], Real] | None = None
+    brake: float = 0.0
+    flywheel: float = 0.0
+    first: float | None = None
+    last: float | None = None
+    longest: float = 3600.0
+    cyclic: ClassVar[Literal[False]] = False
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Times at which what drives may bend."""
+        return self.drive.arguments if isinstance(self.drive, Profile) and self.drive.against == "time" else ()

@@ -91,7 +91,7 @@ def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
         shares = _numbers(_("points, %"), np.round(list(rows.values()), 1))
         yield Table("group", _("Group"), (Column(_("of those who handed in"), list(rows)), shares), notes=tuple(notes))
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
-        yield Table("histogram", _("Points"), (Column(_("points"), ranges), _numbers(_("students"), histogram(marks))))
+        yield Table("histogram", _("Points"), (Column(_("score"), ranges), _numbers(_("students"), histogram(marks))))
         yield _difficulties(hardest(task, marks))
     mistakes = commonest(marks)
     if mistakes:

@@ -193,7 +193,7 @@ def _asked(task: Task) -> Iterator[Table]:
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         points = f"{sum(one.points for one in every):.10g}"
         rows.append((name, numbers, _unit(task, every[0]), points, meaning(name)))
-    headers = (_("quantity"), _("at positions"), _("unit"), _("points"), _("what it is"))
+    headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("what it is"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
         notes.append(_("Vectors are answered with size and direction, counterclockwise from x, or with components: "

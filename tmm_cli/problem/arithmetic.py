@@ -81,7 +81,9 @@ class Parser:
         whole = re.search(r"[0-9]+$", self.text[: self.at])
         if whole and (comma := _COMMA.match(rest)):
             return comma_error(whole[0], comma[1])
-        found = quote(self.text) + (f", at {quote(rest)}" if rest and rest != self.text.strip() else "")
+        found = quote(self.text) + (
+            _(", at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
+        )
         return ProblemError(message, found=found, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
 
     def sign(self, *signs: str) -> str | None:

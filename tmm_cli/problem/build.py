@@ -29,7 +29,7 @@ from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.task import SteadyTask
+    from tmm_cli.dynamics.task import RunTask, SteadyTask
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -124,7 +124,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     )  # fmt: skip
 
 
-def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | None:
+def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
     if shape.dynamics is None:
         return None
     from tmm_cli.problem.build_dynamics import build_dynamics  # few files have the block

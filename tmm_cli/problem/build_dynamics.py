@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from tmm_cli.dynamics.motors import Kloss, Linear, Motor
 from tmm_cli.dynamics.sizes import Disk, Rim
-from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
 from tmm_cli.language import _
 from tmm_cli.linkage import Driver
 from tmm_cli.problem import schema, schema_dynamics
-from tmm_cli.problem.errors import quote
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.values import Part, ValueReader
-from tmm_cli.quantities import ANGULAR_SPEED, INERTIA, MOMENT, NUMBER
+from tmm_cli.quantities import (
+    ANGLE,
+    ANGULAR_SPEED,
+    AREA,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    PRESSURE,
+    SPEED,
+    Dimension,
+)  # fmt: skip
 
 
-def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | None:
+def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
     """What is asked of the law of motion; None where nothing is."""
     given = shape.dynamics
     if given is None:
@@ -30,7 +44,47 @@ def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> S
     form = Disk if given.flywheel.shape == "disk" else Rim
     size = form(wheel.positive("density", NUMBER), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
     motor = None if given.motor is None else _motor(Part(given.motor, ("dynamics", "motor"), values))
+    if given.run is not None:
+        return _run(part, Part(given.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
     return SteadyTask(mean, delta, motor, own * ratio**2, ratio, size)
+
+
+def _run(whole: Part, part: Part, driver: Driver, motor: Motor | None, flywheel: float) -> RunTask:
+    given: schema_dynamics.Run = part.given
+    for key in ("mean_speed", "delta"):
+        if getattr(whole.given, key) is not None:
+            raise whole.refusal(key, _("a single run has no mean speed and no fluctuation"), at_key=True)
+    turns = driver.kind == "turn"
+    place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
+    first, last = (None if getattr(given, key) is None else part.number(key, place) for key in ("from_", "to"))
+    if first is not None and first == last:
+        raise part.refusal("to", _("a run ends elsewhere than it begins"), str(given.to))
+    drive = None
+    if isinstance(given.drive, schema_dynamics.Profile):
+        drive = _profile(Part(given.drive, (*part.path, "drive"), part.values), place, size)
+    elif given.drive is not None:
+        drive = Profile("time", (0.0,), (part.number("drive", size),))
+    speed = part.positive("speed", ANGULAR_SPEED if turns else SPEED, zero=True)
+    return RunTask(speed, motor, drive, part.positive("brake", size, zero=True), flywheel, first, last)
+
+
+def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
+    given: schema_dynamics.Profile = part.given
+    area = 1.0
+    if given.area is not None:
+        size, area = PRESSURE, part.positive("area", AREA)
+    argument = NUMBER if given.against == "time" else place
+    rows = [
+        (part.values.number(row[0], argument, (*part.path, "table", k, 0)),
+         area * part.values.number(row[1], size, (*part.path, "table", k, 1)))
+        for k, row in enumerate(given.table)
+    ]  # fmt: skip
+    for k, (one, other) in enumerate(pairwise(rows), 1):
+        if not one[0] < other[0]:
+            raise ProblemError(
+                _("the first column must grow"), path=(*part.path, "table", k, 0), found=str(given.table[k][0])
+            )
+    return Profile(given.against, tuple(x for x, __ in rows), tuple(y for __, y in rows))
 
 
 def _motor(part: Part) -> Motor:

@@ -68,7 +68,9 @@ def _decoded(data: bytes, file: str) -> str:
         column = len(before[before.rfind(b"\n") + 1 :].decode()) + 1
         raise ProblemError(
             _("the file is not UTF-8 text"),
-            found=f"byte 0x{body[error.start]:02X} at position {len(data) - len(body) + error.start + 1}",
+            found=_("byte {byte} at position {position}").format(
+                byte=f"0x{body[error.start]:02X}", position=len(data) - len(body) + error.start + 1
+            ),
             allowed=_("UTF-8; in the editor: Save with encoding, UTF-8"),
             file=file,
             mark=Mark(before.count(b"\n") + 1, column),

@@ -14,7 +14,7 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.structure.spatial import SpatialChain
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.task import SteadyTask
+    from tmm_cli.dynamics.task import RunTask, SteadyTask
     from tmm_cli.synthesis.record import Outcome
 
 
@@ -62,7 +62,7 @@ class Problem:
     limits_set: tuple[bool, bool] = (False, False)
     bare_speed: bool = False
     title_texts: TitleTexts = TitleTexts()
-    dynamics: SteadyTask | None = None
+    dynamics: SteadyTask | RunTask | None = None
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

@@ -16,6 +16,7 @@ from tmm_cli.errors import (
     NoCycleError,
     NoFlywheelError,
     NotOnFrameError,
+    OutOfRangeError,
     SketchMismatchError,
     StandstillError,
     TableBeyondCycleError,
@@ -121,6 +122,16 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             return ProblemError(
                 _("a law of motion is found for one crank that turns fully"), path=("dynamics",), key=True,
                 allowed=_("one driver that turns round and round"),
+            )  # fmt: skip
+        case OutOfRangeError(start=first, end=last):
+            return ProblemError(
+                _("the run goes where the driver does not come"), path=("dynamics", "run"), key=True,
+                allowed=_("{first} to {last}").format(first=shown(first), last=shown(last)),
+            )  # fmt: skip
+        case StandstillError() if problem.dynamics is not None and not problem.dynamics.cyclic:
+            return ProblemError(
+                _("the run does not start: what drives is no more than the loads"), path=("dynamics", "run"), key=True,
+                allowed=_("a larger drive, or a speed at the beginning"),
             )  # fmt: skip
         case StandstillError(place=place_of_rest):
             return ProblemError(

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
-from tmm_cli.problem.schema_parts import Strict, Value
+from tmm_cli.problem.schema_parts import Strict, Value, Vector, checked_value
+
+
+def _profile(found: Any) -> Any:
+    return Profile.model_validate(found) if isinstance(found, dict) else None if found is None else checked_value(found)
 
 
 class Motor(Strict):
@@ -33,8 +37,28 @@ class Flywheel(Strict):
     density: Value = Field(default=7800, description="kg/m^3")
 
 
+class Profile(Strict):
+    """What drives, by a table; linear between its rows."""
+
+    against: Literal["time", "way"] = Field(description="s since the beginning, or the way that the driver has gone")
+    table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [argument, size]")
+    area: Value | None = Field(default=None, description="of a piston: the table is then of pressures")
+
+
+class Run(Strict):
+    """A single run of the driver, integrated by time."""
+
+    from_: Value | None = Field(default=None, alias="from", description="place of the driver; that of position 0")
+    to: Value | None = Field(default=None, description="place where it ends; that of the last position")
+    speed: Value = Field(default=0, description="at the beginning")
+    drive: Annotated[Value | Profile | None, BeforeValidator(_profile)] = Field(
+        default=None, description="moment of a crank, force of a slider: a value, or {against, table, area}"
+    )
+    brake: Value = Field(default=0, description="moment or force against the motion")
+
+
 class Dynamics(Strict):
-    """Steady running: the law of motion of the driver follows from what acts on the machine."""
+    """Steady running, or a single run: the law of motion of the driver follows from what acts on the machine."""
 
     mean_speed: Value | None = Field(
         default=None, alias="mean speed", description="mean of the largest and the least speed; the driver's"
@@ -42,3 +66,4 @@ class Dynamics(Strict):
     delta: Value | None = Field(default=None, description="fluctuation of speed that a flywheel is to keep: 1/30")
     motor: Motor | None = Field(default=None, description="what drives; a constant moment when left out")
     flywheel: Flywheel = Field(default_factory=Flywheel)
+    run: Run | None = Field(default=None, description="a single run, in place of steady running")

@@ -104,7 +104,7 @@ def _refusal(
     hint: str | None,
 ) -> ProblemError:  # fmt: skip
     known, field = fields
-    described = field.description if field else None
+    described = _(field.description) if field and field.description else None
     if kind == "extra_forbidden":
         key = str(path[-1])
         foreign = nearest(key, [word for word, own in FOREIGN.items() if own in known])
@@ -123,5 +123,7 @@ def _refusal(
         )  # fmt: skip
     if kind == "too_short" and context["min_length"] == 1:
         kind = "empty"
-    message = _(WORDS.get("int" if kind.startswith("int_") else kind, "{msg}")).format(**context)
+    message = _(WORDS.get("int" if kind.startswith("int_") else kind, "{msg}")).format(
+        **{**context, "msg": _(context["msg"])}
+    )
     return ProblemError(message, path=path, found=quote(value), allowed=hint or described)

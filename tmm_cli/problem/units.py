@@ -23,6 +23,7 @@ from tmm_cli.quantities import (
     MASS,
     MOMENT,
     NUMBER,
+    PRESSURE,
     TIME,
     Dimension,
     product_text,
@@ -103,6 +104,10 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("Nm Нм", MOMENT, "1"),
     ("kNm кНм", MOMENT, "1000"),
     ("Nmm Нмм", MOMENT, "1/1000"),
+    ("Pa Па", PRESSURE, "1"),
+    ("kPa кПа", PRESSURE, "1000"),
+    ("MPa МПа", PRESSURE, "1000000"),
+    ("bar бар", PRESSURE, "100000"),
     ("%", NUMBER, "1/100"),
 )
 SYMBOLS: Final[Mapping[str, Unit]] = {
@@ -248,7 +253,7 @@ class UnitSystem:
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:
-            return f"a bare number ({quantity.value:.6g})"
+            return _("a bare number ({number})").format(number=f"{quantity.value:.6g}")
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
         return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
 

@@ -12,7 +12,11 @@ from tmm_cli.problem.tree import Mark
 def tab_error(file: str, mark: Mark) -> ProblemError:
     """The refusal of a tab where the indentation counts."""
     return ProblemError(
-        _("a tab is used for indentation"), found="a tab", allowed=_("spaces, two for each level"), file=file, mark=mark
+        _("a tab is used for indentation"),
+        found=_("a tab"),
+        allowed=_("spaces, two for each level"),
+        file=file,
+        mark=mark,
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _, numeral, spelt
+from tmm_cli.language import N_, _, numeral, spelt
 from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
@@ -31,6 +31,11 @@ from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, step
 from tmm_cli.results.table import Table, table_of_words, with_unit
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.naming import output_link
+
+FILE_WORDS = {  # that a file may say, where they are shown
+    "always": N_("always"), "working stroke": N_("working stroke"),
+    "stroke": N_("stroke"), "crank angle": N_("crank angle"), "crank turn": N_("crank turn"),
+}  # fmt: skip
 
 
 def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
@@ -117,7 +122,7 @@ def _positions(problem: Problem, measure: Dimension) -> str:
         return _("{count} from {a} to {b}").format(count=request.count, a=a, b=b)
     if driver.kind == "slide":
         return _("{count} from one end of its way to the other").format(count=request.count)
-    start = request.start if isinstance(request.start, str) else show(problem, request.start, measure)
+    start = _(FILE_WORDS[request.start]) if isinstance(request.start, str) else show(problem, request.start, measure)
     return _("{count} from {start}").format(count=request.count, start=start)
 
 
@@ -133,14 +138,14 @@ def _masses(problem: Problem) -> Table:
 def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     if load.table is not None:
         size = _("table of {rows} rows against the {against}").format(
-            rows=len(load.table.values), against=load.table.against
+            rows=len(load.table.values), against=_(FILE_WORDS[load.table.against])
         )
     elif load.force:
         size = f"{show_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
     else:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
-    return load.name, load.link, place, size, load.when
+    return load.name, load.link, place, size, _(FILE_WORDS[load.when])
 
 
 def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
@@ -155,7 +160,7 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
     ]
     direction = show(problem, np.angle(load.force), ANGLE)
     notes = (_("Its direction is {direction}.").format(direction=direction),) if load.force else ()
-    title = _("{load} against the {against}").format(load=load.name, against=table.against)
+    title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
     name = f"load_table_{linkage.loads.index(load) + 1}"
     return table_of_words(name, title, (table.against, _("size")), rows, notes)
 

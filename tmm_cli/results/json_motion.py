@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links, moving_centres, moving_points
@@ -27,6 +28,9 @@ from tmm_cli.results.shapes import (
     record,
 )  # fmt: skip
 from tmm_cli.vectors import Vector
+
+if TYPE_CHECKING:
+    from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
 
 LIMIT = record("a limit", Field("at", NUMBER, "place", "place"), Field("group", TEXT, "by which group"))
 DRIVER = record(
@@ -208,20 +212,69 @@ def _whole(results: Results) -> bool:
     return results.motion is not None and not results.of
 
 
-STEADY = record(
-    "steady running",
-    Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
-    Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
-    Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
-    Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
-    Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
-    Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
-    Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
-    Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
-    Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
-    Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
-    Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+RUN_STEPS = 49
+
+
+def _along_run(name: str, run: SingleRun) -> Vector:
+    """One of its functions of the driver's place, in even steps."""
+    found: Vector = getattr(run, name)(run.evenly(RUN_STEPS))
+    return found
+
+
+SINGLE = record(
+    "a single run; SI",
+    Field("ending", TEXT, "what ended it: way, standstill, time", "run.ending"),
+    Field("lasts", NUMBER, "s", lambda r: r.run.time[-1]),
+    Field("driven", NUMBER, "work of what drives, J", lambda r: r.run.driven[-1]),
+    Field("loaded", NUMBER, "work of the loads, J", lambda r: r.run.loaded[-1]),
+    Field("braked", NUMBER, "work of the brake, J", lambda r: r.run.braked[-1]),
+    Field("place", list_of(NUMBER), "of the driver, in even steps from the beginning to the end of the run",
+          lambda r: r.evenly(RUN_STEPS)),
+    *(Field(key, list_of(NUMBER), text, partial(_along_run, key)) for key, text in (
+        ("time", "there, s"), ("speed", "of the driver there"), ("accelerated", "its acceleration there"),
+        ("kinetic", "kinetic energy there, J"))),
+)  # fmt: skip
+
+
+def _steady(results: Results) -> bool:
+    return results.running is not None and results.running.task.cyclic
+
+
+def _single(results: Results) -> bool:
+    return results.running is not None and not results.running.task.cyclic
+
+
+TANGENT = record(
+    "a tangent to the energy-mass diagram",
+    Field("x", NUMBER, "way of the driver at which it touches"),
+    Field("inertia", NUMBER, "reduced inertia of the links there, kg*m^2"),
+    Field("energy", NUMBER, "work of all moments there, J"),
+    Field("slope", NUMBER, "omega^2/2, J/(kg*m^2)"),
+    Field("offset", NUMBER, "energy that it cuts off where the inertia is zero, J"),
 )
+STEADY = record(
+    "steady running; ways, works and moments begin at position 0 and go in the sense of the driver",
+    *inside("running", (
+        Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
+        Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
+        Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
+        Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
+        Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
+        Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
+        Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
+        Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
+        Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
+        Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
+        Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+        Field("errors", list_of(NUMBER), "of both, shares of the exact one", lambda r: r.steady.errors),
+        Field("diameter", NUMBER, "of the flywheel, m", "steady.diameter"),
+        Field("width", NUMBER, "of the flywheel, m", "steady.width"),
+        Field("mass", NUMBER, "of the flywheel, kg", "steady.mass"),
+        Field("tangents", list_of(TANGENT), "of the largest and of the least speed", "steady.tangents"),
+    )),
+    Field("driving", SERIES, "driving moment, N*m", lambda r: r.steady.driving(r.motion.q)),
+    Field("excess", SERIES, "work of all moments, J", lambda r: r.steady.work(r.motion.q)),
+)  # fmt: skip
 
 MOTION_PARTS = (
     Field("driver", DRIVER, "the input", lambda r: r, "motion"),
@@ -237,8 +290,8 @@ MOTION_PARTS = (
     Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     Field("forces", FORCES, "force plan", lambda r: r, "lever"),
     Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
-    Field("dynamics", STEADY, "steady running and the law of motion; the driver at the start of its cycle is that of "
-          "position 0", "running", "running"),
+    Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, _steady),
+    Field("run", SINGLE, "a single run", "running", _single),
     Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
           "energy"),
 )  # fmt: skip

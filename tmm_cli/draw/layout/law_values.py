@@ -21,7 +21,7 @@ FIGURES = 4  # of each number
 
 def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """What was found, then the machine reduced to its driver and its law of motion in all positions."""
-    running = results.running
+    running = results.steady
     if running is None or results.motion is None:
         return
     units = results.problem.units
@@ -34,7 +34,7 @@ def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def _columns(results: Results) -> list[Quantity]:
-    running, motion = results.running, results.motion
+    running, motion = results.steady, results.motion
     assert running is not None and motion is not None
     law, way = running.steady.law, running.way(motion.q)
     machine, sense = running.steady.machine, running.sense

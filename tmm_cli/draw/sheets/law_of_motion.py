@@ -30,17 +30,27 @@ PARTS = 6  # loads, or links, that have a curve each; the smallest of more are s
 
 def law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Of a file that asks for it: what acts, what comes of it, and the energy-mass diagram."""
-    running = results.running
+    yield from over_cycle(results)
+    yield from diagram(results)
+
+
+def over_cycle(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """What acts, and what comes of it, over the cycle."""
+    running = results.steady
     if running is None or results.motion is None:
         return
     way, borders = _closely(running)
-    q = running.start + running.sense * way
-    here = running.way(results.motion.q)
+    q, here = running.start + running.sense * way, running.way(results.motion.q)
     moments = _("Reduced moments, works and energies; what drives is positive; dots: computed positions")
     yield "law-moments", over_turn(results, moments, q, borders, _acting(results, running, way, here))
     motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
     yield "law-motion", over_turn(results, motion, q, borders, _moving(results, running, way, here))
-    yield "energy-mass", energy_mass(results, running, way)
+
+
+def diagram(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """The energy-mass diagram."""
+    if results.steady is not None and results.motion is not None:
+        yield "energy-mass", energy_mass(results, results.steady, _closely(results.steady)[0])
 
 
 def _closely(running: Running) -> tuple[Real, list[int]]:

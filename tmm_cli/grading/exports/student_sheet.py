@@ -46,7 +46,7 @@ def sheets(book: Gradebook) -> Iterator[Sheet]:
     """In the order of the marks."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
-    headers = (_("asked"), _("your answer"), *right, _("off by"), _("allowed"), _("points"), _("result"))
+    headers = (_("asked"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
     title, general = shown(book.title), _notes(book)
     for student in book.marks:
         both = list(zip(book.answers, student.marks, strict=True))

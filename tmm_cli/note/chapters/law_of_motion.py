@@ -14,12 +14,12 @@ from tmm_cli.results.reports.cycle import signs
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """Of a file that asks for it."""
-    if subject.results.running is None or subject.results.motion is None:
+    if subject.results.steady is None or subject.results.motion is None:
         return
     from tmm_cli.note.dynamics import driving, flywheel, law, reduced
     from tmm_cli.note.dynamics.words import Here
 
-    every = [Here(subject, subject.results.running, k) for k in subject.detail]
+    every = [Here(subject, subject.results.steady, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
@@ -40,7 +40,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
     yield from flywheel.speeds(here)
     yield from flywheel.diagram(here)
     yield from subject.figures(
-        "law", _("The energy-mass diagram is shown in figure {figure}."), _("Energy-mass diagram"), only="energy-mass"
+        "energy-mass", _("The energy-mass diagram is shown in figure {figure}."), _("Energy-mass diagram")
     )
     if flies:
         for part in (flywheel.by_tangents, flywheel.by_mertsalov, flywheel.on_shaft, flywheel.size):

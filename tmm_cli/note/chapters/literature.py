@@ -24,10 +24,3 @@ def _sources() -> Iterable[tuple[str, str]]:
         "frolov",
         _("Frolov K. V. (ed.) Theory of mechanisms and machines. Moscow: Vysshaya shkola, 1987 (in Russian)."),
     )
-    yield (
-        "uicker",
-        _(
-            "Uicker J. J., Pennock G. R., Shigley J. E. Theory of machines and mechanisms. 5th ed. New York: Oxford "
-            "University Press, 2017."
-        ),
-    )

@@ -118,8 +118,8 @@ def _groups(subject: Subject) -> Iterable[Block]:
         )
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
-    text = _("The class of a mechanism is the highest of its groups' classes; the mechanism is of class {number}.")
-    yield paragraph(text.format(number=ROMAN[min(structure.mechanism_class, 10)]))
+    text = _("The class of a mechanism is the highest of its groups' classes {source}; it is of class {number}.")
+    yield said(text, source=Link("frolov"), number=ROMAN[min(structure.mechanism_class, 10)])
     yield from _apart(subject)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from tmm_cli.language import _
+from tmm_cli.language import _, translated
 from tmm_cli.note.blocks import Block, Found, Heading, paragraph
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Substitution, Sum
@@ -33,13 +33,13 @@ def blocks(subject: Subject) -> Iterable[Block]:
     tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
     if "synthesis-asked" in tables:
         yield rows_of(subject, tables.pop("synthesis-asked"), _("What is asked"), digits=FOUND)
-    yield paragraph(_("The way of the solution: {source}.").format(source=task.outcome.source.rstrip(".")))
+    yield paragraph(_("The way of the solution: {source}.").format(source=translated(task.outcome.source).rstrip(".")))
     yield from _formulas(task)
     found = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
     if found is not None:
         yield rows_of(subject, found, _("What is found"), digits=FOUND)
-        yield from (paragraph(note) for note in task.outcome.notes)
+        yield from (paragraph(translated(note)) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
     for drawn in task.outcome.drawings:
         sentence = _("The construction is drawn in figure {figure}.")

@@ -15,9 +15,9 @@ from tmm_cli.note.expression import (
     Constant,
     Expression,
     Leaf,
-    NthRoot,
     Product,
     Quotient,
+    Raised,
     Square,
     Substitution,
     Sum,
@@ -51,7 +51,7 @@ def diagram(here: Here) -> Iterable[Block]:
     yield said(
         _("The kinetic energy of the machine is {T} in position 0 and grows by the work {A} of all moments from there "
           "on. Over the reduced moment of inertia {J} this work gives the energy-mass diagram of Wittenbauer. A line "
-          "that touches it from above in the slope {up}, and one that touches it from below in the slope {low}, "
+          "that touches it from above with the slope {up}, and one that touches it from below with the slope {low}, "
           "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
           "which {J} is zero the energies {Ea} and {Eb}:"),
         T=START, A=WORK, J=INERTIA, up=_half(LARGEST), low=_half(LEAST), Ea=OFFSETS[0], Eb=OFFSETS[1],
@@ -91,8 +91,8 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
     most, least = Leaf(OFFSETS[0].primed, upper.offset), Leaf(OFFSETS[1].primed, lower.offset)
     yield said(
         _("With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
-          "{found} kg·m². By the method of Mertsalov the energy of the links is taken at the mean speed; then the energy "
-          "of the flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
+          "{found} kg·m². By the method of Mertsalov the energy of the links is taken at the mean speed; then the "
+          "energy of the flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
         plus=_square(1), minus=_square(-1), found=here.subject.text(steady.wittenbauer),
         most=most.symbol, least=least.symbol, rest=row(Letter(WORK), "−", Letter(INERTIA), "·", _half(MEAN)),
     )  # fmt: skip
@@ -121,7 +121,7 @@ def size(here: Here) -> Iterable[Block]:
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
     density, share, height = Leaf(DENSITY, form.density), Leaf(SHARE, form.width), Leaf(HEIGHT, form.height)
-    diameter = form.diameter(steady.on_shaft)
+    diameter = steady.diameter
     pi = Constant(math.pi, "π")
     of_section: tuple[Expression, ...] = (density, share)
     if form.shape == "disk":
@@ -134,19 +134,18 @@ def size(here: Here) -> Iterable[Block]:
     else:
         yield said(
             _("The flywheel is a rim of the density {rho}, whose section has the shares {beta} and {eta} of its mean "
-              "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its mean "
-              "diameter is"),
+              "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its "
+              "mean diameter is"),
             rho=DENSITY, beta=SHARE, eta=HEIGHT, J=_of_form("4"),
         )  # fmt: skip
         numbers, of_section = (4.0, 1.0), (density, share, height)
     root = Quotient(Product((Constant(numbers[0]), inertia)), Product((pi, *of_section)))
-    yield Found(Substitution(DIAMETER, NthRoot(root, 5), diameter, _("m")))
-    yield said(_("its width and its mass are"))
-    yield Found(Substitution(WIDTH, Product((share, Leaf(DIAMETER, diameter))), form.width * diameter, _("m")))
-    cube = Product((Square(Leaf(DIAMETER, diameter)), Leaf(DIAMETER, diameter)))
-    mass = Product((pi, *of_section, cube))
+    yield Found(Substitution(DIAMETER, Raised(root, 1, 5), diameter, _("m")))
+    yield said(_("Its width and its mass:"))
+    yield Found(Substitution(WIDTH, Product((share, Leaf(DIAMETER, diameter))), steady.width, _("m")))
+    mass = Product((pi, *of_section, Raised(Leaf(DIAMETER, diameter), 3)))
     whole = mass if numbers[1] == 1 else Quotient(mass, Constant(4))
-    yield Found(Substitution(MASS, whole, form.mass(diameter), _("kg")))
+    yield Found(Substitution(MASS, whole, steady.mass, _("kg")))
 
 
 def _speed(tangent: Tangent, name: Symbol) -> Leaf:

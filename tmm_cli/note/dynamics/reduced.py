@@ -63,8 +63,8 @@ def moment(here: Here) -> Iterable[Block]:
     if not terms:
         return
     yield said(
-        _("Its reduced moment, {v} being the velocity of the point in which a force acts, {alpha} the angle between "
-          "the two, and a couple acting with or against the angular velocity of its link:"),
+        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the angle "
+          "between the two, and a couple acting with or against the angular velocity of its link:"),
         v=Symbol("v"), alpha=Symbol("α"),
     )  # fmt: skip
     whole = Quotient(_sum(terms), here.speed)
@@ -78,10 +78,14 @@ def _of_load(here: Here, load: Applied) -> Iterable[Term]:
     speed = complex(motion.point(load.link, load.at).v[k])
     power = (pull * speed.conjugate()).real
     if pull and speed:
-        angle = Function("cos", Leaf(Symbol("α", force.plain), abs(float(np.angle(pull / speed))), angle=True))
         in_centre = load.kind == "weight"
         own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
-        yield 1, Product((Leaf(force, abs(pull)), own, angle)), abs(power)
+        angle, factors = abs(float(np.angle(pull / speed))), (Leaf(force, abs(pull)), own)
+        if min(angle, np.pi - angle) < NO_VECTOR:
+            yield (1 if angle < 1 else -1), Product(factors), abs(power)
+        else:
+            cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
+            yield 1, Product((*factors, cosine)), abs(power)
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
         own = Leaf(Symbol("ω", load.link), abs(omega))

@@ -8,9 +8,10 @@ from functools import partial
 from typing import Any
 
 from docx import Document
+from docx.enum.table import WD_TABLE_ALIGNMENT
 from docx.enum.text import WD_ALIGN_PARAGRAPH
 from docx.oxml import parse_xml
-from docx.shared import Pt
+from docx.shared import Mm, Pt
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import (
@@ -32,14 +33,15 @@ from tmm_cli.note.blocks import (
     Sources,
     Title,
 )  # fmt: skip
-from tmm_cli.note.breaking import formula
+from tmm_cli.note.breaking import formula, width
 from tmm_cli.note.context import figures
 from tmm_cli.note.formats.docx_parts import TEXT, Parts, field, plain, prepared, title_page, unbroken
 from tmm_cli.note.formats.omml import display, omath
-from tmm_cli.note.math import Letter
+from tmm_cli.note.math import Letter, Words
 from tmm_cli.plans.record import Symbol
 
 HIGH = 225.0  # mm, of a picture at most
+WIDE = 0.19  # mm, of a letter, a point of its size
 
 
 def docx(note: Note) -> bytes:
@@ -86,6 +88,7 @@ class _Writer:
                 self.document.add_page_break()
             case Title():
                 title_page(self.document, block)
+                self.document.add_page_break()
             case Sources(sources):
                 for source in sources:
                     paragraph = self._paragraph("ListNumber")
@@ -158,11 +161,19 @@ class _Writer:
         caption.paragraph_format.keep_with_next = True
         caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
+        table.alignment = WD_TABLE_ALIGNMENT.CENTER
         size = 10.0 if len(block.head) <= 6 else 8.5
+        widths = [
+            size * WIDE * (3 + max(map(_letters, column))) for column in zip(block.head, *block.rows, strict=True)
+        ]
+        share = min(1.0, TEXT / sum(widths))
+        for column, wide in zip(table.columns, widths, strict=True):
+            column.width = Mm(share * wide)
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
             unbroken(row, head=number == 0)
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
+                cell.width = Mm(share * widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
                 if number and block.numeric[k]:
@@ -180,3 +191,9 @@ class _Writer:
     def _contents(self) -> None:
         self._paragraph("ContentsHeading").add_run(_("Contents"))
         self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in self.note.headings())
+
+
+def _letters(line: Line) -> float:
+    """About how wide a cell is, in letters."""
+    return sum(width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
+               for part in line if not isinstance(part, Ref | Link))  # fmt: skip

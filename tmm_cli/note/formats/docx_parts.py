@@ -211,8 +211,8 @@ def title_page(document: Any, block: Title) -> None:
     title = document.add_paragraph(plain(block.title))
     title.alignment = centre
     for k, (role, name) in enumerate(block.people):
-        line = document.add_paragraph(f"{plain(role)}: {plain(name)}")
-        line.paragraph_format.left_indent = Mm(90)
+        line = document.add_paragraph(f"{plain(role)}: {plain(name) or '_' * 30}")
+        line.paragraph_format.left_indent = Mm(80)
         line.paragraph_format.space_before = Pt(110 if k == 0 else 4)
     foot = document.add_paragraph(plain(block.foot))
     foot.alignment = centre

@@ -8,22 +8,41 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import N_, _
-from tmm_cli.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension
+from tmm_cli.analysis.running import Running
+from tmm_cli.dynamics.steady import Steady
+from tmm_cli.language import N_, _, numeral
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+)  # fmt: skip
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.reports.quality import of_rows
 from tmm_cli.results.table import Column, Table
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.steady import Steady
+    from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
 
 Row = tuple[str, Any, Dimension]
+STEPS = 25  # of a single run, that are shown
 
 
 def tables(results: Results) -> Iterable[Table]:
     """What was found, then the law of motion."""
-    assert results.running is not None
-    steady = results.running.steady
+    running = results.running
+    assert running is not None
+    if not isinstance(running, Running):
+        yield from _single(results, running)
+        return
+    steady = running.steady
     yield Table("dynamics", _("Steady running"), of_rows([*_driving(steady), *_flywheel(steady)], results))
     if results.motion is not None:
         yield _law(results)
@@ -47,25 +66,22 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
         return
     yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
     if steady.found is not None:
-        exact = steady.found.inertia
-        for name, inertia in ((_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)):
+        ways = (_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)
+        for (name, inertia), error in zip(ways, steady.errors, strict=True):
             yield name, inertia, INERTIA
-            yield _("{way}, off by, %").format(way=name), 100 * (inertia / exact - 1), NUMBER
+            yield _("{way}, off by, %").format(way=name), 100 * error, NUMBER
     if steady.task.ratio != 1:
         yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
-    size = steady.task.size
-    diameter = size.diameter(steady.on_shaft)
-    yield _("diameter of a disk") if size.shape == "disk" else _("mean diameter of a rim"), diameter, LENGTH
-    yield _("its width"), size.width * diameter, LENGTH
-    yield _("its mass"), size.mass(diameter), MASS
+    shape = steady.task.size.shape
+    yield _("diameter of a disk") if shape == "disk" else _("mean diameter of a rim"), steady.diameter, LENGTH
+    yield _("its width"), steady.width, LENGTH
+    yield _("its mass"), steady.mass, MASS
 
 
 def _law(results: Results) -> Table:
     motion, running = results.motion, results.running
-    assert motion is not None and running is not None
-    way = running.way(motion.q)
-    work = running.steady.law.energy(way) - running.steady.law.energy(0 * way)
-    driving = running.sense * running.steady.law.driving(way)
+    assert motion is not None and isinstance(running, Running)
+    driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
     return Table(
         "law-of-motion", _("Law of motion of the driver"),
         (
@@ -75,5 +91,41 @@ def _law(results: Results) -> Table:
             Column(N_("epsilon"), motion.acceleration, ANGULAR_ACCELERATION),
             Column(N_("driving moment"), driving, MOMENT),
             Column(N_("work of all moments, J"), work, NUMBER),
+        ),
+    )  # fmt: skip
+
+
+def _single(results: Results, single: SingleRun) -> Iterable[Table]:
+    """A single run: its sums, and as many of its steps as one reads."""
+    run, turns = single.run, results.linkage.driver.kind == "turn"
+    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": _("the time is over")}
+    place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
+    rows: list[Row] = [
+        (_("begins at"), single.first, place),
+        (_("ends at"), single.first + single.sense * run.way[-1], place),
+        (_("lasts, s"), run.time[-1], NUMBER),
+        (_("speed at its end"), run.speed[-1], speed),
+        (_("work of what drives, J"), run.driven[-1], NUMBER),
+        (_("work of the loads, J"), run.loaded[-1], NUMBER),
+        (_("work of the brake, J"), run.braked[-1], NUMBER),
+        (_("kinetic energy at the beginning, J"), run.kinetic[0], NUMBER),
+        (_("kinetic energy at the end, J"), run.kinetic[-1], NUMBER),
+    ]
+    balance = _("what works and energies leave of one another: {share} of the largest").format(
+        share=numeral(run.balance, ".1g")
+    )
+    note = _("the run ends: {why}").format(why=endings[run.ending])
+    yield Table("dynamics", _("Single run"), of_rows(rows, results), notes=(note, balance))
+    at = single.evenly(STEPS)
+    rate = single.speed(at)
+    acceleration = ANGULAR_ACCELERATION if turns else ACCELERATION
+    yield Table(
+        "law-of-motion", _("Law of motion of the driver"),
+        (
+            Column(N_("t, s"), single.time(at), NUMBER),
+            Column(N_("driver"), at, place),
+            Column(N_("speed"), rate, speed),
+            Column(N_("acceleration"), single.accelerated(at), acceleration),
+            Column(N_("kinetic energy, J"), single.kinetic(at), NUMBER),
         ),
     )  # fmt: skip

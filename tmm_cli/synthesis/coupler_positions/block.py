@@ -72,8 +72,9 @@ def read(shape: Shape, values: ValueReader) -> Task:
         same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
         if same:
             raise ProblemError(
-                "this position is there already", path=("positions", k), found=f"position {same[0] + 1}",
-                allowed="any other position, as one turned by 20 deg",
+                _("this position is there already"), path=("positions", k),
+                found=_("position {number}").format(number=same[0] + 1),
+                allowed=_("any other position, as one turned by 20 deg"),
             )  # fmt: skip
     sides = {name: side for name in DYADS if (side := _side(shape, values, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
@@ -87,8 +88,8 @@ def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) 
     if count != 4 or len(sides) == 2:
         why = f"{count} positions" if count != 4 else "both links are given"
         raise ProblemError(
-            "a box is for pivots that are free", path=("pivots_within",), found=why,
-            allowed="four positions, and AB or DC free", key=True,
+            _("a box is for pivots that are free"), path=("pivots_within",), found=why,
+            allowed=_("four positions, and AB or DC free"), key=True,
         )  # fmt: skip
     one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
     return one, other

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
@@ -69,7 +70,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
     else:
         if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:
             raise ProblemError(
-                "pairs and a function are two tasks", path=(extra[0],), allowed="one of the two", key=True
+                _("pairs and a function are two tasks"), path=(extra[0],), allowed=_("one of the two"), key=True
             )
         pairs = [
             (values.number(a, ANGLE, ("pairs", k, 0)), values.number(b, ANGLE, ("pairs", k, 1)))
@@ -89,8 +90,8 @@ def _lengths(lengths: dict[str, float], count: int) -> None:
     other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
-            "one length gives the size of the four-bar", found=", ".join(lengths) or "none",
-            allowed="one of l1, l2, l3, l4" + other, key=True,
+            _("one length gives the size of the four-bar"), found=", ".join(lengths) or "none",
+            allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other, key=True,
         )  # fmt: skip
 
 
@@ -107,8 +108,8 @@ def _zeros(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None
         zeros[other] = zeros[other] or 0.0
     elif count == 5 and len(given) == 1:
         raise ProblemError(
-            "5 pairs determine zero angles too", path=(given[0],), found=given[0],
-            allowed="neither phi0 nor psi0; or both, for the least squares of errors", key=True,
+            _("5 pairs determine zero angles too"), path=(given[0],), found=given[0],
+            allowed=_("neither phi0 nor psi0; or both, for the least squares of errors"), key=True,
         )  # fmt: skip
     elif count < 4:
         zeros.update({key: value or 0.0 for key, value in zeros.items()})
@@ -121,13 +122,13 @@ def _function(shape: Shape, values: ValueReader) -> Function:
     if (shape.function is None) == (shape.table is None) or missing:
         given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
         raise ProblemError(
-            "these keys do not determine a four-bar", found=", ".join(given) or "none",
-            allowed="pairs; or function (or table), x, input, output", key=True,
+            _("these keys do not determine a four-bar"), found=", ".join(given) or "none",
+            allowed=_("pairs; or function (or table), x, input, output"), key=True,
         )  # fmt: skip
     name = (shape.function or "").replace(" ", "")
     if name and name not in FUNCTIONS:
         raise ProblemError(
-            "this function is not known here", path=("function",), found=quote(shape.function),
+            _("this function is not known here"), path=("function",), found=quote(shape.function),
             allowed=", ".join(FUNCTIONS) + "; or table: [[x, y], ...]", near=nearest(name, FUNCTIONS),
         )  # fmt: skip
     ends: dict[str, Any] = {
@@ -140,13 +141,13 @@ def _function(shape: Shape, values: ValueReader) -> Function:
         for k, (a, b) in enumerate(shape.table or ())
     )
     if rows and any(b[0] <= a[0] for a, b in pairwise(rows)):
-        raise ProblemError("x must grow from row to row", path=("table",), allowed="rows in the order of x")
+        raise ProblemError(_("x must grow from row to row"), path=("table",), allowed=_("rows in the order of x"))
     if shape.x is not None:
         x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(shape.x))
     elif rows:
         x = (rows[0][0], rows[-1][0])
     else:
-        raise ProblemError("the range of x is missing", path=("function",), allowed="x: [from, to]", key=True)
+        raise ProblemError(_("the range of x is missing"), path=("function",), allowed="x: [from, to]", key=True)
     found = Function((x[0], x[1]), ends["input"], ends["output"], name, rows)
     _sound(found)
     return found
@@ -157,10 +158,10 @@ def _sound(function: Function) -> None:
         y = function.value(np.linspace(*function.x, 101))
     if function.x[0] == function.x[1] or function.phi[0] == function.phi[1]:
         key = "x" if function.x[0] == function.x[1] else "input"
-        raise ProblemError("this range is empty", path=(key,), allowed="two different ends")
+        raise ProblemError(_("this range is empty"), path=(key,), allowed=_("two different ends"))
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
         other = "two ends at which the function differs"
         raise ProblemError(
-            "the function has no values there, or the same at both ends", path=("x",),
+            _("the function has no values there, or the same at both ends"), path=("x",),
             allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
         )  # fmt: skip

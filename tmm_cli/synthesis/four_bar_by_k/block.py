@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
@@ -47,7 +48,10 @@ def read(shape: Shape, values: ValueReader) -> Task:
     ways = [name for name in WAYS if getattr(shape, name) is not None]
     if len(ways) > 1:
         raise ProblemError(
-            "the pivot A is chosen in one way", found=" and ".join(ways), allowed="one of " + ", ".join(WAYS), key=True
+            _("the pivot A is chosen in one way"),
+            found=_(" and ").join(ways),
+            allowed=_("one of {ways}").format(ways=", ".join(WAYS)),
+            key=True,
         )
     found = numbers(shape, values, WANTS)
     for key in ("support", "near"):

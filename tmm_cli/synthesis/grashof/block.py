@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
@@ -47,7 +48,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
     fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
-            "these keys do not make a mechanism", found=", ".join(sorted(given)) or "none",
+            _("these keys do not make a mechanism"), found=", ".join(sorted(given)) or "none",
             allowed="; or ".join(f"{', '.join(needed)} (and {', '.join(more)})" for _, needed, more in SETS), key=True,
         )  # fmt: skip
     record = fitting[0]
@@ -57,7 +58,8 @@ def read(shape: Shape, values: ValueReader) -> Task:
         if (driver - frame) % 2 == 0:
             allowed = " or ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
             raise ProblemError(
-                "the driver is hinged to the frame", path=("driver",), found=f"'l{driver}' opposite the frame l{frame}",
+                _("the driver is hinged to the frame"), path=("driver",),
+                found=_("'l{driver}' opposite the frame l{frame}").format(driver=driver, frame=frame),
                 allowed=allowed,
             )  # fmt: skip
         found |= {"frame": frame, "driver": driver}

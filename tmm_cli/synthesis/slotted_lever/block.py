@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
@@ -64,7 +65,8 @@ def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
         lacking = [other for other in others if getattr(shape, other) is None]
         if getattr(shape, key) is not None and lacking:
             raise ProblemError(
-                f"{key} goes with {' and '.join(others)} only", path=(key,),
-                found=f"{key} without {' and '.join(lacking)}", allowed=f"{' and '.join(others)}, or no {key}",
+                _("{key} goes with {others} only").format(key=key, others=_(" and ").join(others)), path=(key,),
+                found=_("{key} without {lacking}").format(key=key, lacking=_(" and ").join(lacking)),
+                allowed=_("{others}, or no {key}").format(others=_(" and ").join(others), key=key),
                 key=True,
             )  # fmt: skip

@@ -1,0 +1,86 @@
+"""What is written for people has no English word of the program: all is marked for translation.
+
+Each marked sentence is translated into a word of Cyrillic letters; Latin words that are left are names of the file, or
+signs that are the same in every language.
+"""
+
+import re
+from itertools import chain
+
+import pytest
+
+from tests.test_language import Cyrillic
+from tmm_cli import load, solve
+from tmm_cli.animate.courses import charts
+from tmm_cli.draw import remarks, sheets
+from tmm_cli.language import CATALOGUES, spoken
+from tmm_cli.note import note
+from tmm_cli.note.formats.html import html
+from tmm_cli.results.explain import explain
+from tmm_cli.results.for_people import cells
+from tmm_cli.results.in_words import in_words
+from tmm_cli.results.reports import tables
+from tmm_cli.results.understood import doubts, understood
+from tmm_cli.results.warnings import warnings
+
+PROBLEMS = ("shaper", "planetary-dwell-press", "crank-rocker-synthesis", "press-class-iii", "cylinder", "valve-drive")
+WORD = re.compile(r"(?<!\w)[A-Za-z]{3,}(?!\w)")
+SIGNS = {"cos", "sin", "max", "min", "III", "VII", "tmm"}
+GROUP = re.compile(r"[RPGKC]{2,}")  # by its pairs: RRP
+
+
+@pytest.fixture(scope="module", autouse=True)
+def foreign():
+    kept = CATALOGUES.get("ru")
+    CATALOGUES["ru"] = Cyrillic()
+    yield
+    del CATALOGUES["ru"]
+    if kept is not None:
+        CATALOGUES["ru"] = kept
+
+
+def left(texts, problem):
+    """Latin words that are neither names of the file nor signs."""
+    with open(f"problems/{problem}.yaml", encoding="utf-8") as stream:
+        own = set(WORD.findall(stream.read()))
+    words = {word for text in texts for word in WORD.findall(text)}
+    return {word for word in words - own - SIGNS if not GROUP.fullmatch(word)}
+
+
+def of_tables(found, units):
+    for table in found:
+        yield table.title
+        yield from table.notes
+        yield from (column.heading(units) for column in table.columns)
+        yield from (cell for column in table.columns for cell in cells(column, units) if isinstance(cell, str))
+
+
+def drawn(results, problem):
+    return chain.from_iterable(drawing.texts() for __, drawing in sheets(results))
+
+
+def tabled(results, problem):
+    structure = solve(load(f"problems/{problem}.yaml"), "structure")
+    return of_tables([*tables(results), *explain(structure, True)], results.problem.units)
+
+
+def said(results, problem):
+    return (*understood(results.problem), *doubts(results.problem), *warnings(results), *in_words(results),
+            *remarks(results))  # fmt: skip
+
+
+def noted(results, problem):
+    page = html(note(results, drawn=False)).decode()
+    return [re.sub(r"<(style|script|head|math)\b.*?</\1>|<[^>]*>", " ", page, flags=re.DOTALL)]
+
+
+def charted(results, problem):
+    return (one.words for one in charts(results, results))
+
+
+@pytest.mark.parametrize("way", [drawn, tabled, said, noted, charted], ids=lambda way: way.__name__)
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_no_word_is_left_in_english(problem, way):
+    with spoken("ru"):
+        results = solve(load(f"problems/{problem}.yaml"))
+        assert left(way(results, problem), problem) == set()

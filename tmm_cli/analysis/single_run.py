@@ -1,0 +1,82 @@
+"""A single run of a mechanism with its loads: a press that works once, a cylinder that lifts, starting and stopping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.analysis.running import reduced_between
+from tmm_cli.double_double import rounded
+from tmm_cli.dynamics.reduced import Reduced
+from tmm_cli.dynamics.run import Run, acceleration, run
+from tmm_cli.dynamics.task import RunTask
+from tmm_cli.errors import OutOfRangeError
+from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.analysis.mechanism import Mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class SingleRun:
+    """A run from the driver's place `first` on (rad, or m), and the law of motion that it is.
+
+    turn: after how much a crank is at the same place again, 2 pi; None of what does not turn fully.
+    """
+
+    task: RunTask
+    machine: Reduced
+    run: Run
+    first: float
+    sense: int
+    turn: float | None
+
+    def evenly(self, count: int) -> Real:
+        """Places of the driver, from the beginning of the run to its end."""
+        return self.first + self.sense * np.linspace(0, float(self.run.way[-1]), count)
+
+    def way(self, q: Real) -> Real:
+        """How far the driver has gone at its place q."""
+        gone: Real = self.sense * (rounded(np.asarray(q)) - self.first)
+        again = gone if self.turn is None else np.mod(gone + SAME_PLACE, self.turn) - SAME_PLACE
+        gone = np.where((gone < -SAME_PLACE) | (gone > self.machine.length + SAME_PLACE), again, gone)
+        return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_PLACE, 0.0, gone)
+
+    def speed(self, q: Real) -> Real:
+        """rad/s, or m/s, with its sign; nan where the run does not come."""
+        found: Real = self.sense * self.run.at(self.way(q))[1]
+        return found
+
+    def time(self, q: Real) -> Real:
+        """s, since the beginning; nan where the run does not come."""
+        return self.run.at(self.way(q))[0]
+
+    def kinetic(self, q: Real) -> Real:
+        """Kinetic energy, J; nan where the run does not come."""
+        found: Real = (self.task.flywheel + self.machine.inertia(self.way(q))) * self.speed(q) ** 2 / 2
+        return found
+
+    def accelerated(self, q: Real) -> Real:
+        """rad/s2, or m/s2, with its sign; nan where the run does not come."""
+        way = self.way(q)
+        time, speed = self.run.at(way)
+        found: Real = self.sense * acceleration(self.machine, self.task, time, way, speed)
+        return found
+
+
+def single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
+    """Between the places of the task, or of the first and the last position asked for.
+
+    Raises NoCycleError, OutOfRangeError, StandstillError.
+    """
+    first, last = (float(asked[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
+    whole = mechanism.driver_range
+    if not whole.full and not all(whole.start - SAME_PLACE <= end <= whole.end + SAME_PLACE for end in (first, last)):
+        raise OutOfRangeError(whole.start, whole.end)
+    sense = 1 if last > first else -1
+    machine = reduced_between(mechanism, first, sense, abs(last - first))
+    turn = 2 * np.pi if whole.full and mechanism.linkage.driver.kind == "turn" else None
+    return SingleRun(task, machine, run(machine, task), first, sense, turn)
