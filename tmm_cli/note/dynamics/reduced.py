@@ -63,8 +63,8 @@ def moment(here: Here) -> Iterable[Block]:
     if not terms:
         return
     yield said(
-        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the angle "
-          "between the two, and a couple acting with or against the angular velocity of its link:"),
+        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
+          "angle between the two, and a couple acting with or against the angular velocity of its link:"),
         v=Symbol("v"), alpha=Symbol("α"),
     )  # fmt: skip
     whole = Quotient(_sum(terms), here.speed)
