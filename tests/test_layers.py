@@ -21,6 +21,7 @@ TOP = {
     "__main__",
     "library",
     "linkage",
+    "interpolation",
     "vectors",
     "roots",
     "errors",
@@ -47,7 +48,7 @@ READS_A_TASK = (
     "synthesis.*.block*",
 )
 PROBLEM_LEANS_ON = (  # names of pairs, and what stands among the numbers of a file: a cam's law, motors, flywheels
-    "structure", "pairs.cam_law", "dynamics.task", "dynamics.motors", "dynamics.sizes",
+    "structure", "pairs.cam_law", "dynamics.task", "dynamics.balancing_task", "dynamics.motors", "dynamics.sizes",
 )  # fmt: skip
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
 MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
@@ -56,8 +57,8 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
     "library": "synthesis, for files with a task; all assemblies, for --assemblies",
-    "analysis.pipeline": "the law of motion, for files that ask for it",
-    "problem.build": "the law of motion, for files that ask for it",
+    "analysis.pipeline": "the law of motion and balancing, for files that ask for it",
+    "problem.build": "the law of motion and balancing, for files that ask for it",
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
@@ -67,7 +68,6 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "cli.synthesis_report": "drawing",
     "grading.exports.group": "drawing",
     "note.formats": "an extra: python-docx",
-    "draw.formats.pdf": "matplotlib's PDF",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
     "grading.tables": "an extra: xlsxwriter",

@@ -109,7 +109,13 @@ class NotOnFrameError(LinkageError):
 
 
 class NoCycleError(LinkageError):
-    """A law of motion is wanted where there is no cycle: the driver slides, does not turn fully, or is not alone."""
+    """A law of motion, or balancing, by the block at `path` of the file, is wanted where there is no cycle: the driver
+    slides, does not turn fully, or is not alone.
+    """
+
+    def __init__(self, path: tuple[str, ...] = ("dynamics",)) -> None:
+        super().__init__(".".join(path))
+        self.path = path
 
 
 class OutOfRangeError(LinkageError):
@@ -118,6 +124,14 @@ class OutOfRangeError(LinkageError):
     def __init__(self, start: float, end: float) -> None:
         super().__init__(start, end)
         self.start, self.end = start, end
+
+
+class BySpeedError(LinkageError):
+    """A law of motion is wanted where what acts hangs on it in more than the inertia; path: of it in the file."""
+
+    def __init__(self, path: tuple[str, ...]) -> None:
+        super().__init__(".".join(path))
+        self.path = path
 
 
 class StandstillError(LinkageError):
@@ -134,3 +148,7 @@ class NoFlywheelError(LinkageError):
     def __init__(self, wanted: float, own: float) -> None:
         super().__init__(wanted, own)
         self.wanted, self.own = wanted, own
+
+
+class UnsettledError(LinkageError):
+    """No counterweights of the radii that are told balance: their own masses, on pivots that move, want ever more."""

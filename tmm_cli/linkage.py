@@ -9,12 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
-from tmm_cli.vectors import Real
+from tmm_cli.interpolation import Table
 
 if TYPE_CHECKING:
     from tmm_cli.pairs.cam_law import CamLaw
@@ -144,30 +141,20 @@ class Friction:
 
 
 @dataclass(frozen=True)
-class LoadTable:
-    """A load's size, tabulated: linear between the given arguments, constant beyond the first and the last."""
+class LoadTable(Table):
+    """A load's size, tabulated."""
 
-    against: Literal["stroke", "crank angle", "crank turn"]
-    arguments: tuple[float, ...]
-    values: tuple[float, ...]
-
-    def __call__(self, argument: Real) -> Real:
-        found: Real
-        if not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values)):
-            found = np.interp(argument, self.arguments, self.values)
-            return found
-        found = self.values[0] + 0 * argument  # numbers of many variants, (variants, 1) each
-        for k, (start, end) in enumerate(pairwise(self.arguments)):
-            found = found + np.clip((argument - start) / (end - start), 0, 1) * (self.values[k + 1] - self.values[k])
-        return found
+    against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
 
 
 @dataclass(frozen=True)
 class Load:
-    """A force and a couple on a link.
+    """A force and a couple on a link, and their opposites on the link `base`, if that moves.
 
     `force` (N) acts at `at` (the link's axes, m) and keeps its direction in the drawing, or in the link when
-    `follows`; `moment` in N m. With a table, both are multiplied by its value. when: "always", "working stroke".
+    `follows`; `moment` in N m. With a table, both are multiplied by its value. When it `resists`, both are sizes only:
+    the force opposes the motion of its point, the moment the turning of its link, as the base sees them. when:
+    "always", "working stroke"; window: and only from one angle of the crank to another (rad, counterclockwise).
     """
 
     name: str
@@ -179,6 +166,9 @@ class Load:
     when: str = "always"
     table: LoadTable | None = None
     point: str = ""
+    window: tuple[float, float] | None = None
+    resists: bool = False
+    base: str = FRAME
 
     @property
     def working_stroke_only(self) -> bool:
@@ -206,7 +196,8 @@ class Output:
 class Linkage:
     """A planar linkage, complete. Links are in the order of the file, the frame first.
 
-    keep_side: in exact change points groups keep to the side of the sketch, instead of going smoothly through.
+    keep_side: in exact change points groups keep to the side of the sketch, instead of going smoothly through. turns:
+    of the crank, after which its loads come again.
     """
 
     links: Mapping[str, Link]
@@ -223,6 +214,7 @@ class Linkage:
     friction: tuple[Friction, ...] = ()
     outputs: tuple[Output, ...] = ()
     keep_side: bool = False
+    turns: int = 1
 
     @property
     def drivers(self) -> tuple[Driver, ...]:

@@ -207,7 +207,8 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     """
     assert results.motion is not None
     kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
-    moved = move(linkage, kernels, q, driver_motion(linkage, first))
+    # a law of motion that was found for the machine is taken as it is
+    moved = move(linkage, kernels, q, results.running or driver_motion(linkage, first))
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):

@@ -13,11 +13,12 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.forces.loads import given_loads
+from tmm_cli.forces.given import given_loads
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.linkage import FRAME
 from tmm_cli.roots import least
 from tmm_cli.tolerances import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES
 from tmm_cli.vectors import Real, dot
@@ -79,7 +80,11 @@ def _loads(results: Results, motion: Motion) -> Iterable[Check]:
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
         return
-    always = [x.name for x in loads if not x.working_stroke_only and (x.table is None or x.table.against == "stroke")]
+    always = [
+        x.name for x in loads
+        if not x.working_stroke_only and x.window is None and not x.resists and x.base == FRAME
+        and (x.table is None or x.table.against == "stroke")
+    ]  # fmt: skip
     between = (motion.q[1:] + motion.q[:-1]) / 2
     works = strokes.share(between, motion.linkage.driver.sense)
     for load in given_loads(motion, strokes):

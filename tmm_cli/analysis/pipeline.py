@@ -37,6 +37,7 @@ from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
+    from tmm_cli.analysis.balancing import Balancing
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
@@ -67,6 +68,7 @@ class Results:
     losses: Losses | None = None
     energy: Energy | None = None
     running: Running | SingleRun | None = None
+    balancing: Balancing | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
@@ -194,7 +196,19 @@ def solve(
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
     results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
-    return results if stage == "kinematics" else with_forces(results)
+    if stage == "kinematics":
+        return results
+    return _with_balancing(with_forces(results))
+
+
+def _with_balancing(results: Results) -> Results:
+    """Add what the file asks of balancing; nothing of it is imported unless it is asked for."""
+    task = results.inputs.balancing
+    if task is None or results.motion is None:
+        return results
+    from tmm_cli.analysis.balancing import balancing
+
+    return replace(results, balancing=balancing(results.mechanism, results.start, results.motion.q, task))
 
 
 def _running(results: Results, task: SteadyTask | RunTask) -> Running | SingleRun:

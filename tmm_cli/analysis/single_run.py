@@ -40,7 +40,7 @@ class SingleRun:
 
     def way(self, q: Real) -> Real:
         """How far the driver has gone at its place q."""
-        gone: Real = self.sense * (rounded(np.asarray(q)) - self.first)
+        gone: Real = self.sense * (rounded(q) - self.first)
         again = gone if self.turn is None else np.mod(gone + SAME_PLACE, self.turn) - SAME_PLACE
         gone = np.where((gone < -SAME_PLACE) | (gone > self.machine.length + SAME_PLACE), again, gone)
         return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_PLACE, 0.0, gone)

@@ -77,9 +77,11 @@ def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float
 def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -> tuple[float, float]:
     """Energy at the beginning (J) at which the mean of largest and least speed is this, and the fluctuation delta then.
 
-    nan where the machine does not come round at that mean speed.
+    nan where the machine does not come round at that mean speed, or has no inertia at some place.
     """
     places = work.places()
+    if flywheel + float(np.min(machine.inertia(places))) <= 0:
+        return float("nan"), float("nan")
 
     def speeds(energy: Real) -> Real:
         """The least and the largest speed, of an energy at the beginning each."""

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.linkage import Linkage, Load, LoadTable
+from tmm_cli.linkage import Link, Linkage, Load, LoadTable
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
-from tmm_cli.quantities import ACCELERATION, ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT, Dimension
+from tmm_cli.quantities import ACCELERATION, ANGLE, AREA, FORCE, INERTIA, LENGTH, MASS, MOMENT, PRESSURE, Dimension
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.naming import output_link
+from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.vectors import pi, square
 
 STANDARD_GRAVITY = 9.81
 
@@ -25,19 +29,43 @@ def with_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Li
     for name, given in shape.masses.items():
         part = Part(given, ("masses", name), values)
         values.known(name, linkage.moving, part.path, "link", key=True)
-        link = links[name]
-        if part.one_of("mass", "weight") == "mass":
-            mass = part.positive("mass", MASS, zero=True)
-        else:
-            mass = part.positive("weight", FORCE, zero=True) / (abs(gravity) or STANDARD_GRAVITY)
-        inertia = part.positive("inertia", INERTIA, zero=True)
-        if given.centre is None and len(link.points) > 1 and mass > 0:
-            a, b = list(link.points)[:2]
-            allowed = _("centre: {a}, centre: [x, y], or centre: {{on: {a}{b}, at: 0.5}}").format(a=a, b=b)
-            raise part.refusal("centre", _("where is the centre of mass of this link?"), allowed=allowed)
-        centre = next(iter(link.points.values())) if given.centre is None else part.place("centre", link.points, name)
-        links[name] = replace(link, mass=mass, inertia=inertia, centre=centre)
+        links[name] = _with_points(_with_mass(links[name], part, gravity), part)
     return replace(linkage, links=links, gravity=gravity)
+
+
+def _with_mass(link: Link, part: Part, gravity: complex) -> Link:
+    """The link as a body; without a mass of its own it has point masses alone."""
+    given: schema.Mass = part.given
+    if given.points and given.mass is None and given.weight is None:
+        return replace(
+            link, inertia=part.positive("inertia", INERTIA, zero=True), centre=next(iter(link.points.values()))
+        )
+    if part.one_of("mass", "weight") == "mass":
+        mass = part.positive("mass", MASS, zero=True)
+    else:
+        mass = part.positive("weight", FORCE, zero=True) / (abs(gravity) or STANDARD_GRAVITY)
+    inertia = part.positive("inertia", INERTIA, zero=True)
+    if given.centre is None and len(link.points) > 1 and mass > 0:
+        a, b = list(link.points)[:2]
+        allowed = _("centre: {a}, centre: [x, y], or centre: {{on: {a}{b}, at: 0.5}}").format(a=a, b=b)
+        raise part.refusal("centre", _("where is the centre of mass of this link?"), allowed=allowed)
+    centre = next(iter(link.points.values())) if given.centre is None else part.place("centre", link.points, link.name)
+    return replace(link, mass=mass, inertia=inertia, centre=centre)
+
+
+def _with_points(link: Link, part: Part) -> Link:
+    """The same with its point masses: one mass, in one centre, with the inertia about it (Steiner)."""
+    bodies = [(link.mass, link.centre)]
+    for k, given in enumerate(part.given.points):
+        own = Part(given, (*part.path, "points", k), part.values)
+        bodies.append((own.positive("mass", MASS), own.place("at", link.points, link.name)))
+    if len(bodies) == 1:
+        return link
+    mass = sum(m for m, __ in bodies)
+    centre = sum(m * at for m, at in bodies) / mass
+    return replace(
+        link, mass=mass, centre=centre, inertia=link.inertia + sum(m * square(at - centre) for m, at in bodies)
+    )
 
 
 def _gravity(given: Any, values: ValueReader) -> complex:
@@ -51,45 +79,111 @@ def _gravity(given: Any, values: ValueReader) -> complex:
 
 def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[Load, ...]:
     """The loads of the task, in the order of the file."""
-    loads = []
-    for name, given in shape.loads.items():
-        part = Part(given, ("loads", name), values)
-        check_name(name, part.path, "load")
-        link = part.known("on", linkage.moving, "link")
-        points = linkage.links[link].points
-        at = next(iter(points.values())) if given.at is None else part.place("at", points, link)
-        if given.force is None and given.moment is None:
-            raise part.refusal("", _("a load has a force or a moment"), "neither")
-        force, table = _component("force", FORCE, linkage, part)
-        moment, moment_table = _component("moment", MOMENT, linkage, part)
-        if (table is not None and moment_table is not None) or ((table or moment_table) and force and moment):
-            raise part.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
-        point = given.at if isinstance(given.at, str) else ""
-        follows, table = given.axes == "link", table or moment_table
-        loads.append(Load(name, link, at, force, moment, follows, given.when, table, point))
-    return tuple(loads)
+    return tuple(_load(name, Part(given, ("loads", name), values), linkage) for name, given in shape.loads.items())
 
 
-def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> tuple[Any, LoadTable | None]:
+def _load(name: str, part: Part, linkage: Linkage) -> Load:
+    given: schema.Load = part.given
+    check_name(name, part.path, "load")
+    link = part.known("on", linkage.moving, "link")
+    base = part.values.known(given.from_, linkage.links, (*part.path, "from"), "link")
+    part.values.different((link, base), (*part.path, "from"))
+    points = linkage.links[link].points
+    at = next(iter(points.values())) if given.at is None else part.place("at", points, link)
+    if given.force is None and given.moment is None and given.pressure is None:
+        raise part.refusal("", _("a load has a force or a moment"), "neither")
+    pushes = _pressing(part, linkage) if given.pressure is not None else _component("force", FORCE, linkage, part)
+    turns = _component("moment", MOMENT, linkage, part)
+    both = bool(pushes.size) and bool(turns.size)
+    if (pushes.table is not None and turns.table is not None) or ((pushes.table or turns.table) and both):
+        raise part.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
+    if both and pushes.resists != turns.resists:
+        raise part.refusal("", _("one part of this load resists a motion, the other does not"), "both", _("two loads"))
+    when = given.when if isinstance(given.when, str) else "always"
+    window = None if isinstance(given.when, str) else _window(part, linkage)
+    point = given.at if isinstance(given.at, str) else ""
+    return Load(
+        name, link, at, pushes.size, turns.size, given.axes == "link", when, pushes.table or turns.table, point, window,
+        pushes.resists or turns.resists, base,
+    )  # fmt: skip
+
+
+class _Component(NamedTuple):
     """A force (complex) or a moment in SI; of a table the direction, or one, and the table."""
-    given, force = getattr(load.given, key), key == "force"
+
+    size: Any
+    table: LoadTable | None = None
+    resists: bool = False
+
+
+def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> _Component:
+    given, force = getattr(load.given, key), want == FORCE
     part = Part(given, (*load.path, key), load.values)
     if given is None:
-        return 0j if force else 0.0, None
+        return _Component(0j if force else 0.0)
     if not isinstance(given, schema.Tabulated):
-        return load.values.vector(given, want, part.path) if force else load.number(key, want), None
-    if force == (given.angle is None):
-        angled = _("a force by its size has an angle, a moment has none")
-        raise part.refusal("angle", angled, allowed=_("angle: 180 deg"))
+        return _Component(load.values.vector(given, want, part.path) if force else load.number(key, want))
+    if given.resists is not None:
+        part.one_of("size", "table", "angle", "resists")
+        size = part.positive("resists", want)
+        return _Component(size + 0j if force else size, resists=True)
+    return _sized(part, want, linkage, angled=force)
+
+
+def _pressing(load: Part, linkage: Linkage) -> _Component:
+    """The force of a pressure on an area, or on a piston of a bore."""
+    if load.given.force is not None:
+        raise load.refusal("pressure", _("a load has a force or a pressure"), "both", _("two loads"), at_key=True)
+    if load.one_of("area", "bore") == "area":
+        area = load.positive("area", AREA)
+    else:
+        bore = load.positive("bore", LENGTH)
+        area = pi(bore) * bore * bore / 4
+    part = Part(load.given.pressure, (*load.path, "pressure"), load.values)
+    if part.given.resists is not None:
+        raise part.refusal("resists", _("a pressure has a direction"), allowed=_("angle: 180 deg"), at_key=True)
+    found = _sized(part, PRESSURE, linkage, angled=True)
+    if found.table is None:
+        return _Component(found.size * area)
+    return _Component(found.size, replace(found.table, values=tuple(value * area for value in found.table.values)))
+
+
+def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _Component:
+    """By one size or by a table, at an angle or about the axis of the drawing."""
+    given: schema.Tabulated = part.given
+    if angled == (given.angle is None):
+        wanted = _("a force by its size has an angle, a moment has none")
+        raise part.refusal("angle", wanted, allowed=_("angle: 180 deg"))
     if (given.against is None) != (given.table is None):
         raise part.refusal(
             "against", _("a table has two columns: what it is against, and the size"),
             allowed=_("against: stroke, crank angle or crank turn, and table: [[argument, size], ...]"),
         )  # fmt: skip
-    along = direction(part.number("angle", ANGLE)) if force else 1.0
-    if part.one_of("size", "table") == "size":
-        return along * part.number("size", want), None
-    return along, _table(given, want, linkage, load.values, part.path)
+    along = direction(part.number("angle", ANGLE)) if angled else 1.0
+    if part.one_of("size", "table", "resists") == "size":
+        return _Component(along * part.number("size", want))
+    return _Component(along, _table(given, want, linkage, part.values, part.path))
+
+
+def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
+    """Between which angles of the crank the load acts."""
+    if linkage.driver.kind == "slide":
+        raise part.refusal("when", _("a load between two angles of the crank: this driver slides"))
+    cycle = 2 * np.pi * linkage.turns
+    low, high = (part.values.number(value, ANGLE, (*part.path, "when", k)) for k, value in enumerate(part.given.when))
+    end = f"{part.values.units.from_si(cycle, ANGLE):.6g} {part.values.units.spelt(ANGLE)}"
+    for k, place in enumerate((low, high)):
+        if not -SAME_PLACE <= place + cycle <= 2 * cycle + SAME_PLACE:
+            raise ProblemError(
+                _("the crank does not come to this angle in its cycle"), path=(*part.path, "when", k),
+                found=quote(part.given.when[k]),
+                allowed=_("at most {end}; a longer cycle of loads is told by cycle: 2 turns").format(end=end),
+            )  # fmt: skip
+    length = (high - low) % cycle
+    if length < SAME_PLACE or cycle - length < SAME_PLACE:
+        raise part.refusal("when", _("between these two angles there is nothing, or all"), str(part.given.when),
+                           _("two angles less than {end} apart, or when: always").format(end=end))  # fmt: skip
+    return low, high
 
 
 def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path) -> LoadTable:
@@ -109,4 +203,12 @@ def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: V
     for k in range(1, len(arguments)):
         if arguments[k] <= arguments[k - 1]:
             raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
-    return LoadTable(given.against or "stroke", tuple(arguments), tuple(sizes))
+    against = given.against or "stroke"
+    round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
+    return LoadTable(tuple(arguments), tuple(sizes), given.between, round_and_round, against)
+
+
+def _whole_turns(way: float) -> bool:
+    """Whether a table by the crank ends where it begins."""
+    turns = float(way) / (2 * np.pi)
+    return abs(turns - round(turns)) * 2 * np.pi < SAME_PLACE

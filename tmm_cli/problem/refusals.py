@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from tmm_cli.errors import (
     AmbiguousSketchError,
     AssemblyError,
+    BySpeedError,
     GroupTooLargeError,
     LinkageError,
     MissingStrokesError,
@@ -22,6 +23,7 @@ from tmm_cli.errors import (
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
+    UnsettledError,
 )
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -118,15 +120,27 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
-        case NoCycleError():
+        case NoCycleError(path=path):
+            wanted = _("a law of motion is found for one crank that turns fully")
+            if path == ("balancing",):
+                wanted = _("what shakes is found for one crank that turns fully")
             return ProblemError(
-                _("a law of motion is found for one crank that turns fully"), path=("dynamics",), key=True,
-                allowed=_("one driver that turns round and round"),
+                wanted, path=path, key=True, allowed=_("one driver that turns round and round"),
+            )  # fmt: skip
+        case UnsettledError():
+            return ProblemError(
+                _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
+                path=("balancing", "counterweights"), key=True, allowed=_("larger radii, or other points of the links"),
             )  # fmt: skip
         case OutOfRangeError(start=first, end=last):
             return ProblemError(
                 _("the run goes where the driver does not come"), path=("dynamics", "run"), key=True,
                 allowed=_("{first} to {last}").format(first=shown(first), last=shown(last)),
+            )  # fmt: skip
+        case BySpeedError(path=path):
+            return ProblemError(
+                _("a law of motion is not found where forces hang on reactions or on speeds"), path=path, key=True,
+                allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
             )  # fmt: skip
         case StandstillError() if problem.dynamics is not None and not problem.dynamics.cyclic:
             return ProblemError(

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
@@ -89,6 +90,13 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
+class PointMass(Strict):
+    """A mass in one point of a link."""
+
+    mass: Value
+    at: Place = Field(description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+
+
 class Mass(Strict):
     """Mass properties of a link."""
 
@@ -96,12 +104,18 @@ class Mass(Strict):
     weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
     inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
     centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+    points: list[PointMass] = Field(
+        default_factory=list, max_length=50, description="masses in points of it, beside the others or alone"
+    )
 
 
 class Tabulated(Strict):
-    """A force or moment by table, or by size and angle."""
+    """A force, pressure or moment by table, or by size and angle."""
 
     size: Value | None = None
+    resists: Value | None = Field(
+        default=None, description="instead of size: a constant friction, against the motion of the point or link"
+    )
     angle: Value | None = Field(default=None, description="direction of the force from the x axis")
     against: Literal["stroke", "crank angle", "crank turn"] | None = Field(
         default=None,
@@ -110,6 +124,9 @@ class Tabulated(Strict):
     )
     table: list[Vector] | None = Field(
         default=None, min_length=2, max_length=10_000, description="rows [argument, size]"
+    )
+    between: Literal["linear", "step", "smooth"] = Field(
+        default="linear", description="rows; step: each holds up to the next, smooth: a cubic spline"
     )
 
 
@@ -121,10 +138,15 @@ def _moment(found: Any) -> Any:
     return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
 
+def _when(found: Any) -> Any:
+    return checked_vector(found) if isinstance(found, list) else found
+
+
 class Load(Strict):
     """A force, a moment, or both, on a link."""
 
     on: Name = Field(description="the link")
+    from_: Name = Field(default="0", alias="from", description="the link that has the opposite of it; the frame")
     at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
     force: Annotated[list[Any] | Tabulated | None, BeforeValidator(_force)] = Field(
         default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
@@ -132,8 +154,15 @@ class Load(Strict):
     moment: Annotated[Value | Tabulated | None, BeforeValidator(_moment)] = Field(
         default=None, description="positive counterclockwise; a value, or {against, table}"
     )
+    pressure: Tabulated | None = Field(
+        default=None, description="instead of force: {size, angle} or {angle, against, table}, on an area or a bore"
+    )
+    area: Value | None = Field(default=None, description="that the pressure acts on")
+    bore: Value | None = Field(default=None, description="instead of area: diameter of the piston")
     axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
-    when: Literal["always", "working stroke"] = "always"
+    when: Annotated[Literal["always", "working stroke"] | list[Value], BeforeValidator(_when)] = Field(
+        default="always", description="always, working stroke, or [from, to]: angles of the crank, counterclockwise"
+    )
 
 
 class Gear(Strict):
@@ -301,4 +330,5 @@ class File(Strict):
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
+    balancing: Balancing | None = Field(default=None, description="what shakes the frame, and counterweights")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")

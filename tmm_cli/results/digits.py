@@ -81,6 +81,8 @@ class AccuracyReport:
         column, single = table.columns[k], (False, table.name, k)
         if column.dimension is None or (keys is None and single not in self.found().bound):
             return {}
+        if keys is not None and self.chosen.size and keys[0] not in self.digits.bound:  # a law of motion, as it is
+            return {}
         wanted = tuple(PARTS) if self.full else ("bound",)
         if keys is None:
             return {part: getattr(self.found(), part)[single] for part in wanted}

@@ -136,16 +136,24 @@ def _masses(problem: Problem) -> Table:
 
 
 def _load(problem: Problem, load: Load) -> tuple[str, ...]:
+    dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
     if load.table is not None:
         size = _("table of {rows} rows against the {against}").format(
             rows=len(load.table.values), against=_(FILE_WORDS[load.table.against])
         )
+    elif load.resists:
+        size = _("{size} against the motion").format(size=show(problem, abs(value), dimension))
     elif load.force:
         size = f"{show_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
     else:
         size = show(problem, load.moment, MOMENT)
     place = show_vector(problem, load.at) if load.force else ""
-    return load.name, load.link, place, size, _(FILE_WORDS[load.when])
+    link = load.link if load.base == FRAME else _("{link} from {base}").format(link=load.link, base=load.base)
+    when = _(FILE_WORDS[load.when])
+    if load.window is not None:
+        first, last = (show(problem, angle, ANGLE) for angle in load.window)
+        when = _("crank from {first} to {last}").format(first=first, last=last)
+    return load.name, link, place, size, when
 
 
 def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
@@ -159,10 +167,15 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
         for at, size in zip(table.arguments, table.values, strict=True)
     ]
     direction = show(problem, np.angle(load.force), ANGLE)
-    notes = (_("Its direction is {direction}.").format(direction=direction),) if load.force else ()
+    notes = [_("Its direction is {direction}.").format(direction=direction)] if load.force else []
+    if table.between == "step":
+        notes.append(_("Each row holds up to the next one."))
+    elif table.between == "smooth":
+        closed, natural = _("Between rows: a cubic spline that closes."), _("Between rows: a natural cubic spline.")
+        notes.append(closed if table.closed else natural)
     title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return table_of_words(name, title, (table.against, _("size")), rows, notes)
+    return table_of_words(name, title, (table.against, _("size")), rows, tuple(notes))
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:

@@ -10,6 +10,7 @@ from tmm_cli.analysis.selection import links, moving_centres, moving_points
 from tmm_cli.kinematics.motion import Sliding
 from tmm_cli.linkage import Slide
 from tmm_cli.quantities import BALANCE, ENERGY, LEVER_MOMENT, LINK, LOAD, POINT, REACTION, SLIDE
+from tmm_cli.results.json_balancing import BALANCING
 from tmm_cli.results.reports.cycle import states
 from tmm_cli.results.shapes import (
     FLAG,
@@ -292,6 +293,7 @@ MOTION_PARTS = (
     Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
     Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, _steady),
     Field("run", SINGLE, "a single run", "running", _single),
+    Field("balancing", BALANCING, "what shakes the frame at constant speed of the driver", there="balancing"),
     Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
           "energy"),
 )  # fmt: skip

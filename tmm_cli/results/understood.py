@@ -15,6 +15,7 @@ from tmm_cli.results.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
+SWINGS = 0.02  # of the range of a table: a smooth curve that goes beyond it by more is hardly meant
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
 
 
@@ -77,6 +78,7 @@ def doubts(problem: Problem) -> Iterable[str]:
             )
     yield from _sizes(problem)
     yield from _masses(problem, data)
+    yield from _smooth_tables(problem)
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
         yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
@@ -133,6 +135,17 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
                 "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
                 "sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is meant"
             ).format(link=name, point=next(iter(link.points)), radius=told)
+
+
+def _smooth_tables(problem: Problem) -> Iterable[str]:
+    """A spline may swing far beyond its rows."""
+    for load in problem.linkage.loads:
+        row, share = load.table.overshoot if load.table is not None else (0, 0.0)
+        if share > SWINGS:
+            yield _(
+                "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
+                "{share} % of their range: write `between: linear`, or give more rows there"
+            ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
 
 
 def _spans(problem: Problem) -> dict[str, tuple[float, str]]:

@@ -10,7 +10,7 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.assembly.sketch import sketch_deviations
 from tmm_cli.forces.applied import Applied
-from tmm_cli.forces.loads import table_argument
+from tmm_cli.forces.given import in_window, table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
@@ -316,6 +316,10 @@ def _short_table(results: Results, motion: Motion, load: Load) -> bool:
     acting = motion.placed
     if load.working_stroke_only and results.strokes is not None and results.strokes.strokes:
         acting = acting & results.strokes.share(motion.q, results.linkage.driver.sense)
+    if load.window is not None:
+        acting = acting & in_window(load.window, motion.q, results.linkage)
+    if not np.any(acting):
+        return False
     argument = table_argument(load.table.against, motion, results.strokes)[acting]
     first, last = load.table.arguments[0], load.table.arguments[-1]
     slack = 1e-6 * (last - first)

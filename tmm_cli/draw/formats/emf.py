@@ -15,9 +15,8 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.draw.formats.on_renderer import foot
 from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.draw.paper.fonts import outline
+from tmm_cli.draw.paper.fonts import foot, outline
 from tmm_cli.vectors import Vector
 
 UNIT = 100  # a millimetre

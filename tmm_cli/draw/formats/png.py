@@ -6,6 +6,7 @@ import struct
 import zlib
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,8 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.draw.formats.on_renderer import draw, foot
-from tmm_cli.draw.paper.drawing import Drawing, Text
-from tmm_cli.draw.paper.fonts import outline
+from tmm_cli.draw.paper.drawing import POINT, Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.draw.paper.fonts import foot, outline
 
 DPI = 110
 PACKED = 3  # of 9: drawings get hardly smaller beyond
@@ -32,7 +32,13 @@ def png(drawing: Drawing) -> bytes:
     renderer, told = _paper(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
     pixels[:] = 255
-    draw(drawing, renderer, DPI, _write)
+    to_pixels = Affine2D().scale(DPI / 25.4)
+    for colour, marks in groupby(drawing.marks, lambda mark: mark.colour if isinstance(mark, Text) else None):
+        if colour is None:
+            for mark in marks:
+                _shape(mark, renderer, to_pixels)
+        else:
+            _write([mark for mark in marks if isinstance(mark, Text)], colour, renderer, to_pixels)
     return _packed(pixels, told)
 
 
@@ -42,9 +48,37 @@ def _paper(width: int, height: int) -> tuple[Any, NDArray[Any]]:
     return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP, np.uint8)
 
 
-def _write(
-    renderer: RendererBase, context: GraphicsContextBase, marks: Sequence[Text], to_pixels: Affine2D
-) -> None:  # fmt: skip
+def _shape(mark: Mark, renderer: RendererBase, to_pixels: Affine2D) -> None:
+    context = renderer.new_gc()
+    match mark:
+        case Line():
+            _pen(context, mark.colour, mark.width)
+            context.set_capstyle("round")
+            context.set_joinstyle("round")
+            if mark.dashes:
+                context.set_dashes(0, [length / POINT for length in mark.dashes])
+            renderer.draw_path(context, _path(mark.places), to_pixels)
+        case Area():
+            _pen(context, mark.edge or mark.face, mark.width if mark.edge else 0.0)
+            renderer.draw_path(context, _path(mark.corners, closed=True), to_pixels, to_rgb(mark.face))
+        case Circle():
+            _pen(context, mark.edge, mark.width)
+            shape = Path.circle((mark.centre.real, mark.centre.imag), mark.radius)
+            renderer.draw_path(context, shape, to_pixels, to_rgb(mark.face))
+    context.restore()
+
+
+def _pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
+    context.set_foreground(colour)
+    context.set_linewidth(wide / POINT)
+
+
+def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
+    array = np.array([*places, places[0]] if closed else places)
+    return Path(np.column_stack([array.real, array.imag]), closed=closed)
+
+
+def _write(marks: Sequence[Text], colour: str, renderer: RendererBase, to_pixels: Affine2D) -> None:
     """Texts are filled outlines: letters stand where their widths say, whatever the pixels are."""
     placed, codes = [], []
     for mark in marks:
@@ -53,10 +87,13 @@ def _write(
         placed.append(start + mark.size * along * places)
         codes.append(own)
     every = np.concatenate(placed)
+    context = renderer.new_gc()
+    context.set_foreground(colour)
     context.set_linewidth(0.0)
     context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
     path = Path(np.column_stack([every.real, every.imag]), np.concatenate(codes))
-    renderer.draw_path(context, path, to_pixels, to_rgb(marks[0].colour))
+    renderer.draw_path(context, path, to_pixels, to_rgb(colour))
+    context.restore()
 
 
 def _packed(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:

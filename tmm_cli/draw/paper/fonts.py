@@ -40,9 +40,14 @@ def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any],
     return float(glyph.linearHoriAdvance) / 65536 / UNITS, (places[:, 0] + 1j * places[:, 1]) / UNITS, codes
 
 
+def advance(letter: str, bold: bool = False, italic: bool = False) -> float:
+    """How far on the next letter stands, of its size."""
+    return _letter(letter, bold, italic)[0]
+
+
 @lru_cache(10_000)
 def _width(text: str, bold: bool, italic: bool) -> float:
-    return sum(_letter(letter, bold, italic)[0] for letter in text)
+    return sum(advance(letter, bold, italic) for letter in text)
 
 
 def width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
@@ -72,6 +77,12 @@ def start(mark: Text) -> complex:
     """The left end of a text, at half the height of its letters, mm."""
     left = SHARE[mark.align] * width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
     return mark.at - left * cmath.rect(1, math.radians(mark.turn))
+
+
+def foot(mark: Text) -> tuple[complex, complex]:
+    """The left end of the base line of a text, mm, and the way along it."""
+    along = cmath.rect(1, math.radians(mark.turn))
+    return start(mark) - 1j * HALF * mark.size * along, along
 
 
 def corners(mark: Text) -> tuple[complex, complex, complex, complex]:

@@ -153,7 +153,13 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         size = "({}; {}) {}".format(*parts, subject.unit(FORCE))
     if load.table is not None:
         size = _("by a table")
+    elif load.resists:
+        against = subject.value(abs(load.force), FORCE, 6) if load.force else subject.value(load.moment, MOMENT, 6)
+        size = _("{size} against the motion").format(size=against)
     when = _("in the working stroke") if load.working_stroke_only else _("always")
+    if load.window is not None:
+        first, last = (subject.value(angle, ANGLE, 6) for angle in load.window)
+        when = _("crank from {first} to {last}").format(first=first, last=last)
     return line(load.name), line(link_name(load.link)), line(place if load.force else "—"), line(size), line(when)
 
 

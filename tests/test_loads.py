@@ -1,0 +1,223 @@
+"""What acts on a mechanism beside constant forces: windows, pressures, friction that resists, pairs, point masses."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from tmm_cli import solve
+from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.analysis.running import reduced_machine
+from tmm_cli.interpolation import Table
+from tmm_cli.library import problem_of
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
+from tmm_cli.results.explain import given
+from tmm_cli.results.understood import doubts
+
+MACHINE = """tmm: 1
+units: {length: mm, angle: deg}
+points: {O: [0, 0]}
+guides: {x: {through: [0, 0]}}
+links:
+  1: {points: [O, A], length: 50}
+  2: {points: [A, B], length: 150}
+  3: {points: [B], slides: {on: x}}
+driver: {link: 1, speed: 60 rpm, turns: ccw}
+sketch: {at: 90, B: [140, 0]}
+"""
+STROKE = 0.1  # m
+
+
+def solved(tail, turns="ccw"):
+    return solve(
+        problem_of(read_text(f"{MACHINE.replace('turns: ccw', f'turns: {turns}')}output: 3\n{tail}", "x.yaml"))
+    )
+
+
+def work_of_cycle(results):
+    """Of all loads, J."""
+    return reduced_machine(results.mechanism, results.start).work_of_cycle
+
+
+def load(results, name):
+    return next(load for load in results.loads if load.name == name)
+
+
+def refused(tail):
+    with pytest.raises(ProblemError) as refusal:
+        solved(tail)
+    return str(refusal.value)
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_friction_that_resists_a_slider_takes_force_times_twice_the_stroke_in_a_turn(turns):
+    results = solved("loads: {f: {on: 3, force: {resists: 200 N}}}", turns)
+    assert work_of_cycle(results) == pytest.approx(-200 * 2 * STROKE, rel=1e-12)
+    power = (load(results, "f").force * results.motion.named("B").v).real
+    assert np.all(power <= 1e-12) and np.abs(load(results, "f").force) == pytest.approx(200)
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_friction_in_a_hinge_takes_moment_times_the_whole_swing_of_one_link_on_the_other(turns):
+    """The rod swings by asin(r/l) to both sides, while the crank goes round: between both it is 2 pi in a turn."""
+    on_slider = solved("loads: {m: {on: 2, from: 3, moment: {resists: 2 N*m}}}", turns)
+    assert work_of_cycle(on_slider) == pytest.approx(-2 * 4 * np.arcsin(50 / 150), rel=1e-12)
+    on_crank = solved("loads: {m: {on: 2, from: 1, moment: {resists: 2 N*m}}}", turns)
+    assert work_of_cycle(on_crank) == pytest.approx(-2 * 2 * np.pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_friction_changes_its_sense_where_the_slider_turns_back(turns):
+    """In an end of the stroke it is that of the stroke which begins there."""
+    results = solved("loads: {f: {on: 3, force: {resists: 200 N}}}", turns)
+    force = load(results, "f").force.real
+    assert force[0] == pytest.approx(200) and force[6] == pytest.approx(-200)
+    assert force[1:6] == pytest.approx(200) and force[7:] == pytest.approx(-200)
+
+
+def test_a_pair_of_forces_between_two_links_works_by_what_they_move_on_one_another():
+    """A force along the guide between slider and rod, each the opposite of the other, leaves the frame nothing."""
+    pair = solved("loads: {p: {on: 3, from: 2, at: [20, 0], force: [100, 30]}}")
+    one, other = load(pair, "p"), load(pair, "p'")
+    assert one.force + other.force == pytest.approx(0)
+    spot = pair.motion.point("3", one.at).x
+    moment = (np.conj(spot) * one.force).imag + (np.conj(pair.motion.poses["2"].x) * other.force).imag + other.moment
+    assert moment == pytest.approx(0, abs=1e-12)
+    total = pair.reactions.of("O").force + pair.reactions.of("x").force
+    assert np.abs(total) == pytest.approx(0, abs=1e-10)
+    assert np.max(pair.lever.difference) < 1e-12
+
+
+def test_a_force_that_two_links_have_of_one_another_in_their_hinge_moves_nothing():
+    results = solved("loads: {p: {on: 3, from: 2, at: B, force: [100, 30]}}")
+    assert results.reactions.balance.moment == pytest.approx(0, abs=1e-12)
+    assert load(results, "p'").moment == pytest.approx(0)
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_a_load_of_a_window_works_there_alone(turns):
+    """A constant force in one quarter of the turn works its size times the way of the slider in it."""
+    results = solved("loads: {f: {on: 3, force: [-300, 0], when: [0, 90]}}", turns)
+    at = at_positions(results, np.radians([0, 90])).named("B").x.real
+    way = (at[1] - at[0]) * (1 if turns == "ccw" else -1)
+    assert work_of_cycle(results) == pytest.approx(-300 * way, rel=1e-12)
+    acts = load(results, "f").force != 0
+    angles = np.round(np.degrees(results.motion.q)) % 360
+    assert set(angles[acts]) == ({0, 30, 60} if turns == "ccw" else {90, 60, 30})
+
+
+def test_a_window_may_go_over_the_end_of_the_turn():
+    results = solved("loads: {f: {on: 3, force: [-300, 0], when: [300, 60]}}")
+    angles = np.round(np.degrees(results.motion.q)) % 360
+    assert set(angles[load(results, "f").force != 0]) == {300, 330, 0, 30}
+
+
+def test_a_pressure_on_a_bore_is_a_force_by_its_area():
+    table = "angle: 180, against: stroke, table: [[0, 6 bar], [60, 1 bar], [100, 0]]"
+    given_pressure = solved(f"loads: {{gas: {{on: 3, pressure: {{{table}}}, bore: 80}}}}")
+    area = np.pi * 80**2 / 4
+    forces = table.replace("6 bar", str(0.6 * area)).replace("1 bar", str(0.1 * area))
+    expected = solved(f"loads: {{gas: {{on: 3, force: {{{forces}}}}}}}")
+    assert load(given_pressure, "gas").force == pytest.approx(load(expected, "gas").force, rel=1e-12)
+    by_area = solved("loads: {gas: {on: 3, pressure: {angle: 180, size: 6 bar}, area: 50 cm^2}}")
+    assert load(by_area, "gas").force == pytest.approx(-3000)
+
+
+def test_work_of_an_indicator_diagram_is_its_area():
+    """Pressure by the stroke on the way out, another one in steps on the way back."""
+    results = solved("""loads:
+  out: {on: 3, when: [180, 360], area: 1000, pressure: {angle: 0, against: stroke,
+        table: [[0, 2 bar], [40, 5 bar], [100, 1 bar]]}}
+  back: {on: 3, when: [0, 180], area: 1000, pressure: {angle: 0, against: stroke, between: step,
+         table: [[0, 1 bar], [30, 3 bar]]}}
+""")
+    out = 1e-3 * np.trapezoid([2e5, 5e5, 1e5], [0, 0.04, 0.1])
+    back = 1e-3 * (1e5 * 0.03 + 3e5 * 0.07)
+    assert work_of_cycle(results) == pytest.approx(out - back, rel=1e-12)
+
+
+def test_a_step_table_holds_each_row_up_to_the_next():
+    table = Table((0.0, 1.0, 3.0), (5.0, 7.0, 2.0), "step")
+    assert table(np.array([-1, 0, 0.99, 1, 2.9, 3, 4])).tolist() == [5, 5, 5, 7, 7, 2, 2]
+
+
+def test_a_smooth_table_is_a_cubic_spline_that_closes_where_the_turn_does():
+    rows, sizes = np.radians([0, 70, 150, 260, 360]), np.array([1.0, 4.0, 2.0, -3.0, 1.0])
+    results = solved(
+        "loads: {m: {on: 1, moment: {against: crank angle, between: smooth, table: "
+        "[[0, 1], [70, 4], [150, 2], [260, -3], [360, 1]]}}}"
+    )
+    spline = CubicSpline(rows, sizes, bc_type="periodic")
+    assert load(results, "m").moment == pytest.approx(spline(results.motion.q % (2 * np.pi)), rel=1e-12, abs=1e-12)
+    assert work_of_cycle(results) == pytest.approx(spline.integrate(0, 2 * np.pi), rel=1e-11)
+
+
+def test_slopes_of_tables_are_their_derivatives():
+    x, step = np.linspace(0.05, 4.9, 61), 1e-6
+    for between in ("linear", "smooth"):
+        table = Table((0.0, 1.0, 2.5, 5.0), (1.0, -1.0, 4.0, 0.0), between)
+        assert table.slope(x) == pytest.approx((table(x + step) - table(x - step)) / (2 * step), abs=1e-6)
+
+
+def test_a_curve_that_swings_beyond_its_rows_is_told_of():
+    results = solved(
+        "loads: {f: {on: 3, force: {angle: 180, against: stroke, between: smooth, table: "
+        "[[0, 5 kN], [5, 5 kN], [10, 0], [100, 0]]}}}"
+    )
+    assert any(
+        text.startswith("load f: between rows 3 and 4 of its table the smooth curve goes beyond all rows by ")
+        for text in doubts(results.problem)
+    )
+
+
+def test_point_masses_make_one_body():
+    """Two masses at the ends of a rod: centre between them, inertia by Steiner."""
+    folded = solved("masses: {2: {points: [{mass: 2 kg, at: A}, {mass: 1 kg, at: B}]}}")
+    body = solved("masses: {2: {mass: 3 kg, inertia: 0.015, centre: {on: AB, at: 1/3}}}")
+    assert folded.reactions.balance.moment == pytest.approx(body.reactions.balance.moment, rel=1e-12)
+    assert folded.linkage.links["2"].inertia == pytest.approx(2 * 0.05**2 + 0.1**2)
+    with_body = solved("masses: {2: {mass: 2 kg, inertia: 0, centre: A, points: [{mass: 1 kg, at: B}]}}")
+    assert with_body.linkage.links["2"] == folded.linkage.links["2"]
+
+
+def test_what_was_understood_of_loads_is_told():
+    results = solved("loads: {f: {on: 2, from: 3, moment: {resists: 2}, when: [0, 90]}}")
+    table = next(table for table in given(results.problem) if table.name == "loads")
+    assert [column.values[0] for column in table.columns] == [
+        "f", "2 from 3", "", "2 N*m against the motion", "crank from 0 deg to 90 deg",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("tail", "told"),
+    [
+        ("loads: {f: {on: 3, force: [1, 0], when: [540, 720]}}",
+         "x.yaml:12:42: loads.f.when[0]: the crank does not come to this angle in its cycle\n"
+         "  found:   540\n  allowed: at most 360 deg; a longer cycle of loads is told by cycle: 2 turns"),
+        ("loads: {f: {on: 3, force: [1, 0], when: [0, 360]}}",
+         "x.yaml:12:41: loads.f.when: between these two angles there is nothing, or all\n"
+         "  found:   [0, 360]\n  allowed: two angles less than 360 deg apart, or when: always"),
+        ("loads: {f: {on: 3, from: 3, force: [1, 0]}}",
+         "x.yaml:12:26: loads.f.from: different links are wanted\n  found:   3, 3"),
+        ("loads: {f: {on: 3, force: {resists: 5, angle: 20}}}",
+         "x.yaml:12:20: loads.f.force: one of these keys is wanted\n"
+         "  found:   angle, resists\n  allowed: size, table, angle, resists"),
+        ("loads: {f: {on: 3, force: {resists: -5}}}",
+         "x.yaml:12:37: loads.f.force.resists: a force cannot be negative\n  found:   -5\n  allowed: more than zero"),
+        ("loads: {f: {on: 3, pressure: {size: 5 bar, angle: 0}}}",
+         "x.yaml:12:9: loads.f: one of these keys is wanted\n  allowed: area, bore"),
+        ("loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
+         "x.yaml:12:9: loads.f: one part of this load resists a motion, the other does not\n"
+         "  found:   both\n  allowed: two loads"),
+        ("loads: {f: {on: 3, force: [-9, 0]}}\nfriction: {coefficient: 0.1}\ndynamics: {delta: 1/30}",
+         "x.yaml:13:1: friction: a law of motion is not found where forces hang on reactions or on speeds\n"
+         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
+        ("springs: {s: {between: [0, 3], rate: 1, free: 9, damping: 3}}\ndynamics: {delta: 1/30}",
+         "x.yaml:12:50: springs.s.damping: a law of motion is not found where forces hang on reactions or on speeds\n"
+         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
+        ("masses: {2: {inertia: 1, points: []}}",
+         "x.yaml:12:10: masses.2: one of these keys is wanted\n  allowed: mass, weight"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_its_place(tail, told):
+    assert refused(tail) == told

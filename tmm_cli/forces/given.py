@@ -1,0 +1,113 @@
+"""The loads of the task: what they are tabulated against, where they act, and what resists a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import reduce
+
+import numpy as np
+
+from tmm_cli.forces.applied import Applied
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import Strokes, output_place
+from tmm_cli.linkage import FRAME, Linkage, Load
+from tmm_cli.tolerances import SAME_PLACE, SEAM, SETS_OFF
+from tmm_cli.vectors import Real, Vector, cross, pi
+
+
+def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """The loads of the task, each with its opposite on the other link if that moves.
+
+    Those of working strokes act always where there are none.
+    """
+    for load in motion.linkage.loads:
+        size = _size(load, motion, strokes)
+        along: Vector | float = motion.poses[load.link].z if load.follows else 1.0
+        turning: Real | float = 1.0
+        if load.resists:
+            velocity, turned = setting_off(load, motion)
+            along, turning = -velocity, -turned
+        force, moment = load.force * size * along, load.moment * size * turning
+        yield Applied(load.name, "load", load.link, load.at, force, moment, load.name)
+        if load.base != FRAME:
+            yield _opposite(load, motion, force, moment)
+
+
+def _size(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
+    """What its force and moment are multiplied by."""
+    size = np.ones(np.shape(motion.q))
+    if load.table is not None:
+        size = load.table(table_argument(load.table.against, motion, strokes))
+    if load.working_stroke_only and strokes is not None and strokes.strokes:
+        size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
+    if load.window is not None:
+        size = np.where(in_window(load.window, motion.q, motion.linkage), size, 0.0)
+    return size
+
+
+def _opposite(load: Load, motion: Motion, force: Vector, moment: Real) -> Applied:
+    """What the other link has of it: at the point that both share, or along the same line."""
+    name, points = f"{load.name}'", motion.linkage.links[load.base].points
+    if load.point in points:
+        return Applied(name, "load", load.base, points[load.point], -force, -moment, name)
+    arm = motion.poses[load.link].at(load.at) - motion.poses[load.base].x
+    return Applied(name, "load", load.base, 0j, -force, -moment - cross(arm, force), name)
+
+
+def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
+    """Direction in which the point of a load moves, and the sense in which its link turns, as its base sees them.
+
+    In an end of its way a thing has the direction in which it sets off from there.
+    """
+    base, sense = load.base, np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
+    pose, first = motion.poses[load.link], motion.first[load.link]
+    arm = load.at * pose.z
+    other = pose.at(load.at) - motion.poses[base].x
+    turn = motion.first[base].w
+    velocity = sense * (first.at(arm) - motion.first[base].at(other))
+    spin = sense * (first.w - turn)
+    if motion.order > 1:
+        second, own = motion.second[load.link], motion.second[base]
+        reach = reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
+        gain = second.at(arm, first.w) - own.at(other, turn)
+        velocity = np.where(np.abs(velocity) > SETS_OFF * reach, velocity, gain)
+        spin = np.where(np.abs(spin) > SETS_OFF, spin, second.e - own.e)
+    length = np.abs(velocity)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(length > 0, velocity / length, 0j), np.sign(spin)
+
+
+def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
+    """Whether each place of the crank lies between two angles of it; that which is come to first does, the last not."""
+    low, high = window
+    first = low if linkage.driver.sense > 0 else high
+    cycle = 2 * np.pi * linkage.turns
+    gone = np.mod(linkage.driver.sense * (q - first) + SAME_PLACE, cycle) - SAME_PLACE
+    inside: Real = gone < np.mod(high - low, cycle) - SAME_PLACE
+    return inside
+
+
+def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
+    """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
+    driver = motion.linkage.driver
+    if against == "crank angle":
+        return _turned(motion.q, 2 * motion.linkage.turns * pi(motion.q))
+    first = strokes.strokes[0] if strokes and strokes.strokes else None
+    if against == "crank turn":
+        start = first.start if first else motion.linkage.sketch.at
+        cycle = strokes.cycle if strokes else 2 * np.pi * motion.linkage.turns
+        return _turned(driver.sense * (motion.q - start), cycle)
+    assert strokes is not None and first is not None
+    run: Real = output_place(motion, strokes.link) - first.low
+    if strokes.kind == "swing":
+        run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
+    worked: Real = run * np.sign(first.run)
+    return worked
+
+
+def _turned(angle: Real, cycle: Real | float) -> Real:
+    """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
+    to the other side."""
+    seam = SEAM * (1 + np.abs(angle))
+    within: Real = np.mod(angle + seam, cycle) - seam
+    return within

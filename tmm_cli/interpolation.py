@@ -1,0 +1,144 @@
+"""A function by a table: linear between its rows, in steps, or a cubic spline; constant beyond the first and the last.
+
+The spline's slopes follow from continuous second derivatives; at its ends these are zero, or it closes on itself. C. de
+Boor, A Practical Guide to Splines (2001), ch. 4. Numbers may be of any precision, or arrays (variants, 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_cli.tolerances import SEAM
+from tmm_cli.vectors import Real
+
+Between = Literal["linear", "step", "smooth"]
+LOOKED_AT = 17  # places between two rows
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows by growing arguments. step: each row's value holds up to the next row; smooth: a cubic spline.
+
+    closed: the spline goes on from its last row to its first, which has the same value.
+    """
+
+    arguments: tuple[Any, ...]
+    values: tuple[Any, ...]
+    between: Between = "linear"
+    closed: bool = False
+
+    def __call__(self, argument: Real) -> Real:
+        found: Real
+        if self.between == "linear" and self._plain:
+            found = np.interp(argument, self.arguments, self.values)
+            return found
+        from_row, pieces = self._from_row(argument)
+        found = pieces[0] + from_row * (pieces[1] + from_row * (pieces[2] + from_row * pieces[3]))
+        return found
+
+    def slope(self, argument: Real) -> Real:
+        """Its derivative; in a row where it jumps, that after it, and none of a jump itself."""
+        from_row, (_, first, second, third) = self._from_row(argument)
+        found: Real = first + from_row * (2 * second + 3 * from_row * third)
+        return found
+
+    @property
+    def overshoot(self) -> tuple[int, float]:
+        """After which row (from 0) a smooth curve goes farthest beyond the values of all rows, and by what share of
+        their range."""
+        if self.between != "smooth":
+            return 0, 0.0
+        rows, low, span = np.array(self.arguments, float), min(self.values), np.ptp(np.array(self.values, float))
+        places = rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, LOOKED_AT)
+        found = self(places)
+        beyond = np.max(np.maximum(low - found, found - low - span), axis=1)
+        row = int(np.argmax(beyond))
+        return row, float(beyond[row] / span) if span > 0 else 0.0
+
+    @property
+    def _plain(self) -> bool:
+        return not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values))
+
+    def _from_row(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
+        """How far each argument is from the row before it, and the coefficients of its piece by powers of that."""
+        within = np.minimum(np.maximum(argument, self.arguments[0]), self.arguments[-1])
+        # rounding does not take a place in a row to the piece before it
+        at = within + SEAM * (1 + np.abs(within))
+        starts = self.arguments if self.between == "step" else self.arguments[:-1]
+        row, *pieces = (self._held(at, starts, held) for held in (starts, *zip(*self._pieces, strict=True)))
+        return within - row, tuple(pieces)
+
+    def _held(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
+        """The value of the last start before each place."""
+        found: Real
+        if self._plain:
+            twice = [start for start in starts for _ in range(2)][1:]
+            found = np.interp(at, twice, [value for value in values for _ in range(2)][:-1])
+            return found
+        found = values[0] + 0 * at
+        for start, (before, after) in zip(starts[1:], pairwise(values), strict=True):
+            found = found + np.where(at >= start, after - before, 0.0)
+        return found
+
+    @cached_property
+    def _pieces(self) -> list[tuple[Any, ...]]:
+        """Coefficients of each piece by powers of the way from its row."""
+        if self.between == "step":
+            return [(value, 0.0, 0.0, 0.0) for value in self.values]
+        steps = [end - start for start, end in pairwise(self.arguments)]
+        rises = [(end - start) / step for (start, end), step in zip(pairwise(self.values), steps, strict=True)]
+        if self.between == "linear":
+            return [(value, rise, 0.0, 0.0) for value, rise in zip(self.values, rises, strict=False)]
+        slopes = _closed(steps, rises) if self.closed and len(steps) > 2 else _open(steps, rises)
+        return [
+            (value, m, (3 * rise - 2 * m - n) / step, (m + n - 2 * rise) / (step * step))
+            for value, rise, step, (m, n) in zip(self.values, rises, steps, pairwise(slopes), strict=False)
+        ]
+
+
+def _open(steps: list[Any], rises: list[Any]) -> list[Any]:
+    """Slopes in the rows of a spline whose second derivative is zero at both ends."""
+    lower, middle, upper, right = _inner(steps, rises)
+    return _solved([*lower, 1.0], [2.0, *middle, 2.0], [1.0, *upper], [3 * rises[0], *right, 3 * rises[-1]])
+
+
+def _closed(steps: list[Any], rises: list[Any]) -> list[Any]:
+    """Slopes in the rows of a spline that goes on from its last row to its first.
+
+    The slope m of that row is what fits: all others follow from it, linearly.
+    """
+    lower, middle, upper, right = _inner(steps, rises)
+    fixed = _solved(lower[1:], middle, upper[:-1], right)
+    nothing = [0.0] * (len(right) - 2)
+    by_last = _solved(lower[1:], middle, upper[:-1], [-lower[0], *nothing, -upper[-1]])
+    first, last = steps[0], steps[-1]
+    wanted = 3 * (rises[-1] / last + rises[0] / first) - fixed[0] / first - fixed[-1] / last
+    m = wanted / (2 / first + 2 / last + by_last[0] / first + by_last[-1] / last)
+    return [m, *(one + m * other for one, other in zip(fixed, by_last, strict=True)), m]
+
+
+def _inner(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+    """Rows of the equations for slopes between the ends: factors of the slope before, of the own and of the next."""
+    both = list(zip(pairwise(steps), pairwise(rises), strict=True))
+    return (
+        [1 / a for (a, __), __ in both], [2 / a + 2 / b for (a, b), __ in both], [1 / b for (__, b), __ in both],
+        [3 * (c / a + d / b) for (a, b), (c, d) in both],
+    )  # fmt: skip
+
+
+def _solved(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:
+    """A system of three diagonals, of which the middle one is the largest."""
+    kept = [(middle[0], right[0])]
+    for below, own, above, value in zip(lower, middle[1:], upper, right[1:], strict=True):
+        pivot, before = kept[-1]
+        kept.append((own - below / pivot * above, value - below / pivot * before))
+    found = [kept[-1][1] / kept[-1][0]]
+    for above, (pivot, value) in zip(reversed(upper), reversed(kept[:-1]), strict=True):
+        found.append((value - above * found[-1]) / pivot)
+    return found[::-1]
