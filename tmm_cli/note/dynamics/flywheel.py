@@ -74,8 +74,8 @@ def by_tangents(here: Here) -> Iterable[Block]:
     upper, lower = here.tangents
     if steady.task.delta is not None and steady.task.motor is not None:
         yield said(
-            _("The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that of the "
-              "machine with it. Its moment of inertia, reduced to the driving link:")
+            _("The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that of "
+              "the machine with it. Its moment of inertia, reduced to the driving link:")
         )  # fmt: skip
     elif steady.task.delta is not None:
         yield said(_("The moment of inertia of the flywheel, reduced to the driving link:"))
