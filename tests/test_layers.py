@@ -63,6 +63,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
     "cli.kinematics": "drawing",
+    "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "cli.run": "drawing",
     "cli.structure": "drawing",
     "cli.synthesis_report": "drawing",

@@ -108,6 +108,14 @@ class NotOnFrameError(LinkageError):
         self.link, self.allowed = link, allowed
 
 
+class NoTurnError(LinkageError):
+    """Loads come again after several turns of a crank that does not turn fully."""
+
+    def __init__(self, turns: int) -> None:
+        super().__init__(turns)
+        self.turns = turns
+
+
 class NoCycleError(LinkageError):
     """A law of motion, or balancing, by the block at `path` of the file, is wanted where there is no cycle: the driver
     slides, does not turn fully, or is not alone.

@@ -17,7 +17,7 @@ from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.double_double import exactly
-from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.errors import MissingStrokesError, NoTurnError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
 from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
@@ -306,11 +306,14 @@ def _need_strokes(results: Results) -> None:
 
 def _need_rows(results: Results) -> None:
     """Refuse rows of a load's table that the crank never comes to, rather than quietly cut the table."""
+    turns = results.linkage.turns
+    if turns > 1 and not results.mechanism.driver_range.full:
+        raise NoTurnError(turns)
     for load in results.linkage.loads:
         if load.table is None or load.table.against == "stroke":
             continue
         strokes = results.strokes if load.table.against == "crank turn" else None
-        cycle = 2 * np.pi if strokes is None else strokes.cycle
+        cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
         for row, argument in enumerate(load.table.arguments):
             if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
                 key = "force" if load.force else "moment"

@@ -13,7 +13,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
-from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
+from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_request, build_sketch
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.build_meshes import build_meshes
@@ -101,7 +101,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = Linkage(
         links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),
         output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
-        keep_side=shape.change_points == "keep side",
+        keep_side=shape.change_points == "keep side", turns=build_cycle(shape, first, values),
     )  # fmt: skip
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))

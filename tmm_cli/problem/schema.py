@@ -327,6 +327,9 @@ class File(Strict):
     output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
         default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
     )
+    cycle: Value | None = Field(
+        default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
+    )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")

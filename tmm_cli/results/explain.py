@@ -104,6 +104,8 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
         text = _("link {link}, {speed} clockwise")
     yield _("driver"), text.format(link=driver.link, speed=_speed(driver))
     yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
+    if linkage.turns > 1:
+        yield _("loads come again after"), _("{turns} turns of the crank").format(turns=linkage.turns)
     yield _("positions"), _positions(problem, measure)
     sketch = linkage.sketch
     places = [show(problem, sketch.at, measure)]

@@ -14,6 +14,7 @@ from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import all_groups
+from tmm_cli.draw.sheets.hodographs import balancing
 from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, detailed, position
@@ -86,6 +87,7 @@ CONTENTS = (
     Source(2, lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),
+    Source(2, balancing, 150),
     Source(3, law_of_motion, 240),
     Source(3, law_tables),
 )

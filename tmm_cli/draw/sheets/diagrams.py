@@ -78,12 +78,14 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     reactions = _("Reactions over the cycle; dots: computed positions")
     energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
     pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
+    balancing = _("What shakes the frame over the cycle; dots: computed positions")
     for caption, stem, every in (
         (cycle, "diagrams", [*first, *over_cycle.balances(whole, results)]),
         *((cycle, stem, every) for stem, every in of_outputs.items()),
         (reactions, "reactions", over_cycle.reactions(whole, results)),
         (energy, "energy", over_cycle.energy(whole, results)),
         (pressure, "pressure", over_cycle.pressure(results, motion)),
+        (balancing, "shaking", over_cycle.shaking(results, places)),
     ):
         for start in range(0, len(every), MOST_PANELS):
             name = safe(stem) + (f"-{start // MOST_PANELS + 1}" if start else "")
