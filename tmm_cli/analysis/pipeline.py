@@ -155,6 +155,11 @@ class Results:
         return self.running if self.running is not None and self.running.task.cyclic else None
 
     @property
+    def single(self) -> SingleRun | None:
+        """A single run, where that is asked for."""
+        return self.running if self.running is not None and not self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
