@@ -15,7 +15,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
-from babel.messages.extract import extract
 from babel.messages.mofile import read_mo, write_mo
 from babel.messages.pofile import read_po, write_po
 
@@ -24,7 +23,13 @@ from tmm_cli.problem.units import SYMBOLS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "tmm_cli"
-KEYWORDS = {"_": "", "N_": "", "Phrase": "", "lettered": "symbol"}  # what marks a message, and its context
+KEYWORDS = {
+    "_": "",
+    "N_": "",
+    "Phrase": "",
+    "lettered": "symbol",
+    "symbol": "symbol",
+}  # what marks a message, and its context
 UNITS = sorted({*filter(str.isascii, SYMBOLS), "J", "W"} - {"%"})
 NOT_TRANSLATED = "bench"
 FINISHED: tuple[str, ...] = ()  # languages that are held to be whole: add one when nothing is left to translate
@@ -40,15 +45,23 @@ def sources() -> list[Path]:
 def messages() -> Iterator[tuple[str, str, str]]:
     """Context (mostly none), message and file, as often as it is marked."""
     for file in sources():
-        with file.open("rb") as stream:
-            for __, name, found, __ in _marked(stream):
-                text = found if isinstance(found, str) else found[0]
-                if text:
-                    yield KEYWORDS[name], text, file.relative_to(ROOT).as_posix()
+        name = file.relative_to(ROOT).as_posix()
+        for word, text in marked(file):
+            yield KEYWORDS[word], text, name
         for text in described(file):
-            yield "", text, file.relative_to(ROOT).as_posix()
+            yield "", text, name
     for unit in UNITS:
         yield "unit", unit, "tmm_cli/problem/units.py"
+
+
+def marked(file: Path) -> Iterator[tuple[str, str]]:
+    """Marks and their messages, also those inside of formatted strings, where Babel sees none."""
+    calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
+        if isinstance(call.func, ast.Name) and call.func.id in KEYWORDS and call.args:
+            text = call.args[0]
+            if isinstance(text, ast.Constant) and text.value:
+                yield call.func.id, text.value
 
 
 def described(file: Path) -> Iterator[str]:
@@ -58,14 +71,6 @@ def described(file: Path) -> Iterator[str]:
             texts = [word.value for word in node.keywords if word.arg == "description" and node.func.id == "Field"]
             texts += node.args[1:2] if node.func.id == "PydanticCustomError" else []
             yield from (text.value for text in texts if isinstance(text, ast.Constant))
-
-
-def _marked(stream: io.BufferedReader) -> Iterator[tuple[int, str, object, list[str]]]:
-    """Babel gives a context only where it is an argument; here it is that of the mark."""
-    for word in KEYWORDS:
-        stream.seek(0)
-        for line, found, comments, __ in extract("python", stream, keywords={word: None}):
-            yield line, word, found, comments
 
 
 def path_of(language: str, ending: str = "po") -> Path:

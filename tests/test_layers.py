@@ -48,7 +48,7 @@ READS_A_TASK = (
     "synthesis.*.block*",
 )
 PROBLEM_LEANS_ON = (  # names of pairs, and what stands among the numbers of a file: a cam's law, motors, flywheels
-    "structure", "pairs.cam_law", "dynamics.task", "dynamics.motors", "dynamics.sizes",
+    "structure", "pairs.cam_law", "dynamics.task", "dynamics.balancing_task", "dynamics.motors", "dynamics.sizes",
 )  # fmt: skip
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
 MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
@@ -57,16 +57,18 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
     "library": "synthesis, for files with a task; all assemblies, for --assemblies",
-    "analysis.pipeline": "the law of motion, for files that ask for it",
-    "problem.build": "the law of motion, for files that ask for it",
+    "analysis.pipeline": "the law of motion and balancing, for files that ask for it",
+    "problem.build": "the law of motion and balancing, for files that ask for it",
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
     "cli.kinematics": "drawing",
+    "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "cli.run": "drawing",
     "cli.structure": "drawing",
     "cli.synthesis_report": "drawing",
     "grading.exports.group": "drawing",
+    "note.chapters.law_of_motion": "the law of motion, for files that ask for it",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
@@ -189,6 +191,18 @@ def test_structure_alone_loads_no_drawing_and_no_optimisation():
         "import sys; from tmm_cli.cli.app import main\n"
         "sys.argv = ['tmm', 'structure', 'problems/shaper.yaml']\n"
         "try: main()\nfinally: print('loaded:', *sorted({'matplotlib', 'scipy'} & set(sys.modules)))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+def test_without_its_block_nothing_of_dynamics_is_loaded(tmp_path):
+    told = (
+        "import sys; from tmm_cli.cli.app import main\n"
+        f"sys.argv = ['tmm', 'run', 'problems/sine.yaml', '--no-drawings', '-o', {str(tmp_path)!r}]\n"
+        "try: main()\nfinally: import tmm_cli.draw, tmm_cli.note; print('loaded:', *sorted(\n"
+        "    name for name in sys.modules if name.startswith('tmm_cli.dynamics') or name == 'scipy'))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)

@@ -32,7 +32,7 @@ from tmm_cli.quantities import (
     [
         ("m м", "length", 1), ("mm мм", "length", 0.001), ("cm см", "length", 0.01), ("in", "length", 0.0254),
         ("um μm µm мкм", "length", 1e-6), ("rad рад", "angle", 1), ("deg ° град º", "angle", math.pi / 180),
-        ("rev turn об", "angle", math.tau), ("s с c сек", "time", 1), ("min мин", "time", 60),
+        ("rev turn turns об", "angle", math.tau), ("s с c сек", "time", 1), ("min мин", "time", 60),
         ("kg кг", "mass", 1),
         ("g г", "mass", 0.001), ("t т", "mass", 1000), ("N Н H", "force", 1), ("kN кН кH", "force", 1000),
         ("N*m N·m N⋅m Nm Н·м Нм N|m", "moment of force", 1), ("kN*m кН·м кНм", "moment of force", 1000),

@@ -108,8 +108,22 @@ class NotOnFrameError(LinkageError):
         self.link, self.allowed = link, allowed
 
 
+class NoTurnError(LinkageError):
+    """Loads come again after several turns of a crank that does not turn fully."""
+
+    def __init__(self, turns: int) -> None:
+        super().__init__(turns)
+        self.turns = turns
+
+
 class NoCycleError(LinkageError):
-    """A law of motion is wanted where there is no cycle: the driver slides, does not turn fully, or is not alone."""
+    """A law of motion, or balancing, by the block at `path` of the file, is wanted where there is no cycle: the driver
+    slides, does not turn fully, or is not alone.
+    """
+
+    def __init__(self, path: tuple[str, ...] = ("dynamics",)) -> None:
+        super().__init__(".".join(path))
+        self.path = path
 
 
 class OutOfRangeError(LinkageError):
@@ -142,3 +156,7 @@ class NoFlywheelError(LinkageError):
     def __init__(self, wanted: float, own: float) -> None:
         super().__init__(wanted, own)
         self.wanted, self.own = wanted, own
+
+
+class UnsettledError(LinkageError):
+    """No counterweights of the radii that are told balance: their own masses, on pivots that move, want ever more."""

@@ -79,6 +79,7 @@ def inputs_of(problem: Problem) -> Inputs:
         problem.lever_limit,
         extended,
         dynamics=problem.dynamics,
+        balancing=problem.balancing,
     )
 
 

@@ -28,6 +28,7 @@ from tmm_cli.structure.naming import output_link, roles
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:
+    from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
@@ -40,7 +41,7 @@ class Inputs:
     pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
     the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
     None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
-    as the structure alone does not need them. dynamics: what is asked of the law of motion.
+    as the structure alone does not need them. dynamics, balancing: what is asked of them.
     """
 
     linkage: Linkage
@@ -50,6 +51,7 @@ class Inputs:
     extended: Callable[[], Inputs] | None = None
     sized: bool = True
     dynamics: SteadyTask | RunTask | None = None
+    balancing: BalancingTask | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.double_double import exactly
-from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.errors import MissingStrokesError, NoTurnError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
 from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
@@ -37,6 +37,7 @@ from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
+    from tmm_cli.analysis.balancing import Balancing
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
@@ -67,6 +68,7 @@ class Results:
     losses: Losses | None = None
     energy: Energy | None = None
     running: Running | SingleRun | None = None
+    balancing: Balancing | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
@@ -148,6 +150,11 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
@@ -189,7 +196,19 @@ def solve(
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
     results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
-    return results if stage == "kinematics" else with_forces(results)
+    if stage == "kinematics":
+        return results
+    return _with_balancing(with_forces(results))
+
+
+def _with_balancing(results: Results) -> Results:
+    """Add what the file asks of balancing; nothing of it is imported unless it is asked for."""
+    task = results.inputs.balancing
+    if task is None or results.motion is None:
+        return results
+    from tmm_cli.analysis.balancing import balancing
+
+    return replace(results, balancing=balancing(results.mechanism, results.start, results.motion.q, task))
 
 
 def _running(results: Results, task: SteadyTask | RunTask) -> Running | SingleRun:
@@ -287,11 +306,14 @@ def _need_strokes(results: Results) -> None:
 
 def _need_rows(results: Results) -> None:
     """Refuse rows of a load's table that the crank never comes to, rather than quietly cut the table."""
+    turns = results.linkage.turns
+    if turns > 1 and not results.mechanism.driver_range.full:
+        raise NoTurnError(turns)
     for load in results.linkage.loads:
         if load.table is None or load.table.against == "stroke":
             continue
         strokes = results.strokes if load.table.against == "crank turn" else None
-        cycle = 2 * np.pi if strokes is None else strokes.cycle
+        cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
         for row, argument in enumerate(load.table.arguments):
             if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
                 key = "force" if load.force else "moment"

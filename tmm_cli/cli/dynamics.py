@@ -9,6 +9,8 @@ from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
 
+SHOWN = ("dynamics", "law-of-motion", "balancing", "shaking")
+
 
 def dynamics(
     files: Files,
@@ -20,15 +22,16 @@ def dynamics(
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Law of motion: what drives the machine, its flywheel, speeds and accelerations of the driver."""
+    """Law of motion: what drives the machine, its flywheel, speeds of the driver; and balancing."""
 
     def work(file: str) -> int:
         problem = opened(file, variant_settings(file, variants, variant, settings), position, digits).whole
-        if problem.dynamics is None:
+        if problem.dynamics is None and problem.balancing is None:
             missing = ProblemError(
-                _("nothing is asked of the law of motion"), path=("dynamics",), allowed="dynamics: {delta: 1/30}"
-            )
+                _("nothing is asked of the law of motion or of balancing"), path=("dynamics",),
+                allowed="dynamics: {delta: 1/30}, balancing: {counterweights: {1: {}}}",
+            )  # fmt: skip
             raise missing.located(problem.file, problem.source)
-        return report(solve(problem, "forces", position), ("dynamics", "law-of-motion"), as_json, out, digits)
+        return report(solve(problem, "forces", position), SHOWN, as_json, out, digits)
 
     each(files, work, as_json=as_json, out=out)

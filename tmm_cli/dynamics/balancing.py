@@ -3,21 +3,25 @@
 The frame feels F = -sum m a of all links. It is nothing when the common centre of mass stands still, and a
 counterweight on a link adds c z to sum m r, where c = mr exp(i angle) is given in its axes and z their direction: what
 counterweights have to be is found linearly, for a linkage of any kind. R. S. Berkof, G. G. Lowen, A new method for
-completely force balancing simple linkages, J. Eng. Ind. 91 (1969). Rotating masses in planes: I. I. Artobolevsky,
-Theory of Mechanisms and Machines (1988), ch. 13.
+completely force balancing simple linkages, J. Eng. Ind. 91 (1969).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_cli.dynamics.balancing_task import BalancingTask, Place
+from tmm_cli.errors import UnsettledError
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.vectors import Real, Vector, cross
 
 NO_HELP = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
+ROUNDS = 200  # of masses that move pivots, whose counterweights follow from them
+ALONG = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
+SETTLED = 1e-15  # of the largest counterweight
 
 
 @dataclass(frozen=True)
@@ -31,21 +35,26 @@ class Shaking:
 
 @dataclass(frozen=True)
 class Counterweight:
-    """On a link, about a point of it (its axes, m): mass times radius (kg m) at an angle from the x axis (rad)."""
+    """At its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
 
-    link: str
-    about: complex
+    place: Place
     size: float
     angle: float
+
+    @property
+    def mass(self) -> float | None:
+        """kg; None where the radius is not told."""
+        return self.size / self.place.radius if self.place.radius else None
 
 
 @dataclass(frozen=True)
 class Balanced:
-    """Counterweights, what shakes before and after, and the share of the force's mean square that is left."""
+    """Counterweights, what shakes before and after over a whole cycle; alike: some of them do the same as others."""
 
     counterweights: tuple[Counterweight, ...]
     before: Shaking
     after: Shaking
+    alike: bool = False
 
     @property
     def left(self) -> float:
@@ -54,33 +63,70 @@ class Balanced:
         return float(np.nanmax(np.abs(self.after.force))) / most if most > 0 else 0.0
 
 
-def shaking(motion: Motion, about: complex = 0j) -> Shaking:
-    """Of all links with mass."""
+def shaking(motion: Motion, about: complex = 0j, weights: Sequence[Counterweight] = ()) -> Shaking:
+    """Of all links with mass, and of counterweights.
+
+    Of one whose radius is not told mass times radius alone counts: not the mass on its pivot, nor its own inertia.
+    """
     force, moment = np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
         centre, turning = motion.centre(name), motion.link(name)
         force = force - link.mass * centre.a
         moment = moment - link.mass * cross(centre.x - about, centre.a) - link.inertia * turning.epsilon
+    for weight in weights:
+        c, place = weight.size * np.exp(1j * weight.angle), weight.place
+        pivot, added, mass = motion.point(place.link, place.about), c * _turning(motion, place.link), weight.mass or 0.0
+        force = force - added - mass * pivot.a
+        moment = (
+            moment - cross(pivot.x - about, added + mass * pivot.a) - cross(c * motion.poses[place.link].z, pivot.a)
+        )
+        moment = moment - weight.size * place.radius * motion.link(place.link).epsilon
     return Shaking(force, moment, about)
 
 
-def balanced(motion: Motion, about: Mapping[str, complex], share: float = 1.0) -> Balanced:
-    """Counterweights on links about points of theirs (their axes, m) that leave the least shaking force.
+def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanced:
+    """Counterweights that leave the least shaking force. Raises UnsettledError.
 
-    motion: over a whole cycle at even steps, without its end twice. share: how much of the first harmonic of what they
-    could take is taken. A counterweight adds no mass to its point: what is told is mass times radius alone.
+    motion: over a whole cycle at even steps, without its end twice; dead positions are left out. A radius that is told
+    gives a mass, which loads the pivot: where this moves, the counterweights are found again with that mass, until they
+    stay.
     """
-    before = shaking(motion)
-    links = list(about)
-    # force of a unit counterweight along the x axis of its link: -(second derivative of z); the point's own mass is 0
-    columns = np.stack([-_turning(motion, link) for link in links], axis=1)
-    found = np.linalg.lstsq(columns, -share * before.force, rcond=NO_HELP)[0]
+    before = shaking(motion, about)
+    if not task.counterweights:
+        return Balanced((), before, before)
+    places = task.counterweights
+    # force of a counterweight: -c times the second derivative of the link's direction
+    columns = np.stack([-_turning(motion, place.link) for place in places], axis=1)
+    pivots = np.stack([-motion.point(place.link, place.about).a for place in places], axis=1)
+    per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in places])
+    found, live = np.zeros(len(places), complex), motion.moving
+    for _ in range(ROUNDS):
+        last = found
+        found, rank = _least(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
+        if np.max(np.abs(found - last)) <= SETTLED * np.max(np.abs(found)):
+            break
+    else:
+        raise UnsettledError
     weights = tuple(
-        Counterweight(link, at, float(abs(c)), float(np.angle(c)))
-        for (link, at), c in zip(about.items(), found, strict=True)
+        Counterweight(place, float(abs(c)), _direction(complex(c))) for place, c in zip(places, found, strict=True)
     )
-    return Balanced(weights, before, _with(motion, before, weights))
+    return Balanced(weights, before, shaking(motion, about, weights), rank < 2 * len(places))
+
+
+def _least(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
+    """Counterweights (kg m, complex) that leave the least force, and how many of their parts differ in what they do."""
+    own, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
+    share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
+    matrix = np.block([[share * own.real, -share * own.imag], [other * own.imag, other * own.real]])
+    parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_HELP)
+    half = len(parts) // 2
+    return parts[:half] + 1j * parts[half:], int(rank)
+
+
+def _direction(c: complex) -> float:
+    """Its angle, rad; straight back it is pi, not -pi."""
+    return float(np.angle(c if abs(c.imag) > ALONG * abs(c) else complex(c.real)))
 
 
 def _turning(motion: Motion, link: str) -> Vector:
@@ -88,15 +134,3 @@ def _turning(motion: Motion, link: str) -> Vector:
     turning, z = motion.link(link), motion.poses[link].z
     found: Vector = (1j * turning.epsilon - turning.omega**2) * z
     return found
-
-
-def _with(motion: Motion, before: Shaking, weights: Sequence[Counterweight]) -> Shaking:
-    """What shakes with counterweights whose masses are small on long arms: mass times radius counts."""
-    force, moment = before.force, before.moment
-    for weight in weights:
-        c = weight.size * np.exp(1j * weight.angle)
-        pivot = motion.point(weight.link, weight.about)
-        added = c * _turning(motion, weight.link)
-        force = force - added
-        moment = moment - cross(pivot.x - before.about, added) - cross(c * motion.poses[weight.link].z, pivot.a)
-    return Shaking(force, moment, before.about)

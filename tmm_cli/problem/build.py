@@ -13,7 +13,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
-from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
+from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_request, build_sketch
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.build_meshes import build_meshes
@@ -29,6 +29,7 @@ from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
 
 if TYPE_CHECKING:
+    from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -100,7 +101,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = Linkage(
         links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),
         output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
-        keep_side=shape.change_points == "keep side",
+        keep_side=shape.change_points == "keep side", turns=build_cycle(shape, first, values),
     )  # fmt: skip
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
@@ -120,7 +121,8 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed),
-        TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values), tree,
+        TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
+        _balancing(shape, linkage, values), tree,
     )  # fmt: skip
 
 
@@ -130,6 +132,14 @@ def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> Steady
     from tmm_cli.problem.build_dynamics import build_dynamics  # few files have the block
 
     return build_dynamics(shape, driver, values)
+
+
+def _balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
+    if shape.balancing is None or isinstance(values.units, ExtendedUnits):  # it is found in doubles alone
+        return None
+    from tmm_cli.problem.build_balancing import build_balancing  # few files have the block
+
+    return build_balancing(shape.balancing, linkage, values)
 
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:

@@ -13,6 +13,8 @@ from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
+from tmm_cli.structure.cycle import MOST
+from tmm_cli.tolerances import SAME_PLACE
 
 FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
 UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
@@ -83,6 +85,24 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
         acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
         given.end or "", base, at, stroke,
     )  # fmt: skip
+
+
+def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
+    """Turns of the crank after which its loads come again."""
+    if shape.cycle is None:
+        return 1
+    if driver.kind != "turn":
+        raise ProblemError(
+            _("a cycle is told in turns of a crank: this driver slides"), path=("cycle",), found=quote(shape.cycle)
+        )
+    turns = values.number(shape.cycle, ANGLE, ("cycle",)) / (2 * cmath.pi)
+    whole = round(float(turns))
+    if not 1 <= whole <= MOST or abs(turns - whole) > SAME_PLACE:
+        raise ProblemError(
+            _("a cycle is a whole number of turns"), path=("cycle",), found=quote(shape.cycle),
+            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST),
+        )  # fmt: skip
+    return whole
 
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:

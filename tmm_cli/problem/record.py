@@ -14,6 +14,7 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.structure.spatial import SpatialChain
 
 if TYPE_CHECKING:
+    from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
     from tmm_cli.synthesis.record import Outcome
 
@@ -63,6 +64,7 @@ class Problem:
     bare_speed: bool = False
     title_texts: TitleTexts = TitleTexts()
     dynamics: SteadyTask | RunTask | None = None
+    balancing: BalancingTask | None = None
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)

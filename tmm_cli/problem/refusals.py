@@ -17,12 +17,14 @@ from tmm_cli.errors import (
     NoCycleError,
     NoFlywheelError,
     NotOnFrameError,
+    NoTurnError,
     OutOfRangeError,
     SketchMismatchError,
     StandstillError,
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
+    UnsettledError,
 )
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -119,10 +121,20 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
-        case NoCycleError():
+        case NoTurnError(turns=turns):
+            full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=turns)
+            return ProblemError(full, path=("cycle",), key=True)
+        case NoCycleError(path=path):
+            wanted = _("a law of motion is found for one crank that turns fully")
+            if path == ("balancing",):
+                wanted = _("what shakes is found for one crank that turns fully")
             return ProblemError(
-                _("a law of motion is found for one crank that turns fully"), path=("dynamics",), key=True,
-                allowed=_("one driver that turns round and round"),
+                wanted, path=path, key=True, allowed=_("one driver that turns round and round"),
+            )  # fmt: skip
+        case UnsettledError():
+            return ProblemError(
+                _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
+                path=("balancing", "counterweights"), key=True, allowed=_("larger radii, or other points of the links"),
             )  # fmt: skip
         case OutOfRangeError(start=first, end=last):
             return ProblemError(
@@ -164,8 +176,10 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             return ProblemError(
                 text.format(turns=turns), path=path, found=f"{units.from_si(argument, ANGLE):.6g} {unit}",
                 allowed=_(
-                    "0 to {end} {unit}; of a longer cycle of loads each turn is a problem file of its own"
-                ).format(end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit),
+                    "0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns"
+                ).format(
+                    end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit, turns=max(2, math.ceil(argument / math.tau))
+                ),
             )  # fmt: skip
     return ProblemError(str(error))
 

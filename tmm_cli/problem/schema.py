@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
@@ -326,7 +327,11 @@ class File(Strict):
     output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
         default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
     )
+    cycle: Value | None = Field(
+        default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
+    )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
+    balancing: Balancing | None = Field(default=None, description="what shakes the frame, and counterweights")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")

@@ -88,7 +88,7 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("in", LENGTH, "127/5000"),
     ("rad рад", ANGLE, "1"),
     ("deg ° град", ANGLE, "pi/180"),
-    ("rev turn об o", ANGLE, "pi*2"),
+    ("rev turn turns об o", ANGLE, "pi*2"),
     ("s sec с сек", TIME, "1"),
     ("ms мс", TIME, "1/1000"),
     ("min мин", TIME, "60"),

@@ -79,6 +79,7 @@ def doubts(problem: Problem) -> Iterable[str]:
     yield from _sizes(problem)
     yield from _masses(problem, data)
     yield from _smooth_tables(problem)
+    yield from _several_strokes(problem)
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
         yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
@@ -146,6 +147,16 @@ def _smooth_tables(problem: Problem) -> Iterable[str]:
                 "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
                 "{share} % of their range: write `between: linear`, or give more rows there"
             ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
+
+
+def _several_strokes(problem: Problem) -> Iterable[str]:
+    """In a cycle of several turns there are several working strokes."""
+    turns = problem.linkage.turns
+    for load in problem.linkage.loads if turns > 1 else ():
+        if load.working_stroke_only:
+            yield _(
+                "load {load} acts in every working stroke of the {turns} turns: `when: [from, to]` picks one of them"
+            ).format(load=load.name, turns=turns)
 
 
 def _spans(problem: Problem) -> dict[str, tuple[float, str]]:

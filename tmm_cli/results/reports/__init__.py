@@ -27,6 +27,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("lever", "lever", ("lever",)),
     ("energy", "energy", ("energy", "friction")),
     ("dynamics", "running", ("dynamics", "law-of-motion")),
+    ("balancing", "balancing", ("balancing", "shaking")),
     ("assemblies", "assemblies", ()),
     ("checks", "lever", ("checks",)),
 )
