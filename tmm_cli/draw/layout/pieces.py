@@ -128,7 +128,7 @@ def ways(sizes: Sequence[Size], pages: list[Page], field: Field) -> Iterator[lis
     """These pages, then others that hold the pieces in their order: as many, the most even ones first."""
     yield pages
     every, count = range(len(sizes)), len(pages)
-    if not 1 < math.comb(len(sizes) - 1, count - 1) < WAYS:
+    if count < 2 or math.comb(len(sizes) - 1, count - 1) > WAYS:
         return
 
     @cache
