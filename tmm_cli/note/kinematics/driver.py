@@ -17,6 +17,7 @@ from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
 from tmm_cli.plans.record import Symbol
+from tmm_cli.results.understood import between_rows
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
@@ -31,6 +32,13 @@ def drivers(subject: Subject) -> Iterable[Block]:
 def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    if driver.law is not None:
+        text = _(
+            "Driving link {link} turns about point {point} {sense}; its angular velocity is given by a table ({how})."
+        )
+        how = between_rows(driver.law)
+        yield said(text, link=driver.link, point=driver.joint, sense=sense(driver.sense), how=how)
+        return
     fields = {"link": driver.link, "point": driver.joint, "base": driver.base, "sense": sense(driver.sense)}
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
     if driver.base != FRAME:
@@ -76,6 +84,8 @@ def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
 def speed_here(here: Here) -> Iterable[Block]:
     """The speed in a position of a first driver that does not keep it."""
     results, driver = here.subject.results, here.motion.linkage.driver
+    if driver.law is not None or results.running is not None:
+        yield from _by_law(here)
     if not driver.acceleration:
         return
     turns = driver.kind == "turn"
@@ -92,6 +102,14 @@ def speed_here(here: Here) -> Iterable[Block]:
     start = Square(Leaf(Symbol(letter, "0"), driver.rate))
     root = SquareRoot(Sum(((1, start), (1, more))))
     yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit(letter)))
+
+
+def _by_law(here: Here) -> Iterable[Block]:
+    """Speed and acceleration in a position, where a law of motion gives them."""
+    driver, turns = here.motion.linkage.driver, here.motion.linkage.driver.kind == "turn"
+    yield said(_("In this position the law of motion of the driving link gives"))
+    for letter, value in zip("ωε" if turns else "va", (here.motion.rate, here.motion.acceleration), strict=True):
+        yield _given(here.subject, Symbol(letter, driver.link), driver.sense * float(value[here.k]), unit(letter))
 
 
 def positions(subject: Subject) -> Iterable[Block]:
