@@ -150,6 +150,11 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None

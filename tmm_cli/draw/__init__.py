@@ -15,6 +15,7 @@ from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import groups
 from tmm_cli.draw.sheets.hodographs import balancing as shaking
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
@@ -59,6 +60,7 @@ def _of_mechanism(results: Results) -> Drawn:
         yield from all_positions(results)
         yield from diagrams(results)
         yield from shaking(results)
+        yield from law_of_motion(results)
 
 
 def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:

@@ -117,7 +117,33 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     places += [f"{name} {show_vector(problem, place)}" for name, place in sketch.points.items()]
     places += [f"{name} {show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
     yield _("sketch, driver at"), ", ".join(places)
+    yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law(problem)))
     yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
+
+
+def _law(problem: Problem) -> Iterable[str]:
+    """What is computed of it."""
+    task = problem.dynamics
+    if task is None:
+        yield _("given; without a block `dynamics` nothing of it is computed")
+        return
+    if not task.cyclic:
+        yield _("of a single run, integrated by time")
+        return
+    yield _("of steady running, from the reduced inertia and the reduced moment over the cycle")
+    if task.motor is not None:
+        yield _("driven by the characteristic of its motor")
+    else:
+        speed = show(problem, task.mean, ANGULAR_SPEED)
+        yield _("driven by a constant moment that leaves no work over the cycle, mean speed {speed}").format(
+            speed=speed
+        )
+    if task.flywheel:
+        given = show(problem, task.flywheel, INERTIA)
+        yield _("with a flywheel of {inertia}, reduced to the driver").format(inertia=given)
+    if task.delta is not None:
+        yield _("a flywheel is found that keeps delta = {delta}").format(delta=numeral(task.delta, ".4g"))
+    yield _("forces with the speeds and accelerations of this law")
 
 
 def _positions(problem: Problem, measure: Dimension) -> str:

@@ -62,7 +62,7 @@ def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     ):
         moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
         for start in range(0, len(moving), BESIDE):
-            yield f"table-{stem}", _over_positions(results, title, moving[start : start + BESIDE])
+            yield f"table-{stem}", over_positions(results, title, moving[start : start + BESIDE])
 
 
 def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
@@ -81,17 +81,18 @@ def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
         __, ___, dimension = columns[0]
         checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
         columns.append((_("by the lever"), checked, dimension))
-    yield "table-balance", _over_positions(results, _("What balances the driver"), columns)
+    yield "table-balance", over_positions(results, _("What balances the driver"), columns)
 
 
-def _over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
+def over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
     """A row a position, angles of the driver first."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
     place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
-    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.spelt(kind))}") for name, __, kind in every)]
+    heads: list[Words] = [_("No.")]
+    heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
     cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]

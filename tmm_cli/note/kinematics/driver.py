@@ -25,7 +25,15 @@ ROUND = 1e-9  # of a speed in rpm that was given as such
 
 def drivers(subject: Subject) -> Iterable[Block]:
     """How each driving link moves."""
+    running = subject.results.running
     for driver in subject.results.linkage.drivers:
+        if running is not None:
+            yield said(
+                _("How fast driving link {link} moves follows from its law of motion, which is found below: it needs "
+                  "ratios of velocities only, and these are the same at every speed."),
+                link=driver.link,
+            )  # fmt: skip
+            continue
         yield from _turning(subject, driver) if driver.kind == "turn" else _sliding(subject, driver)
 
 
@@ -85,7 +93,9 @@ def speed_here(here: Here) -> Iterable[Block]:
     """The speed in a position of a first driver that does not keep it."""
     results, driver = here.subject.results, here.motion.linkage.driver
     if driver.law is not None or results.running is not None:
+        yield said(_("By the law of motion its speed and its acceleration are here"))
         yield from _by_law(here)
+        return
     if not driver.acceleration:
         return
     turns = driver.kind == "turn"
@@ -105,11 +115,11 @@ def speed_here(here: Here) -> Iterable[Block]:
 
 
 def _by_law(here: Here) -> Iterable[Block]:
-    """Speed and acceleration in a position, where a law of motion gives them."""
-    driver, turns = here.motion.linkage.driver, here.motion.linkage.driver.kind == "turn"
-    yield said(_("In this position the law of motion of the driving link gives"))
-    for letter, value in zip("ωε" if turns else "va", (here.motion.rate, here.motion.acceleration), strict=True):
-        yield _given(here.subject, Symbol(letter, driver.link), driver.sense * float(value[here.k]), unit(letter))
+    motion, k = here.motion, here.k
+    own, letters = motion.linkage.driver.link, "ωε" if motion.linkage.driver.kind == "turn" else "va"
+    for letter, values in zip(letters, (motion.rate, motion.acceleration), strict=True):
+        value = float(np.broadcast_to(values, motion.q.shape)[k])
+        yield _given(here.subject, Symbol(letter, own), value, unit(letter))
 
 
 def positions(subject: Subject) -> Iterable[Block]:
