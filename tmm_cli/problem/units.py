@@ -120,6 +120,7 @@ _LOOKALIKES: Final = {latin(name): unit for name, unit in SYMBOLS.items()}
 _FIRST: Final = {latin(name): names.split()[0] for names, *__ in _ROWS for name in names.split()}
 
 _SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
+_LETTERS = re.compile("[^\\W\\d_⁰¹²³⁴-⁹]+|°")
 _FROM_SUPERSCRIPT = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2009\u202f\t\r\n", "···*--μ°      ")
 _FACTOR = re.compile(r"\s*([·*/]?)\s*([^\W\d_]+|°|%|1(?=\s*/))(?:\^\s*\(?([+-]?\d+)\)?|(\d))?")
@@ -138,7 +139,7 @@ def symbol(name: str) -> Unit | None:
 
 def in_latin(text: str) -> str:
     """A unit that is known, with the names that are not in ASCII by their first ones: deg for ° and for град."""
-    return re.sub(r"[^\W\d_]+|°", lambda name: name[0] if name[0].isascii() else _FIRST[latin(name[0])], text)
+    return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(latin(name[0]), name[0]), text)
 
 
 def parse_unit(text: str) -> Unit:
