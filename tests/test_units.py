@@ -103,7 +103,7 @@ def test_defaults_of_bare_numbers() -> None:
 def test_every_unit_is_told_in_latin_letters_whatever_those_of_the_file() -> None:
     for kind, written, told in [
         ("length", "мкм", "um"), ("angle", "°", "deg"), ("moment of force", "кН·м", "kN·m"),
-        ("moment of inertia", "кг·м²", "kg·m²"), ("angular speed", "1/мин", "1/min"), ("angular speed", "мин⁻¹", "min⁻¹"),
+        ("moment of inertia", "кг·м²", "kg·m²"), ("angular speed", "мин⁻¹", "min⁻¹"),
     ]:  # fmt: skip
         assert UnitSystem({kind: written}).symbol(KINDS[kind].dimension) == told
         assert parse_unit(told) == parse_unit(written)
