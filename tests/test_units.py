@@ -91,6 +91,11 @@ def test_products_of_any_two(a: str, b: str, sign: str) -> None:
     assert found.si(1.0) == pytest.approx(first.si(1.0) * second.si(1.0) ** power, rel=1e-14)
 
 
+def test_every_kind_has_its_article_and_an_example() -> None:
+    for kind in KINDS.values():
+        assert str(kind.dimension).startswith(("a ", "an ")) and kind.example in kind.dimension.example
+
+
 def test_defaults_of_bare_numbers() -> None:
     units = UnitSystem()
     symbols = ["", "mm", "deg", "s", "kg", "N", "N*m", "kg*m^2", "m/s", "m/s^2", "rad/s", "rad/s^2", "N/m", "N*m/rad",
