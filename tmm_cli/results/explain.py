@@ -7,11 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.double_double import rounded
 from tmm_cli.language import N_, _, numeral, spelt
-from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
+from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, SpeedTable, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
     ANGLE,
+    ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
     DAMPING,
     FORCE,
@@ -29,6 +31,7 @@ from tmm_cli.quantities import (
 from tmm_cli.results.reports.synthesis import parameters
 from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, steps
 from tmm_cli.results.table import Table, table_of_words, with_unit
+from tmm_cli.results.understood import between_rows
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.naming import output_link
 
@@ -55,6 +58,8 @@ def given(problem: Problem) -> Iterable[Table]:
     if problem.linkage.slides:
         yield _slides(problem)
     yield table_of_words("facts", _("Driver, positions, limits"), (_("what"), _("value")), _facts(problem))
+    if problem.linkage.driver.law is not None:
+        yield _speeds(problem, problem.linkage.driver.law)
     yield from _further(problem)
     if any(np.any(link.mass != 0) for link in problem.linkage.links.values()):
         yield _masses(problem)
@@ -217,8 +222,26 @@ def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH)
     return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
 
 
+def _speeds(problem: Problem, law: SpeedTable) -> Table:
+    """The rows of a table of speeds, with the accelerations that follow from them, or are given."""
+    squares = law.squares
+    places = np.array([float(rounded(row)) for row in squares.arguments])
+    after = squares.slope(places) / 2 * problem.linkage.driver.sense
+    gains = after if law.accelerations is None else law.accelerations(places)
+    speeds = np.sqrt(squares(places))
+    rows = [
+        (show(problem, at, ANGLE), show(problem, speed, ANGULAR_SPEED), show(problem, gain, ANGULAR_ACCELERATION))
+        for at, speed, gain in zip(places, speeds, gains, strict=True)
+    ]
+    head = (_("crank angle"), _("speed"), _("acceleration"))
+    note = _("Between rows: {between}.").format(between=between_rows(law))
+    return table_of_words("speeds", _("Speed of the driver, in its sense"), head, rows, (note,))
+
+
 def _speed(driver: Driver) -> str:
     """A driver's speed, and its acceleration where it has one."""
+    if driver.law is not None:
+        return _("by a table against the crank angle")
     turns = driver.kind == "turn"
     rate = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
     return rate + (

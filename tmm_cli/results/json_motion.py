@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links, moving_centres, moving_points
 from tmm_cli.kinematics.motion import Sliding
@@ -33,14 +35,26 @@ from tmm_cli.vectors import Vector
 if TYPE_CHECKING:
     from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
 
+
+def _at_start(results: Results, name: str) -> float:
+    """Speed or acceleration of the driver at position 0, in its sense."""
+    driver = results.linkage.driver
+    if driver.law is None and results.running is None:
+        given: float = getattr(driver, name)
+        return given
+    start, law = np.array([results.start]), results.law
+    return float(driver.sense * (law.speed if name == "rate" else law.accelerated)(start)[0])
+
+
 LIMIT = record("a limit", Field("at", NUMBER, "place", "place"), Field("group", TEXT, "by which group"))
 DRIVER = record(
     "the input",
     Field("link", TEXT, "driven link", "linkage.driver.link"),
     Field("kind", TEXT, "turn or slide", "linkage.driver.kind"),
     Field("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
-    Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", "linkage.driver.rate"),
-    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, in its sense", "linkage.driver.acceleration"),
+    Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", lambda r: _at_start(r, "rate")),
+    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, at position 0, in its sense",
+          lambda r: _at_start(r, "acceleration")),
     Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
     Field("range", list_of(NUMBER), "from, to: places of the driver",
           lambda r: (r.driver_range.start, r.driver_range.end)),

@@ -148,7 +148,7 @@ def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], e
         for start, length, working in _strokes(results)
     ]
     over = Across(axis, words, sorted(numbers), spans)
-    chart(sheet, [_plot(one, results.problem.units, xs, marks, borders) for one in every], over)
+    chart(sheet, [plotted(one, results.problem.units, xs, marks, borders) for one in every], over)
     return sheet.finish()
 
 
@@ -162,7 +162,8 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
     return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
 
 
-def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+    """A panel of quantities over places xs, which may jump after those of the numbers `borders`; marks: of points."""
     factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):

@@ -17,6 +17,7 @@ from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
 from tmm_cli.plans.record import Symbol
+from tmm_cli.results.understood import between_rows
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
@@ -39,6 +40,13 @@ def drivers(subject: Subject) -> Iterable[Block]:
 def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    if driver.law is not None:
+        text = _(
+            "Driving link {link} turns about point {point} {sense}; its angular velocity is given by a table ({how})."
+        )
+        how = between_rows(driver.law)
+        yield said(text, link=driver.link, point=driver.joint, sense=sense(driver.sense), how=how)
+        return
     fields = {"link": driver.link, "point": driver.joint, "base": driver.base, "sense": sense(driver.sense)}
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
     if driver.base != FRAME:
@@ -84,7 +92,7 @@ def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
 def speed_here(here: Here) -> Iterable[Block]:
     """The speed in a position of a first driver that does not keep it."""
     results, driver = here.subject.results, here.motion.linkage.driver
-    if results.running is not None:
+    if driver.law is not None or results.running is not None:
         yield said(_("By the law of motion its speed and its acceleration are here"))
         yield from _by_law(here)
         return
