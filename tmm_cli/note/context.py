@@ -25,6 +25,7 @@ from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import plain, rounded
+from tmm_cli.plans.record import subscript
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
 
@@ -96,17 +97,19 @@ class Subject:
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def figures(
-        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = ""
+        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""
     ) -> Iterable[Block]:
         """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
 
-        caption: else the drawing's own heading. only: those of this stem, and what is continued of it.
+        caption: else the drawing's own heading. only: those of this stem, and what is continued of it. further: the
+        sentence of the second drawing, and of those after it.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and stem != only and not stem.startswith(f"{only}-sheet-"):
                 continue
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
+            sentence = further or sentence
 
 
 def figures(text: str, language: str) -> str:
@@ -115,5 +118,14 @@ def figures(text: str, language: str) -> str:
 
 
 def with_degrees(text: str) -> str:
-    """90 deg is 90°, in every language."""
-    return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text)
+    """90 deg is 90°, in every language; 5 % stays on one line."""
+    return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+GREEK = {"alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π", "phi": "φ", "psi": "ψ"}
+
+
+def by_hand(text: str) -> str:
+    """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
+    text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
+    return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), text).replace(" - ", " − ")

@@ -60,11 +60,11 @@ class Position:
         return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
-def place_of_driver(results: Results, q: float) -> str:
+def place_of_driver(results: Results, q: float, digits: int = 6) -> str:
     """In words."""
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
-    place = f"{numeral(units.from_si(q % (2 * np.pi) if crank else q, measure), '.6g')} {units.spelt(measure)}"
+    place = f"{numeral(units.from_si(q % (2 * np.pi) if crank else q, measure), f'.{digits}g')} {units.spelt(measure)}"
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 

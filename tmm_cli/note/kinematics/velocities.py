@@ -46,10 +46,13 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
     turned = further(step)
     if here.first and turned:
-        one = _("The velocity of point {points} of the driving link is across {line}, in the sense of its rotation:")
-        several = _(
-            "The velocities of points {points} of the driving link are across their radii, in the sense of its "
+        one = _(
+            "The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
             "rotation:"
+        )
+        several = _(
+            "The velocities of points {points} of the driving link are perpendicular to their radii, in the sense of "
+            "its rotation:"
         )
         line = turned[0].base.at + turned[0].point.at
         yield said(one if len(turned) == 1 else several, points=listed(about.point for about in turned), line=line)
@@ -121,7 +124,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
     yield from _rates(here, together)
-    yield from turning_as_one(step, here.omega, "ω")
+    yield from turning_as_one(step, here.omega, "ω", explained=here.first and not step.ratios)
     for about in further(step):
         yield from _known_about(here, about, found)
 
@@ -136,6 +139,9 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
         yield _turned(here, about)
         yield here.v.read(here.v.of(about.point))
     else:
+        if here.first:
+            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            yield said(text, point=name_of(about.point), link=about.link)
         yield _turned(here, about)
 
 
