@@ -36,6 +36,7 @@ from tmm_cli.note.math import Letter, Node
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
+STOPS, JOINER = ".,;:)", "\N{WORD JOINER}"
 WHOLE = 13  # rows of a table that is not parted between pages
 
 
@@ -101,8 +102,12 @@ class Writer:
                 return f'<ol class="sources">{listed}</ol>'
 
     def line(self, line: Line) -> str:
-        """Texts and formulas."""
-        return "".join(self.inline(part) for part in line)
+        """Texts and formulas; a stop stays on the line of the formula before it."""
+        texts = [self.inline(part) for part in line]
+        for k, part in enumerate(line[1:], 1):
+            if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
+                texts[k] = f"{JOINER}{texts[k]}"
+        return "".join(texts)
 
     def inline(self, part: Inline) -> str:
         """One of these."""

@@ -16,6 +16,7 @@ from tmm_cli.note.kinematics.words import (
     listed,
     name_of,
     not_on_paper,
+    not_turning,
     points_of,
     remaining,
     sense,
@@ -117,6 +118,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         text = none if not points else one if len(points) == 1 else several
         yield said(text, group=title, points=listed(points))
         yield from equations(step, together, "v", found, here.omega)
+        yield from not_turning(together)
         yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))
