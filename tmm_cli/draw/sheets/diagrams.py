@@ -66,7 +66,7 @@ SYMBOLS = {
 
 def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
-    places, borders = _closely(results)
+    places, borders = closely(results)
     whole = at_places(results, places)
     motion = whole.motion
     assert motion is not None
@@ -89,10 +89,10 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     ):
         for start in range(0, len(every), MOST_PANELS):
             name = safe(stem) + (f"-{start // MOST_PANELS + 1}" if start else "")
-            yield name, _sheet(results, caption, motion, borders, every[start : start + MOST_PANELS])
+            yield name, over_turn(results, caption, motion, borders, every[start : start + MOST_PANELS])
 
 
-def _closely(results: Results) -> tuple[Real, list[int]]:
+def closely(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
@@ -131,9 +131,10 @@ def _turned(results: Results, q: Real) -> Any:
     return np.degrees(results.linkage.driver.sense * (q - results.start))
 
 
-def _sheet(
+def over_turn(
     results: Results, caption: str, motion: Motion, borders: Sequence[int], every: Sequence[Quantities]
 ) -> Drawing:
+    """A sheet of quantities over the places of a motion; borders: after which of them a stroke ends."""
     assert results.motion is not None
     sheet = Sheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
     xs, marks, end = _turned(results, motion.q), _turned(results, results.motion.q), 360 * results.turns
