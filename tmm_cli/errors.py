@@ -108,6 +108,17 @@ class NotOnFrameError(LinkageError):
         self.link, self.allowed = link, allowed
 
 
+class SpeedsEndError(LinkageError):
+    """A table of the driver's speeds, from `first` to `last` (rad), does not reach a position.
+
+    at: its place; None where the table just does not go all round the cycle.
+    """
+
+    def __init__(self, at: float | None, first: float, last: float, cycle: float) -> None:
+        super().__init__(at)
+        self.at, self.first, self.last, self.cycle = at, first, last, cycle
+
+
 class NoTurnError(LinkageError):
     """Loads come again after several turns of a crank that does not turn fully."""
 

@@ -16,8 +16,8 @@ from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.double_double import exactly
-from tmm_cli.errors import MissingStrokesError, NoTurnError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.double_double import exactly, rounded
+from tmm_cli.errors import MissingStrokesError, NoTurnError, SpeedsEndError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
 from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
@@ -155,6 +155,16 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
+    def single(self) -> SingleRun | None:
+        """A single run, where that is asked for."""
+        return self.running if self.running is not None and not self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
@@ -189,6 +199,7 @@ def solve(
         kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
     _need_strokes(results)
     _need_rows(results)
+    _need_speeds(results)
     if inputs.dynamics is not None:
         results = replace(results, running=_running(results, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
@@ -267,9 +278,13 @@ def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
     return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
 
 
-def driver_motion(linkage: Linkage, start: float) -> DriverMotion:
+def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
     """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
     driver = linkage.driver
+    if driver.law is not None:
+        from tmm_cli.dynamics.by_table import LawByTable  # few drivers have one
+
+        return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
     at = linkage.sketch.at if linkage.others else start
     return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
 
@@ -302,6 +317,19 @@ def _need_strokes(results: Results) -> None:
             raise MissingStrokesError(link, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":
             raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))
+
+
+def _need_speeds(results: Results) -> None:
+    """Refuse positions that a table of the driver's speeds does not reach."""
+    law, asked = results.linkage.driver.law, results.asked
+    if law is None:
+        return
+    unknown = ~np.isfinite(results.law.speed(asked))
+    goes_round = results.mechanism.driver_range.full and not results.inputs.request.places
+    if np.any(unknown) or (goes_round and not law.squares.closed):
+        first = float(rounded(law.squares.arguments[0]))
+        at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
+        raise SpeedsEndError(at, first, float(rounded(law.squares.arguments[-1])), 2 * np.pi * results.linkage.turns)
 
 
 def _need_rows(results: Results) -> None:

@@ -89,6 +89,14 @@ class Running:
         """s, since the beginning of the cycle."""
         return self.steady.law.time(self.way(q))
 
+    def driving(self, q: Real) -> Real:
+        """Moment of what drives, along the sense of the driver, N m."""
+        return self.steady.law.driving(self.way(q))
+
+    def work(self, q: Real) -> Real:
+        """Of all moments since the beginning of the cycle, J."""
+        return self.steady.work(self.way(q))
+
 
 def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
     """Of a mechanism with its loads, from the driver's place `start` on (rad).

@@ -70,7 +70,7 @@ def wittenbauer(machine: Reduced, work: Curve, mean: float, delta: float) -> Fly
 def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float:
     """Inertia of the flywheel (kg m2), with the energy of the links at the mean speed."""
     slope = mean**2 / 2
-    upper, lower = _touching(machine, work, slope, top=True), _touching(machine, work, slope, top=False)
+    upper, lower = touching(machine, work, slope, top=True), touching(machine, work, slope, top=False)
     return (upper.offset - lower.offset) / (delta * mean**2)
 
 
@@ -101,14 +101,14 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
 
 
 def _between(machine: Reduced, work: Curve, low: float, high: float) -> Flywheel:
-    upper = _touching(machine, work, high**2 / 2, top=True)
-    lower = _touching(machine, work, low**2 / 2, top=False)
+    upper = touching(machine, work, high**2 / 2, top=True)
+    lower = touching(machine, work, low**2 / 2, top=False)
     inertia = (upper.offset - lower.offset) / (upper.slope - lower.slope)
     # T0 + E <= slope (Jf + J) with equality where the upper tangent touches
     return Flywheel(inertia, upper.slope * inertia - upper.offset, upper, lower)
 
 
-def _touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
+def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
     """The tangent of this slope above the diagram, or below it."""
     sign = -1.0 if top else 1.0
 

@@ -20,6 +20,7 @@ from tmm_cli.errors import (
     NoTurnError,
     OutOfRangeError,
     SketchMismatchError,
+    SpeedsEndError,
     StandstillError,
     TableBeyondCycleError,
     UnknownNameError,
@@ -121,6 +122,15 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
+        case SpeedsEndError(at=missed, first=first, last=last, cycle=cycle):
+            ends = _("the table goes from {first} to {last}").format(first=shown(first), last=shown(last))
+            if missed is not None:
+                ends = _("{ends}, a position is at {place}").format(ends=ends, place=shown(missed))
+            closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
+            return ProblemError(
+                _("the table of speeds does not reach over all positions"), path=("driver", "speed", "table"), key=True,
+                found=ends, allowed=closing.format(end=shown(first + cycle)),
+            )  # fmt: skip
         case NoTurnError(turns=turns):
             full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=turns)
             return ProblemError(full, path=("cycle",), key=True)

@@ -8,8 +8,8 @@ import numpy as np
 
 from tmm_cli.results.shapes import NUMBER, SERIES, TEXT, VECTOR, Field, list_of, optional, record
 
-if TYPE_CHECKING:
-    from tmm_cli.analysis.balancing import Balancing  # few files ask for it
+if TYPE_CHECKING:  # few files ask for it
+    from tmm_cli.analysis.balancing import Balancing
 
 SHAKING = record(
     "by inertia alone",

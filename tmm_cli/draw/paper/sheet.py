@@ -16,7 +16,7 @@ from tmm_cli.draw.paper.fonts import SHARE
 from tmm_cli.draw.paper.ground import AIR, Ground
 from tmm_cli.draw.paper.labels import Label, place
 from tmm_cli.draw.paper.labels import extent as label_extent
-from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
+from tmm_cli.draw.paper.picture import covering, extremes, fits, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.paper.room import Room
 from tmm_cli.draw.paper.writing import in_a_line
 from tmm_cli.language import numeral, spelt
@@ -212,7 +212,7 @@ class Sheet:
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
-            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
+            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks), fits)
         else:
             crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
             shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)

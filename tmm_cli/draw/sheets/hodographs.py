@@ -55,7 +55,7 @@ def reactions(results: Results) -> Iterable[tuple[str, Drawing]]:
     assert results.reactions is not None
     places, borders = closely(results)
     whole = at_places(results, places)
-    assert whole.reactions is not None and whole.motion is not None
+    assert whole.reactions is not None
     for here, cycle in zip(results.reactions.all, whole.reactions.all, strict=True):
         pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
         title = _("Hodograph of the reaction {name} in pair {pair}").format(name=symbol.name, pair=pair)
