@@ -65,7 +65,7 @@ def reactions(results: Results) -> Iterable[tuple[str, Drawing]]:
             over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
             yield (
                 safe(f"reaction-{pair}"),
-                over_turn(results, over, whole.motion, borders, _parts(cycle.force, here.force)),
+                over_turn(results, over, places, borders, _parts(cycle.force, here.force)),
             )
 
 
