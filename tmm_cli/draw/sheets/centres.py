@@ -13,7 +13,7 @@ from tmm_cli.draw.paper.sheet import INERTIA, LOAD, Sheet, border, scale_words
 from tmm_cli.draw.sheets.mechanism import Position, measured
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.kinematics.centres import Centre, Line, Links
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.centres import name
 from tmm_cli.vectors import dot
@@ -94,7 +94,7 @@ def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[tu
     for centre in found:
         symbol = Symbol("P", name(centre.links)[1:])
         if centre.place is None and centre.direction is not None:
-            angle = f"{float(np.degrees(np.angle(centre.direction))) % 180:.1f}"
+            angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
             yield symbol, _(" at infinity, at {angle}°").format(angle=angle)
         elif centre.place is not None and centre.links not in near:
             yield symbol, _(" beyond the sheet, see the table")
