@@ -156,7 +156,7 @@ CASES = {
         "  found:   'gear'\n"
         "  allowed: tmm, lang, title, description, units, parameters, synthesis, variants, grading, points, guides, "
         "links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
-        "positions, checks, dynamics, sheet\n"
+        "cycle, positions, checks, dynamics, balancing, sheet\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (

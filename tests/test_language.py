@@ -16,7 +16,12 @@ from tmm_cli.cli.common import each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.reporting import bounds_of
 from tmm_cli.cli.talk import speaking
-from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, spoken, translated
+from tmm_cli.draw.paper.axes import filling
+from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import balance_symbol
+from tmm_cli.problem.units import UnitSystem, parse_unit
+from tmm_cli.quantities import KINDS
 from tmm_cli.results.output import write_results
 
 
@@ -160,3 +165,31 @@ def test_numbers_for_people_have_the_decimal_mark_of_their_language():
         if name.startswith(TO_PEOPLE) and not any(fnmatch(name, known) for known in TO_MACHINES):
             found |= {f"{name}:{line}": line for line in decimals(parsed(file))}
     assert not found  # numeral(value, ".4g") writes them
+
+
+@pytest.mark.parametrize(
+    ("tongue", "unit", "spelling"),
+    [("ru", "rpm", "об/мин"), ("ru", "kg*m^2", "кг·м²"), ("sr", "rpm", "o/min"), ("en", "kg*m^2", "kg*m^2")],
+)
+def test_a_unit_is_spelt_as_the_language_spells_it_and_read_so_too(tongue, unit, spelling):
+    kind = next(kind for kind in KINDS.values() if parse_unit(unit).dimension == kind.dimension)
+    units = UnitSystem({kind.dimension.name: unit})
+    with spoken(tongue):
+        assert units.spelt(kind.dimension) == spelling
+    assert parse_unit(spelling) == parse_unit(unit)
+
+
+def test_numbers_for_people_have_a_comma_where_the_language_has_one():
+    assert numeral(1234.5678, ".6g") == "1234.57"
+    for tongue in ("ru", "sr"):
+        with spoken(tongue):
+            assert numeral(1234.5678, ".6g") == "1234,57"
+            assert [text for __, text in filling(0, 1, 0, 100).ticks(5)][1] == "0,05"
+
+
+def test_letters_are_those_of_the_course():
+    (inertia,) = (one for one in solve(load("problems/shaper.yaml")).loads if one.name == "U3")
+    assert [symbol.plain for symbol in load_symbols(inertia)] == ["U3", "M3"]
+    with spoken("ru"):
+        assert [symbol.plain for symbol in load_symbols(inertia)] == ["Φ3", "MΦ3"]
+        assert balance_symbol("1", several=False, turns=True).plain == "Mу"

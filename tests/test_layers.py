@@ -62,11 +62,14 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
+    "cli.forces": "drawing",
     "cli.kinematics": "drawing",
+    "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "cli.run": "drawing",
     "cli.structure": "drawing",
     "cli.synthesis_report": "drawing",
     "grading.exports.group": "drawing",
+    "note.chapters.law_of_motion": "the law of motion, for files that ask for it",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
@@ -189,6 +192,18 @@ def test_structure_alone_loads_no_drawing_and_no_optimisation():
         "import sys; from tmm_cli.cli.app import main\n"
         "sys.argv = ['tmm', 'structure', 'problems/shaper.yaml']\n"
         "try: main()\nfinally: print('loaded:', *sorted({'matplotlib', 'scipy'} & set(sys.modules)))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+def test_without_its_block_nothing_of_dynamics_is_loaded(tmp_path):
+    told = (
+        "import sys; from tmm_cli.cli.app import main\n"
+        f"sys.argv = ['tmm', 'run', 'problems/sine.yaml', '--no-drawings', '-o', {str(tmp_path)!r}]\n"
+        "try: main()\nfinally: import tmm_cli.draw, tmm_cli.note; print('loaded:', *sorted(\n"
+        "    name for name in sys.modules if name.startswith('tmm_cli.dynamics') or name == 'scipy'))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)

@@ -39,7 +39,7 @@ def test_rows_of_a_second_turn_are_refused_with_what_to_do(tmp_path):
         "\nerror: x.yaml:12:87: loads.gas.force.table[2][0]: this row is never reached: all repeats after 1 turn of "
         "the driver\n"
         "  found:   540 deg\n"
-        "  allowed: 0 to 360 deg; of a longer cycle of loads each turn is a problem file of its own\n"
+        "  allowed: 0 to 360 deg; a longer cycle of loads is told by cycle: 2 turns\n"
     )
 
 

@@ -108,6 +108,25 @@ class NotOnFrameError(LinkageError):
         self.link, self.allowed = link, allowed
 
 
+class SpeedsEndError(LinkageError):
+    """A table of the driver's speeds, from `first` to `last` (rad), does not reach a position.
+
+    at: its place; None where the table just does not go all round the cycle.
+    """
+
+    def __init__(self, at: float | None, first: float, last: float, cycle: float) -> None:
+        super().__init__(at)
+        self.at, self.first, self.last, self.cycle = at, first, last, cycle
+
+
+class NoTurnError(LinkageError):
+    """Loads come again after several turns of a crank that does not turn fully."""
+
+    def __init__(self, turns: int) -> None:
+        super().__init__(turns)
+        self.turns = turns
+
+
 class NoCycleError(LinkageError):
     """A law of motion, or balancing, by the block at `path` of the file, is wanted where there is no cycle: the driver
     slides, does not turn fully, or is not alone.

@@ -16,7 +16,7 @@ from tmm_cli.analysis.other_driver import redriven
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.errors import LinkageError
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build, refuse_law
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import ChainProblem, Problem, TaskProblem
 from tmm_cli.problem.refusals import in_words_of
@@ -129,6 +129,8 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
     Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
     """
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
+    for one in several:
+        refuse_law(one.linkage.driver.law is not None, one.dynamics is not None)
     with in_words_of(several[0]):
         strokes = pipeline.solve(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
         return every_variant([problem.linkage for problem in several], strokes=strokes)

@@ -65,6 +65,17 @@ class Slide:
 
 
 @dataclass(frozen=True)
+class SpeedTable:
+    """Squares of a crank's speed (rad2/s2) by its angle, and its accelerations in its sense (rad/s2) if they are given.
+
+    Where `squares` close, they go round the whole cycle.
+    """
+
+    squares: Table
+    accelerations: Table | None = None
+
+
+@dataclass(frozen=True)
 class Driver:
     """An input: a link that turns about its base, or slides on it, by q = q0 + rate t + acceleration t^2/2.
 
@@ -72,7 +83,7 @@ class Driver:
     hinge of an arm). q is the angle of the link's x axis from the base's (rad), or the run along the guide `joint` from
     its `through` point (m). `sense` is +1 or -1, and `rate` >= 0 is counted in that sense; `acceleration` too
     (negative: it slows down). `at` is its place in the sketch, for drivers beside the first; `stroke`: between which
-    places it works, if it cannot go farther.
+    places it works, if it cannot go farther. law: its speed by its angle; `rate` is then the mean of it.
     """
 
     link: str
@@ -86,6 +97,7 @@ class Driver:
     base: str = FRAME
     at: float = 0.0
     stroke: tuple[float, float] | None = None
+    law: SpeedTable | None = None
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ Only what is asked for is computed: the structure alone moves nothing, kinematic
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -16,8 +16,8 @@ from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.double_double import exactly
-from tmm_cli.errors import MissingStrokesError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.double_double import exactly, rounded
+from tmm_cli.errors import MissingStrokesError, NoTurnError, SpeedsEndError, TableBeyondCycleError, UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
 from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
@@ -38,10 +38,12 @@ from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.analysis.balancing import Balancing
+    from tmm_cli.analysis.extremes import Extreme
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.centres import Centre
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -53,7 +55,8 @@ class Results:
     """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
 
     of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
-    on the positions is found when it is asked for. problem: whatever the caller wants to find here again.
+    on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
+    are there where they are asked for by name. problem: whatever the caller wants to find here again.
     """
 
     inputs: Inputs
@@ -70,6 +73,8 @@ class Results:
     running: Running | SingleRun | None = None
     balancing: Balancing | None = None
     assemblies: tuple[Assemblies, ...] | None = None
+    centres: Mapping[int, Sequence[Centre]] | None = None
+    extremes: tuple[Extreme, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
 
@@ -150,6 +155,16 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
+    def single(self) -> SingleRun | None:
+        """A single run, where that is asked for."""
+        return self.running if self.running is not None and not self.running.task.cyclic else None
+
+    @property
     def locked(self) -> Real:
         """Positions where friction locks the mechanism."""
         assert self.motion is not None
@@ -184,6 +199,7 @@ def solve(
         kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
     _need_strokes(results)
     _need_rows(results)
+    _need_speeds(results)
     if inputs.dynamics is not None:
         results = replace(results, running=_running(results, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
@@ -262,9 +278,13 @@ def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
     return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
 
 
-def driver_motion(linkage: Linkage, start: float) -> DriverMotion:
+def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
     """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
     driver = linkage.driver
+    if driver.law is not None:
+        from tmm_cli.dynamics.by_table import LawByTable  # few drivers have one
+
+        return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
     at = linkage.sketch.at if linkage.others else start
     return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
 
@@ -299,13 +319,29 @@ def _need_strokes(results: Results) -> None:
             raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))
 
 
+def _need_speeds(results: Results) -> None:
+    """Refuse positions that a table of the driver's speeds does not reach."""
+    law, asked = results.linkage.driver.law, results.asked
+    if law is None:
+        return
+    unknown = ~np.isfinite(results.law.speed(asked))
+    goes_round = results.mechanism.driver_range.full and not results.inputs.request.places
+    if np.any(unknown) or (goes_round and not law.squares.closed):
+        first = float(rounded(law.squares.arguments[0]))
+        at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
+        raise SpeedsEndError(at, first, float(rounded(law.squares.arguments[-1])), 2 * np.pi * results.linkage.turns)
+
+
 def _need_rows(results: Results) -> None:
     """Refuse rows of a load's table that the crank never comes to, rather than quietly cut the table."""
+    turns = results.linkage.turns
+    if turns > 1 and not results.mechanism.driver_range.full:
+        raise NoTurnError(turns)
     for load in results.linkage.loads:
         if load.table is None or load.table.against == "stroke":
             continue
         strokes = results.strokes if load.table.against == "crank turn" else None
-        cycle = 2 * np.pi if strokes is None else strokes.cycle
+        cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
         for row, argument in enumerate(load.table.arguments):
             if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
                 key = "force" if load.force else "moment"

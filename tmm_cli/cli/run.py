@@ -18,7 +18,17 @@ from tmm_cli.language import _
 from tmm_cli.results.output import write_results
 from tmm_cli.results.warnings import warnings
 
-SHOWN = ("synthesis-found", "synthesis-measured", "structure", "links", "groups", "quality", "cycle", "checks")
+SHOWN = (
+    "synthesis-found",
+    "synthesis-measured",
+    "structure",
+    "links",
+    "groups",
+    "quality",
+    "cycle",
+    "dynamics",
+    "checks",
+)
 
 
 def run(

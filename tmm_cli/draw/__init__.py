@@ -14,10 +14,13 @@ from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import groups
+from tmm_cli.draw.sheets.hodographs import balancing as shaking
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import _, numeral
@@ -57,6 +60,9 @@ def _of_mechanism(results: Results) -> Drawn:
     if bool(results.motion.placed.any()):
         yield from all_positions(results)
         yield from diagrams(results)
+        yield from shaking(results)
+        yield from law_of_motion(results)
+        yield from single_run(results)
 
 
 def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:

@@ -20,6 +20,7 @@ from tmm_cli.vectors import Real, Vector, cross
 
 NO_HELP = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
 ROUNDS = 200  # of masses that move pivots, whose counterweights follow from them
+ALONG = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
 SETTLED = 1e-15  # of the largest counterweight
 
 
@@ -108,7 +109,7 @@ def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanc
     else:
         raise UnsettledError
     weights = tuple(
-        Counterweight(place, float(abs(c)), float(np.angle(c))) for place, c in zip(places, found, strict=True)
+        Counterweight(place, float(abs(c)), _direction(complex(c))) for place, c in zip(places, found, strict=True)
     )
     return Balanced(weights, before, shaking(motion, about, weights), rank < 2 * len(places))
 
@@ -121,6 +122,11 @@ def _least(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector,
     parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_HELP)
     half = len(parts) // 2
     return parts[:half] + 1j * parts[half:], int(rank)
+
+
+def _direction(c: complex) -> float:
+    """Its angle, rad; straight back it is pi, not -pi."""
+    return float(np.angle(c if abs(c.imag) > ALONG * abs(c) else complex(c.real)))
 
 
 def _turning(motion: Motion, link: str) -> Vector:

@@ -23,7 +23,10 @@ import numpy as np
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.roots import least, roots
+from tmm_cli.roots import top as place_of_extreme
 from tmm_cli.vectors import Real
+
+NEAR = 0.02  # rad (or m): about the point of a tangent the diagram is looked at that far
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ def wittenbauer(machine: Reduced, work: Curve, mean: float, delta: float) -> Fly
 def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float:
     """Inertia of the flywheel (kg m2), with the energy of the links at the mean speed."""
     slope = mean**2 / 2
-    upper, lower = _touching(machine, work, slope, top=True), _touching(machine, work, slope, top=False)
+    upper, lower = touching(machine, work, slope, top=True), touching(machine, work, slope, top=False)
     return (upper.offset - lower.offset) / (delta * mean**2)
 
 
@@ -101,14 +104,14 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
 
 
 def _between(machine: Reduced, work: Curve, low: float, high: float) -> Flywheel:
-    upper = _touching(machine, work, high**2 / 2, top=True)
-    lower = _touching(machine, work, low**2 / 2, top=False)
+    upper = touching(machine, work, high**2 / 2, top=True)
+    lower = touching(machine, work, low**2 / 2, top=False)
     inertia = (upper.offset - lower.offset) / (upper.slope - lower.slope)
     # T0 + E <= slope (Jf + J) with equality where the upper tangent touches
     return Flywheel(inertia, upper.slope * inertia - upper.offset, upper, lower)
 
 
-def _touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
+def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
     """The tangent of this slope above the diagram, or below it."""
     sign = -1.0 if top else 1.0
 
@@ -117,6 +120,8 @@ def _touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tang
         return found
 
     x, __ = lowest(height, work.places())
+    # values alone tell the place to half the digits only
+    x = float(place_of_extreme(lambda at: height(np.clip(at, 0.0, work.length)), x, NEAR))
     at = np.array([x])
     return Tangent(x, float(machine.inertia(at)[0]), float(work(at)[0]), slope)
 

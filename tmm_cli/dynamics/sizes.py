@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 
 @dataclass(frozen=True)
 class Disk:
     """density: kg/m3; width over diameter. height is of rims alone."""
 
+    shape: ClassVar[Literal["disk", "rim"]] = "disk"
     density: float
     width: float
     height: float = 0.0
@@ -31,6 +33,7 @@ class Disk:
 class Rim:
     """density: kg/m3; width and height of its section over its mean diameter."""
 
+    shape: ClassVar[Literal["disk", "rim"]] = "rim"
     density: float
     width: float
     height: float

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.dynamics.curves import Curve, fitted
-from tmm_cli.dynamics.flywheel import Flywheel, at_mean, exact, lowest, mertsalov, wittenbauer
+from tmm_cli.dynamics.flywheel import Flywheel, Tangent, at_mean, exact, lowest, mertsalov, touching, wittenbauer
 from tmm_cli.dynamics.motion import Law, under_constant_moment, with_motor
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
@@ -46,6 +46,27 @@ class Steady:
         return self.law.flywheel / self.task.ratio**2
 
     @property
+    def errors(self) -> tuple[float, float]:
+        """Of Wittenbauer's way and of Mertsalov's, shares of the exact flywheel."""
+        exact = float("nan") if self.found is None else self.found.inertia
+        return self.wittenbauer / exact - 1, self.mertsalov / exact - 1
+
+    @property
+    def diameter(self) -> float:
+        """Of the flywheel, or the mean one of its rim, m."""
+        return self.task.size.diameter(self.on_shaft)
+
+    @property
+    def width(self) -> float:
+        """Of the flywheel, m."""
+        return self.task.size.width * self.diameter
+
+    @property
+    def mass(self) -> float:
+        """Of the flywheel, kg."""
+        return self.task.size.mass(self.diameter)
+
+    @property
     def speeds(self) -> tuple[float, float]:
         """The least and the largest speed of the driver, rad/s or m/s."""
         return extremes(self.law)
@@ -55,11 +76,37 @@ class Steady:
         """The fluctuation that there is."""
         return fluctuation(self.law)
 
+    @property
+    def tangents(self) -> tuple[Tangent, Tangent]:
+        """To the energy-mass diagram, from where the inertia is -Jf and the energy -T0: of the largest and the least
+        speed, whatever drives."""
+        start = float(self.law.energy(np.zeros(1))[0])
+        low, high = (self._touching(x, speed, start) for x, speed in extreme_places(self.law))
+        return high, low
+
+    def _touching(self, x: float, speed: float, start: float) -> Tangent:
+        inertia = float(self.machine.inertia(np.array([x]))[0])
+        return Tangent(x, inertia, (self.law.flywheel + inertia) * speed**2 / 2 - start, speed**2 / 2)
+
+    @property
+    def at_mean(self) -> tuple[Tangent, Tangent]:
+        """By Mertsalov: tangents of the mean speed above the diagram and below it."""
+        slope = self.task.mean**2 / 2
+        upper, lower = (touching(self.machine, self.work, slope, top=top) for top in (True, False))
+        return upper, lower
+
 
 def extremes(law: Law) -> tuple[float, float]:
     """The least and the largest speed over the cycle."""
+    (__, low), (__, high) = extreme_places(law)
+    return low, high
+
+
+def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where on the way the speed is least and largest, each with that speed."""
     places = law.energy.places()
-    return lowest(law.speed, places)[1], -lowest(lambda x: -law.speed(x), places)[1]
+    quickest, high = lowest(lambda x: -law.speed(x), places)
+    return lowest(law.speed, places), (quickest, -high)
 
 
 def fluctuation(law: Law) -> float:

@@ -42,18 +42,12 @@ def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
     """From the motion, the loads, and what the drivers do per unit of the first one's motion (N m, N)."""
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still
-    for name in motion.linkage.moving:
-        link = motion.linkage.links[name]
-        centre, turning = motion.centre(name), motion.link(name)
-        inertia = inertia + link.mass * square(centre.first) + link.inertia * turning.first**2
-        slope = slope + 2 * (
-            link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second
-        )
+    for own, rate_of_own in inertias(motion).values():
+        inertia, slope = inertia + own, slope + rate_of_own
     powers = dict.fromkeys(("weight", "load", "friction"), still)
     for load in loads:
         if load.kind != "inertia":
-            work = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
-            powers[load.kind] = powers[load.kind] + work
+            powers[load.kind] = powers[load.kind] + reduced_moment(motion, load)
     moment = powers["weight"] + powers["load"] + powers["friction"]
     rate = motion.rate
     change = (inertia * motion.acceleration + slope * rate**2 / 2) * rate
@@ -64,3 +58,20 @@ def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
     return Energy(
         inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance
     )  # fmt: skip
+
+
+def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
+    """Of each moving link its inertia reduced to the first driver, and the derivative of it by q."""
+    found = {}
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, turning = motion.centre(name), motion.link(name)
+        slope = 2 * (link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second)
+        found[name] = link.mass * square(centre.first) + link.inertia * turning.first**2, slope
+    return found
+
+
+def reduced_moment(motion: Motion, load: Applied) -> Real:
+    """What a load does per unit of the first driver's motion, N m or N."""
+    found: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
+    return found

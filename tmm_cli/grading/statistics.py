@@ -103,7 +103,7 @@ def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
         yield table_of_words("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
     unread = [(shown(student.student), sentence(problem)) for student in marks for problem in student.problems]
     if unread:
-        yield table_of_words("problems", _("Could not be read"), (_("student"), _("what")), unread)
+        yield table_of_words("problems", _("Could not be read"), (_("student"), _("why")), unread)
 
 
 def _difficulties(found: Sequence[Difficulty]) -> Table:

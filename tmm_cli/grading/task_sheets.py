@@ -17,7 +17,7 @@ from tmm_cli.errors import LinkageError
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.task import Asked, Task
-from tmm_cli.language import N_, _, translated
+from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.library import structure_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -147,7 +147,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
         text = values.get(name, str(own))
         number, _space, unit = text.partition(" ")
         measure = measures[name]
-        unit = unit or (task.units.spelt(measure) if measure else "")
+        unit = spelt(unit) or (task.units.spelt(measure) if measure else "")
         rows.append((name, number, unit))
     return table_of_words("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
 

@@ -194,7 +194,7 @@ def rounds_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> dict[str, int]:
 
 
 def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
-    """Turns of the driver in a cycle, from wheels, further drivers and groups that come back only after several."""
+    """Turns of the driver in a cycle, from loads, wheels, drivers and groups that come back only after several."""
     turns = turns_of_cycle(linkage, rounds_of(linkage, kernels))
     for kernel in kernels:
         trace = kernel.followed
@@ -203,6 +203,8 @@ def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
         way = kernel.way if isinstance(kernel, Closed) else None
         if way is not None and way.cycle is not None and len(way.places) % 2 and turns is not None:
             turns = math.lcm(turns, round(way.cycle / np.pi))
+    if turns is not None:
+        turns = math.lcm(turns, linkage.turns)
     return turns if turns is not None and turns <= MOST else None
 
 

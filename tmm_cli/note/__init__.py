@@ -8,10 +8,20 @@ from __future__ import annotations
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import language
 from tmm_cli.note import blocks
-from tmm_cli.note.chapters import checks, forces, kinematics, literature, structure, synthesis, task, title
+from tmm_cli.note.chapters import (
+    checks,
+    forces,
+    kinematics,
+    law_of_motion,
+    literature,
+    structure,
+    synthesis,
+    task,
+    title,
+)
 from tmm_cli.note.context import Subject
 
-CHAPTERS = (title, task, synthesis, structure, kinematics, forces, checks, literature)
+CHAPTERS = (title, task, synthesis, structure, kinematics, law_of_motion, forces, checks, literature)
 
 
 def note(results: Results, *, drawn: bool = True) -> blocks.Note:

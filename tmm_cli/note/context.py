@@ -13,6 +13,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import Space, within
+from tmm_cli.draw.sheets import law_of_motion
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -21,6 +22,7 @@ from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
@@ -36,6 +38,8 @@ WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawin
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
+    "law": (law_of_motion.over_cycle, 225), "energy-mass": (law_of_motion.diagram, 190),
+    "run": (single_run, 225),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),

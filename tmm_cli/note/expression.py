@@ -66,6 +66,15 @@ class Square:
 
 
 @dataclass(frozen=True)
+class Raised:
+    """To a power, of whole numbers: a cube, or with `under` a root written as a power."""
+
+    of: Expression
+    over: int
+    under: int = 1
+
+
+@dataclass(frozen=True)
 class SquareRoot:
     """A root of what is not negative."""
 
@@ -80,7 +89,7 @@ class Function:
     of: Expression
 
 
-Expression = Leaf | Constant | Sum | Product | Quotient | Square | SquareRoot | Function
+Expression = Leaf | Constant | Sum | Product | Quotient | Square | Raised | SquareRoot | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "cos": math.cos, "sin": math.sin, "tan": math.tan, "abs": abs,
     "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
@@ -145,6 +154,8 @@ def evaluate(expression: Expression, figures: int) -> float:
             return of(over) / of(under)
         case Square(base):
             return of(base) ** 2
+        case Raised(base, over, under):
+            return float(of(base) ** (over / under))
         case SquareRoot(base):
             return math.sqrt(max(of(base), 0.0))
         case Function(name, argument):
@@ -214,9 +225,10 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Quotient(over, under):
             return paper.Fraction(of(over), of(under))
         case Square(base):
-            node = of(base)
-            simple = isinstance(node, paper.Number | paper.Letter | paper.Brackets)
-            return paper.Power(node if simple else paper.Brackets(node), paper.Number("2"))
+            return _power(of(base), paper.Number("2"))
+        case Raised(base, over, under):
+            power = paper.Number(str(over))
+            return _power(of(base), power if under == 1 else paper.Fraction(power, paper.Number(str(under))))
         case SquareRoot(base):
             return paper.Root(of(base))
         case Function(name, argument):
@@ -224,6 +236,11 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             if name == "abs":
                 return paper.row("|", node, "|")
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
+
+
+def _power(base: paper.Node, exponent: paper.Node) -> paper.Node:
+    simple = isinstance(base, paper.Number | paper.Letter | paper.Brackets)
+    return paper.Power(base if simple else paper.Brackets(base), exponent)
 
 
 def _inside(factor: Expression, node: paper.Node) -> paper.Node:

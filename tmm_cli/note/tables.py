@@ -8,7 +8,7 @@ from dataclasses import replace
 from tmm_cli.note.blocks import Line, Rows
 from tmm_cli.note.context import Subject, by_hand, with_degrees
 from tmm_cli.problem.units import on_paper
-from tmm_cli.results.table import Table
+from tmm_cli.results.table import Column, Table
 from tmm_cli.results.terminal import cells
 
 DIGITS = 4
@@ -18,7 +18,8 @@ def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", di
     """The same table in the units of the file; columns in which nothing stands are left out."""
     units, every = subject.results.problem.units, range(table.rows)
     columns = [
-        (on_paper(c.heading(units)), cells(replace(c, digits=digits), units, every), c.dimension) for c in table.columns
+        (on_paper(c.heading(units)), cells(replace(_on_paper(c), digits=digits), units, every), c.dimension)
+        for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
     shown = [
@@ -28,3 +29,8 @@ def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", di
     head: Sequence[Line] = [(text,) for text, *__ in kept]
     rows = tuple(tuple((texts[k],) for texts in shown) for k in every)
     return Rows(caption or table.title, tuple(head), rows, key)
+
+
+def _on_paper(column: Column) -> Column:
+    """A column of units as they are printed."""
+    return replace(column, values=[on_paper(unit) for unit in column.values]) if column.header == "unit" else column

@@ -13,7 +13,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
-from tmm_cli.problem.build_drivers import build_drivers, build_request, build_sketch
+from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_request, build_sketch
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.build_meshes import build_meshes
@@ -101,7 +101,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = Linkage(
         links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),
         output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
-        keep_side=shape.change_points == "keep side",
+        keep_side=shape.change_points == "keep side", turns=build_cycle(shape, first, values),
     )  # fmt: skip
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
@@ -109,6 +109,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         linkage = replace(linkage, springs=build_springs(linkage, shape, values))
         linkage = replace(linkage, friction=build_friction(linkage, shape, values))
     checks = Part(shape.checks, ("checks",), values)
+    refuse_tables(shape)
     limit = checks.positive("lever", NUMBER, zero=True)
     angles, said = list(Problem.pressure_limits), [False, False]
     for number, key in enumerate(("pressure_sliding", "pressure_turning")):
@@ -120,10 +121,38 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), values.bare(first_driver.speed),
+        tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
         TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
         _balancing(shape, linkage, values), tree,
     )  # fmt: skip
+
+
+def bare_speed(driver: schema.Driver, values: ValueReader) -> bool:
+    """Whether the driver's speed has no unit."""
+    speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
+    return any(values.bare(speed) for speed in speeds)
+
+
+def refuse_tables(shape: schema.File) -> None:
+    """Refuse a law of motion where only a speed and an acceleration of the driver are known. Raises ProblemError."""
+    by_table = isinstance(shape.driver, schema.Driver) and isinstance(shape.driver.speed, schema.Speeds)
+    if by_table and shape.dynamics is not None:
+        raise ProblemError(
+            _("a law of motion is found, or it is given by a table"), path=("driver", "speed"), key=True,
+            allowed=_("one speed beside dynamics"),
+        )  # fmt: skip
+    searched = isinstance(shape.synthesis, dict) and shape.synthesis.get("task") == "optimal"
+    if searched or shape.grading is not None or shape.variants is not None:
+        refuse_law(by_table, shape.dynamics is not None)
+
+
+def refuse_law(by_table: bool, dynamics: bool) -> None:
+    """Refuse tables of speeds and the block dynamics where they are not known. Raises ProblemError."""
+    if by_table or dynamics:
+        raise ProblemError(
+            _("variants and searches know drivers of one speed and one acceleration only"), key=True,
+            path=("driver", "speed") if by_table else ("dynamics",), allowed=_("speed: 82 rpm"),
+        )  # fmt: skip
 
 
 def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:

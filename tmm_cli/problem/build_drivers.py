@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import cmath
+from dataclasses import replace
 from typing import Literal
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Driver, Link, Request, Sketch
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_links import Members
+from tmm_cli.problem.build_speeds import build_speeds, mean
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
+from tmm_cli.structure.cycle import MOST
+from tmm_cli.tolerances import SAME_PLACE
 
 FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
 UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
@@ -21,7 +25,11 @@ UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says n
 def build_drivers(shape: schema.File, members: Members, values: ValueReader) -> tuple[Driver, ...]:
     """All drivers in the order of the file."""
     if isinstance(shape.driver, schema.Driver):
-        return (_driver(Part(shape.driver, ("driver",), values), members, True),)
+        part = Part(shape.driver, ("driver",), values)
+        driver = _driver(part, members, True)
+        if isinstance(shape.driver.speed, schema.Speeds):
+            driver = replace(driver, law=build_speeds(part, build_cycle(shape, driver, values)))
+        return (driver,)
     if not shape.driver:
         raise ProblemError(_("there is no driver"), path=("driver",), found="[]", allowed=_("{link: 1, speed: 60 rpm}"))
     parts = [Part(given, ("driver", number), values) for number, given in enumerate(shape.driver)]
@@ -59,8 +67,16 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
         raise members.unjoined(link, base, (*part.path, "link"))
     turns = pivot is not None
     want = ANGLE if turns else LENGTH
-    speed = part.number("speed", ANGULAR_SPEED if turns else SPEED)
-    acceleration = part.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
+    by_angle = isinstance(given.speed, schema.Speeds)
+    if by_angle and (not turns or not first or part.path != ("driver",)):
+        raise part.refusal("speed", _("a table of speeds is for one crank alone"), at_key=True)
+    if by_angle != isinstance(given.acceleration, schema.Speeds) and given.acceleration != 0:
+        apart = _("an acceleration goes with a speed at position 0, a table of them with a table of speeds")
+        raise part.refusal("acceleration", apart, at_key=True)
+    speed = mean(part) if by_angle else part.number("speed", ANGULAR_SPEED if turns else SPEED)
+    acceleration = 0.0
+    if not by_angle:
+        acceleration = part.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
     if speed < 0 and "turns" in given.model_fields_set:
         twice = _("a negative speed and a sense of rotation say the sense twice")
         raise part.refusal("speed", twice, str(given.speed), _("a positive speed with turns: ccw or cw"))
@@ -83,6 +99,24 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
         acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
         given.end or "", base, at, stroke,
     )  # fmt: skip
+
+
+def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
+    """Turns of the crank after which its loads come again."""
+    if shape.cycle is None:
+        return 1
+    if driver.kind != "turn":
+        raise ProblemError(
+            _("a cycle is told in turns of a crank: this driver slides"), path=("cycle",), found=quote(shape.cycle)
+        )
+    turns = values.number(shape.cycle, ANGLE, ("cycle",)) / (2 * cmath.pi)
+    whole = round(float(turns))
+    if not 1 <= whole <= MOST or abs(turns - whole) > SAME_PLACE:
+        raise ProblemError(
+            _("a cycle is a whole number of turns"), path=("cycle",), found=quote(shape.cycle),
+            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST),
+        )  # fmt: skip
+    return whole
 
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:

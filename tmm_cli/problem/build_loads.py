@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -177,7 +178,9 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
             raise ProblemError(
                 _("the crank does not come to this angle in its cycle"), path=(*part.path, "when", k),
                 found=quote(part.given.when[k]),
-                allowed=_("at most {end}; a longer cycle of loads is told by cycle: 2 turns").format(end=end),
+                allowed=_("at most {end}; a longer cycle of loads is told by cycle: {turns} turns").format(
+                    end=end, turns=max(2, math.ceil(place / math.tau))
+                ),
             )  # fmt: skip
     length = (high - low) % cycle
     if length < SAME_PLACE or cycle - length < SAME_PLACE:

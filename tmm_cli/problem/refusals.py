@@ -17,8 +17,10 @@ from tmm_cli.errors import (
     NoCycleError,
     NoFlywheelError,
     NotOnFrameError,
+    NoTurnError,
     OutOfRangeError,
     SketchMismatchError,
+    SpeedsEndError,
     StandstillError,
     TableBeyondCycleError,
     UnknownNameError,
@@ -120,6 +122,18 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             if link is not None:
                 what = _("link {link} has no ends of its stroke").format(link=link)
             return ProblemError(_("there is no working stroke"), path=path, found=what, allowed=_("see output:"))
+        case SpeedsEndError(at=missed, first=first, last=last, cycle=cycle):
+            ends = _("the table goes from {first} to {last}").format(first=shown(first), last=shown(last))
+            if missed is not None:
+                ends = _("{ends}, a position is at {place}").format(ends=ends, place=shown(missed))
+            closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
+            return ProblemError(
+                _("the table of speeds does not reach over all positions"), path=("driver", "speed", "table"), key=True,
+                found=ends, allowed=closing.format(end=shown(first + cycle)),
+            )  # fmt: skip
+        case NoTurnError(turns=turns):
+            full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=turns)
+            return ProblemError(full, path=("cycle",), key=True)
         case NoCycleError(path=path):
             wanted = _("a law of motion is found for one crank that turns fully")
             if path == ("balancing",):
@@ -172,8 +186,10 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             return ProblemError(
                 text.format(turns=turns), path=path, found=f"{units.from_si(argument, ANGLE):.6g} {unit}",
                 allowed=_(
-                    "0 to {end} {unit}; of a longer cycle of loads each turn is a problem file of its own"
-                ).format(end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit),
+                    "0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns"
+                ).format(
+                    end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit, turns=max(2, math.ceil(argument / math.tau))
+                ),
             )  # fmt: skip
     return ProblemError(str(error))
 

@@ -76,14 +76,32 @@ class Link(Strict):
         return self.slides if isinstance(self.slides, list) else [self.slides] if self.slides else []
 
 
+class Speeds(Strict):
+    """A crank's speed, or its acceleration, by its angle."""
+
+    against: Literal["crank angle"] = Field(description="crank angle: from the x axis, counterclockwise")
+    table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [angle, size]")
+    between: Literal["smooth", "linear"] = Field(
+        default="smooth", description="rows: a cubic spline, or lines; of squares of speeds"
+    )
+
+
+def _by_angle(found: Any) -> Any:
+    return Speeds.model_validate(found) if isinstance(found, dict) else checked_value(found)
+
+
 class Driver(Strict):
     """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
 
     link: Name
     on: Name = Field(default="0", description="the link that it is driven from: the frame, or the cylinder of a piston")
     at: Value | None = Field(default=None, description="its place in the sketch, for drivers after the first")
-    speed: Value = Field(description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s)")
-    acceleration: Value = Field(default=0, description="in the sense of motion; the speed is that of position 0")
+    speed: Annotated[Value | Speeds, BeforeValidator(_by_angle)] = Field(
+        description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); of a crank {against, table} too"
+    )
+    acceleration: Annotated[Value | Speeds, BeforeValidator(_by_angle)] = Field(
+        default=0, description="in the sense of motion; the speed is that of position 0; beside a table: one too"
+    )
     stroke: Vector | None = Field(default=None, description="[from, to]: places between which a cylinder works")
     turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
     balance: Literal["moment", "force"] = Field(default="moment", description="what balances the crank")
@@ -326,6 +344,9 @@ class File(Strict):
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
     output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
         default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
+    )
+    cycle: Value | None = Field(
+        default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)

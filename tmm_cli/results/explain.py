@@ -7,11 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.double_double import rounded
 from tmm_cli.language import N_, _, numeral, spelt
-from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, Spring
+from tmm_cli.linkage import FRAME, Driver, Load, LoadTable, Mesh, SpeedTable, Spring
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
     ANGLE,
+    ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
     DAMPING,
     FORCE,
@@ -29,6 +31,7 @@ from tmm_cli.quantities import (
 from tmm_cli.results.reports.synthesis import parameters
 from tmm_cli.results.stages import heavy, link_name, skipped, stages_table, steps
 from tmm_cli.results.table import Table, table_of_words, with_unit
+from tmm_cli.results.understood import between_rows
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.naming import output_link
 
@@ -55,6 +58,8 @@ def given(problem: Problem) -> Iterable[Table]:
     if problem.linkage.slides:
         yield _slides(problem)
     yield table_of_words("facts", _("Driver, positions, limits"), (_("what"), _("value")), _facts(problem))
+    if problem.linkage.driver.law is not None:
+        yield _speeds(problem, problem.linkage.driver.law)
     yield from _further(problem)
     if any(np.any(link.mass != 0) for link in problem.linkage.links.values()):
         yield _masses(problem)
@@ -104,13 +109,41 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
         text = _("link {link}, {speed} clockwise")
     yield _("driver"), text.format(link=driver.link, speed=_speed(driver))
     yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
+    if linkage.turns > 1:
+        yield _("loads come again after"), _("{turns} turns of the crank").format(turns=linkage.turns)
     yield _("positions"), _positions(problem, measure)
     sketch = linkage.sketch
     places = [show(problem, sketch.at, measure)]
     places += [f"{name} {show_vector(problem, place)}" for name, place in sketch.points.items()]
     places += [f"{name} {show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
     yield _("sketch, driver at"), ", ".join(places)
+    yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law(problem)))
     yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
+
+
+def _law(problem: Problem) -> Iterable[str]:
+    """What is computed of it."""
+    task = problem.dynamics
+    if task is None:
+        yield _("given; without a block `dynamics` nothing of it is computed")
+        return
+    if not task.cyclic:
+        yield _("of a single run, integrated by time")
+        return
+    yield _("of steady running, from the reduced inertia and the reduced moment over the cycle")
+    if task.motor is not None:
+        yield _("driven by the characteristic of its motor")
+    else:
+        speed = show(problem, task.mean, ANGULAR_SPEED)
+        yield _("driven by a constant moment that leaves no work over the cycle, mean speed {speed}").format(
+            speed=speed
+        )
+    if task.flywheel:
+        given = show(problem, task.flywheel, INERTIA)
+        yield _("with a flywheel of {inertia}, reduced to the driver").format(inertia=given)
+    if task.delta is not None:
+        yield _("a flywheel is found that keeps delta = {delta}").format(delta=numeral(task.delta, ".4g"))
+    yield _("forces with the speeds and accelerations of this law")
 
 
 def _positions(problem: Problem, measure: Dimension) -> str:
@@ -175,7 +208,7 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
         notes.append(closed if table.closed else natural)
     title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return table_of_words(name, title, (table.against, _("size")), rows, tuple(notes))
+    return table_of_words(name, title, (_(FILE_WORDS[table.against]), _("size")), rows, tuple(notes))
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:
@@ -189,8 +222,26 @@ def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH)
     return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
 
 
+def _speeds(problem: Problem, law: SpeedTable) -> Table:
+    """The rows of a table of speeds, with the accelerations that follow from them, or are given."""
+    squares = law.squares
+    places = np.array([float(rounded(row)) for row in squares.arguments])
+    after = squares.slope(places) / 2 * problem.linkage.driver.sense
+    gains = after if law.accelerations is None else law.accelerations(places)
+    speeds = np.sqrt(squares(places))
+    rows = [
+        (show(problem, at, ANGLE), show(problem, speed, ANGULAR_SPEED), show(problem, gain, ANGULAR_ACCELERATION))
+        for at, speed, gain in zip(places, speeds, gains, strict=True)
+    ]
+    head = (_("crank angle"), _("speed"), _("acceleration"))
+    note = _("Between rows: {between}.").format(between=between_rows(law))
+    return table_of_words("speeds", _("Speed of the driver, in its sense"), head, rows, (note,))
+
+
 def _speed(driver: Driver) -> str:
     """A driver's speed, and its acceleration where it has one."""
+    if driver.law is not None:
+        return _("by a table against the crank angle")
     turns = driver.kind == "turn"
     rate = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
     return rate + (

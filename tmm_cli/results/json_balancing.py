@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.analysis.balancing import Balancing
 from tmm_cli.results.shapes import NUMBER, SERIES, TEXT, VECTOR, Field, list_of, optional, record
+
+if TYPE_CHECKING:  # few files ask for it
+    from tmm_cli.analysis.balancing import Balancing
 
 SHAKING = record(
     "by inertia alone",

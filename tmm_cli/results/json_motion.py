@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.selection import links, moving_centres, moving_points
 from tmm_cli.kinematics.motion import Sliding
@@ -33,14 +35,26 @@ from tmm_cli.vectors import Vector
 if TYPE_CHECKING:
     from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
 
+
+def _at_start(results: Results, name: str) -> float:
+    """Speed or acceleration of the driver at position 0, in its sense; beside the block dynamics, as they are given."""
+    driver = results.linkage.driver
+    if driver.law is None:
+        given: float = getattr(driver, name)
+        return given
+    start, law = np.array([results.start]), results.law
+    return float(driver.sense * (law.speed if name == "rate" else law.accelerated)(start)[0])
+
+
 LIMIT = record("a limit", Field("at", NUMBER, "place", "place"), Field("group", TEXT, "by which group"))
 DRIVER = record(
     "the input",
     Field("link", TEXT, "driven link", "linkage.driver.link"),
     Field("kind", TEXT, "turn or slide", "linkage.driver.kind"),
     Field("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
-    Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", "linkage.driver.rate"),
-    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, in its sense", "linkage.driver.acceleration"),
+    Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", lambda r: _at_start(r, "rate")),
+    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, at position 0, in its sense",
+          lambda r: _at_start(r, "acceleration")),
     Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
     Field("range", list_of(NUMBER), "from, to: places of the driver",
           lambda r: (r.driver_range.start, r.driver_range.end)),
@@ -245,20 +259,37 @@ def _single(results: Results) -> bool:
     return results.running is not None and not results.running.task.cyclic
 
 
-STEADY = record(
-    "steady running",
-    Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
-    Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
-    Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
-    Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
-    Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
-    Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
-    Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
-    Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
-    Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
-    Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
-    Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+TANGENT = record(
+    "a tangent to the energy-mass diagram",
+    Field("x", NUMBER, "way of the driver at which it touches"),
+    Field("inertia", NUMBER, "reduced inertia of the links there, kg*m^2"),
+    Field("energy", NUMBER, "work of all moments there, J"),
+    Field("slope", NUMBER, "omega^2/2, J/(kg*m^2)"),
+    Field("offset", NUMBER, "energy that it cuts off where the inertia is zero, J"),
 )
+STEADY = record(
+    "steady running; ways, works and moments begin at position 0 and go in the sense of the driver",
+    *inside("running", (
+        Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
+        Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
+        Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
+        Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
+        Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
+        Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
+        Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
+        Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
+        Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
+        Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
+        Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+        Field("errors", list_of(NUMBER), "of both, shares of the exact one", lambda r: r.steady.errors),
+        Field("diameter", NUMBER, "of the flywheel, m", "steady.diameter"),
+        Field("width", NUMBER, "of the flywheel, m", "steady.width"),
+        Field("mass", NUMBER, "of the flywheel, kg", "steady.mass"),
+        Field("tangents", list_of(TANGENT), "of the largest and of the least speed", "steady.tangents"),
+    )),
+    Field("driving", SERIES, "driving moment, N*m", lambda r: r.steady.driving(r.motion.q)),
+    Field("excess", SERIES, "work of all moments, J", lambda r: r.steady.work(r.motion.q)),
+)  # fmt: skip
 
 MOTION_PARTS = (
     Field("driver", DRIVER, "the input", lambda r: r, "motion"),
@@ -274,7 +305,7 @@ MOTION_PARTS = (
     Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     Field("forces", FORCES, "force plan", lambda r: r, "lever"),
     Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
-    Field("dynamics", STEADY, "steady running; its cycle begins at position 0", "running", _steady),
+    Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, _steady),
     Field("run", SINGLE, "a single run", "running", _single),
     Field("balancing", BALANCING, "what shakes the frame at constant speed of the driver", there="balancing"),
     Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,

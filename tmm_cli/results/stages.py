@@ -20,6 +20,8 @@ from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Group
 from tmm_cli.structure.cycle import DENSE
 
+PANELS = 12 * 16  # places on a turn that a law of motion is computed at, at least
+
 Row = tuple[str, str, str, str, str]
 
 
@@ -104,6 +106,9 @@ def stages(results: Results) -> Iterable[Row]:
         yield what, _titles(towards(kernels, [linkage.output_carrier(link)]), kernels), str(scan + 1), velocities, note
     yield _("dead positions"), every, str(scan), places, ""
     yield _("pressure angles"), every, str(scan), places, _("from statics")
+    if results.inputs.dynamics is not None:
+        note = _("and more, until sums along the way are exact; then kinematics and forces with it")
+        yield _("law of motion"), every, str(PANELS * driver_range.turns), accelerations, note
     note = _("--position: these only; --of: groups on the way only")
     yield _("kinematics"), every, asked, accelerations, note
     yield _("forces"), every, asked, _("reactions"), f"{_inertia(linkage)}; {_acting(linkage)}"

@@ -6,8 +6,11 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
+from tmm_cli.double_double import rounded
 from tmm_cli.language import _, numeral
-from tmm_cli.linkage import FRAME, Driver, Link
+from tmm_cli.linkage import FRAME, Driver, Link, SpeedTable
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
@@ -52,10 +55,35 @@ def motion(driver: Driver) -> str:
     if driver.kind == "slide":
         text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
         return text.format(speed=_short(driver.rate))
+    if driver.law is not None:
+        text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
+        if driver.sense < 0:
+            text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, clockwise; {between}")
+        speeds = np.sqrt([float(rounded(square)) for square in driver.law.squares.values])
+        low, high = float(speeds.min()), float(speeds.max())
+        return text.format(
+            low=_short(low), high=_short(high), least=_short(low * 30 / math.pi), most=_short(high * 30 / math.pi),
+            between=between_rows(driver.law),
+        )  # fmt: skip
     text = _("{speed} rad/s = {turns} rpm, counterclockwise")
     if driver.sense < 0:
         text = _("{speed} rad/s = {turns} rpm, clockwise")
     return text.format(speed=_short(driver.rate), turns=_short(driver.rate * 30 / math.pi))
+
+
+def between_rows(law: SpeedTable) -> str:
+    """What is between rows of a table of speeds, and where accelerations are from."""
+    if law.squares.between == "linear":
+        text = _("constant acceleration from row to row")
+    elif law.squares.closed:
+        text = _("a cubic spline of squares of speeds that closes, accelerations from its slope")
+    else:
+        text = _("a natural cubic spline of squares of speeds, accelerations from its slope")
+    if law.accelerations is not None:
+        text = _("a spline of squares of speeds; accelerations by a table of their own")
+        if law.squares.between == "linear":
+            text = _("squares of speeds linear from row to row; accelerations by a table of their own")
+    return text
 
 
 def gravity(pull: complex) -> str:
@@ -79,6 +107,7 @@ def doubts(problem: Problem) -> Iterable[str]:
     yield from _sizes(problem)
     yield from _masses(problem, data)
     yield from _smooth_tables(problem)
+    yield from _several_strokes(problem)
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
         yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
@@ -146,6 +175,16 @@ def _smooth_tables(problem: Problem) -> Iterable[str]:
                 "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
                 "{share} % of their range: write `between: linear`, or give more rows there"
             ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
+
+
+def _several_strokes(problem: Problem) -> Iterable[str]:
+    """In a cycle of several turns there are several working strokes."""
+    turns = problem.linkage.turns
+    for load in problem.linkage.loads if turns > 1 else ():
+        if load.working_stroke_only:
+            yield _(
+                "load {load} acts in every working stroke of the {turns} turns: `when: [from, to]` picks one of them"
+            ).format(load=load.name, turns=turns)
 
 
 def _spans(problem: Problem) -> dict[str, tuple[float, str]]:

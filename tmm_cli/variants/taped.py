@@ -72,14 +72,14 @@ class Taped:
     def driver_range(self, columns: Real) -> DriverRanges:
         """The crank's turn, or the range of the driver."""
         if self.ends is None:
-            return DriverRanges.of(self.variant, len(columns), 1, self.start)
+            return DriverRanges.of(self.variant, len(columns), self.linkage.turns, self.start)
         found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
         numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
         variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
         variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
-        return DriverRanges.of(variant, len(columns), 1, self.start)
+        return DriverRanges.of(variant, len(columns), self.linkage.turns, self.start)
 
     def without(self, part: str) -> Taped:
         """Without results whose names have such a part."""

@@ -8,20 +8,24 @@ from typing import Any, Literal
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
+from tmm_cli.draw.layout.law_values import law_tables
 from tmm_cli.draw.layout.values import balance_table, forces_table, motion_tables, structure_tables
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import all_groups
+from tmm_cli.draw.sheets.hodographs import balancing
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, detailed, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import N_
 
-SUBJECTS = (N_("Structure and synthesis"), N_("Kinematics"), N_("Forces"))
+SUBJECTS = (N_("Structure and synthesis"), N_("Kinematics"), N_("Forces"), N_("Law of motion"))
 
 
 @dataclass(frozen=True)
@@ -84,4 +88,8 @@ CONTENTS = (
     Source(2, lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),
+    Source(2, balancing, 150),
+    Source(2, single_run, 240),
+    Source(3, law_of_motion, 240),
+    Source(3, law_tables),
 )

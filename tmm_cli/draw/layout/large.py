@@ -11,7 +11,19 @@ from itertools import accumulate, chain, product, repeat
 from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
 from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
-from tmm_cli.draw.layout.pieces import ENOUGH, GAP, Page, Piece, area, begun, eased, filled, grown, spaced
+from tmm_cli.draw.layout.pieces import (
+    ENOUGH,
+    GAP,
+    Page,
+    Piece,
+    area,
+    begun,
+    eased,
+    evenest,
+    filled,
+    shared,
+    spaced,
+)
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import LEAST_PAPER, Picture, Space, within
@@ -25,7 +37,8 @@ MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smalle
 NOTABLE = 1.1  # times larger: it is drawn again
 EASED = 0.75  # of its room: so much smaller something is tried where it became larger than thought
 TRIES = 5  # of that
-ROUNDS = 2  # of making larger what there proves to be room for
+THIN = 0.63  # of a page: with less another shape of the drawings is tried
+ROUNDS = 3  # of making larger what there proves to be room for
 
 
 @dataclass(frozen=True)
@@ -56,10 +69,26 @@ def _smallest(number: int, choice: Choice, papers: Sequence[str]) -> tuple[Size,
     """The drawings of a sheet on the first of these formats that holds them on one page, or else on the last one."""
     for paper in papers:
         size = PAPERS[paper]
-        pictures, pages = _sheet(number, choice, size, field_of(size, choice.results.problem.title_texts.block))
+        pictures, pages = _fullest(number, choice, size, field_of(size, choice.results.problem.title_texts.block))
         if len(pages) < 2:
             break
     return size, pictures, pages
+
+
+def _fullest(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
+    """The drawings of a sheet; where a page stays thin, high ones once more as high as is free above the titles."""
+    found = _sheet(number, choice, paper, field, field.height - GAP)
+    high = field.height - field.taken[1] - GAP
+    if _thinnest(found) > THIN * field.area or all(one.paper[1] <= high for one in found[0]):
+        return found
+    flat = _sheet(number, choice, paper, field, high)
+    return min(found, flat, key=lambda one: (len(one[1]), -_thinnest(one)))
+
+
+def _thinnest(found: tuple[list[Picture], list[Page]]) -> float:
+    """What is drawn on the emptiest page, mm²."""
+    pictures, pages = found
+    return min((area([one.paper for one in pictures], page) for page in pages), default=0.0)
 
 
 def field_of(paper: Size, block: str) -> Field:
@@ -69,10 +98,15 @@ def field_of(paper: Size, block: str) -> Field:
     return Field(room.real, room.imag, (taken[0] - EDGE + GAP, taken[1] - EDGE + GAP))
 
 
-def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
-    """All drawings of a sheet, and which of them stand on which of its pages."""
-    shrunk = max(paper) / max(PAPERS["A1"])
-    asked = [(source, choice, field) for source in CONTENTS if source.sheet == number]
+def _sheet(
+    number: int, choice: Choice, paper: Size, field: Field, high: float
+) -> tuple[list[Picture], list[Page]]:  # fmt: skip
+    """All drawings of a sheet, and which of them stand on which of its pages.
+
+    high: how high a drawing becomes if it can be folded, mm.
+    """
+    shrunk, most = max(paper) / max(PAPERS["A1"]), (field.width - GAP, high)
+    asked = [(source, choice, most) for source in CONTENTS if source.sheet == number]
     parts = [_first(*one, shrunk) for one in asked]
     lengths, pieces = [len(part) for part in parts], [piece for part in parts for piece in part]
 
@@ -85,7 +119,8 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
 
     rooms, pages = begun(pieces, field, shrunk)
     free = [k for k, piece in enumerate(pieces) if not piece.length]
-    larger = drawn(grown(pieces, eased(pieces, rooms, EASED, free), pages, field, shrunk))
+    wanted, pages = shared(pieces, eased(pieces, rooms, EASED, free), pages, field, shrunk)
+    larger = drawn(wanted)
     if all(pack(spaced(_sizes(larger), page), field) is not None for page in pages):
         pieces = larger
     else:  # something became larger than thought
@@ -99,12 +134,16 @@ def _sheet(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list
         pages = fitting([piece.drawn for piece in pieces], field)
     for __ in range(ROUNDS):
         before = [piece.drawn.longest or piece.usual for piece in pieces]
-        thin = [page for page in pages if area(_sizes(pieces), page) < ENOUGH * field.area]
-        rooms = grown(pieces, before, thin, field, shrunk)
+        rooms, pages = shared(pieces, before, pages, field, shrunk)
         if all(room < NOTABLE * old for room, old in zip(rooms, before, strict=True)):
             break
-        pieces = _taken(pieces, drawn(rooms), pages, field)
-    return [piece.drawn for piece in pieces], pages
+        larger = drawn(rooms)
+        found = _taken(pieces, larger, pages, field)
+        pieces = [  # what had no room is tried half as much larger
+            one if one is new else replace(one, most=(old + room) / 2)
+            for one, new, old, room in zip(found, larger, before, rooms, strict=True)
+        ]
+    return [piece.drawn for piece in pieces], evenest(_sizes(pieces), pages, field)
 
 
 def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Page], field: Field) -> list[Piece]:
@@ -131,30 +170,30 @@ def fitting(pictures: Sequence[Picture], field: Field) -> list[Page]:
     return filled([one.paper for one in pictures], field) or []
 
 
-def _first(source: Source, choice: Choice, field: Field, shrunk: float) -> list[Piece]:
+def _first(source: Source, choice: Choice, most: Size, shrunk: float) -> list[Piece]:
     """The drawings of a source as large as usual."""
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(SMALLEST, min(1.0, math.sqrt(MANY / max(number, 1))))
-    pictures = _drawn(source, choice, field, repeat(usual and usual * shrunk))
+    pictures = _drawn(source, choice, most, repeat(usual and usual * shrunk))
     if usual is None:
-        least, most = LETTERS
-        return [Piece(one, one.longest / shrunk, least * one.longest, most * one.longest) for one in pictures]
+        least, largest = LETTERS
+        return [Piece(one, one.longest / shrunk, least * one.longest, largest * one.longest) for one in pictures]
     return [Piece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
 
 
-def _again(source: Source, choice: Choice, field: Field, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
+def _again(source: Source, choice: Choice, most: Size, pieces: list[Piece], rooms: Sequence[float]) -> list[Piece]:
     """The same in other rooms, where they are other ones."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
-    pictures = _drawn(source, choice, field, rooms)
+    pictures = _drawn(source, choice, most, rooms)
     return [replace(piece, drawn=picture) for piece, picture in zip(pieces, pictures, strict=True)]
 
 
-def _drawn(source: Source, choice: Choice, field: Field, rooms: Iterable[float | None]) -> list[Picture]:
+def _drawn(source: Source, choice: Choice, most: Size, rooms: Iterable[float | None]) -> list[Picture]:
     """The drawings of a source, each in its room."""
     every, found = iter(source.drawings(choice)), list[Picture]()
     for room in rooms:
-        with within(Space(room, (field.width - GAP, field.height - GAP))):
+        with within(Space(room, most)):
             drawn = next(every, None)
         if drawn is None:
             break

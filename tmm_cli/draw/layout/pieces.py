@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import product
+from functools import cache
+from itertools import combinations, islice, pairwise, product
 
 from tmm_cli.draw.layout.packing import Field, Size, pack
 from tmm_cli.draw.paper.picture import Picture
@@ -21,9 +22,11 @@ STEP = 1.04  # by which a drawing without a scale is made larger
 ROUGHLY = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
 POINT = 1e-6  # mm: a figure of this size has none
 ENOUGH = 0.74  # of a page: then nothing more is made larger
+EVEN = 0.68  # of every page: then pieces are shared out in no further way
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
 PAGES = 40  # of one sheet at most
+FEW, WAYS = 8, 2000  # ways to share out pieces among pages that are tried; where there are more, none is
 
 
 @dataclass(frozen=True)
@@ -121,6 +124,29 @@ def filled(sizes: Sequence[Size], field: Field) -> list[Page] | None:
         most *= EVENER
 
 
+def ways(sizes: Sequence[Size], pages: list[Page], field: Field) -> Iterator[list[Page]]:
+    """These pages, then others that hold the pieces in their order: as many, the most even ones first."""
+    yield pages
+    every, count = range(len(sizes)), len(pages)
+    if count < 2 or math.comb(len(sizes) - 1, count - 1) > WAYS:
+        return
+
+    @cache
+    def held(start: int, end: int) -> bool:
+        page = [*every[start:end]]
+        return area(sizes, page) <= field.area and pack(spaced(sizes, page), field) is not None
+
+    found = ([0, *cuts, len(sizes)] for cuts in combinations(every[1:], count - 1))
+    others = [[[*every[start:end]] for start, end in pairwise(cuts)] for cuts in found]
+    others.sort(key=lambda way: max(area(sizes, page) for page in way))
+    yield from islice((way for way in others if all(held(page[0], page[-1] + 1) for page in way)), FEW)
+
+
+def evenest(sizes: Sequence[Size], pages: list[Page], field: Field) -> list[Page]:
+    """So many pages, of which the emptiest one is as full as can be."""
+    return max(ways(sizes, pages, field), key=lambda way: min((area(sizes, page) for page in way), default=0.0))
+
+
 def area(sizes: Sequence[Size], page: Page) -> float:
     """What the pieces of a page take, mm²."""
     return sum(sizes[k][0] * sizes[k][1] for k in page)
@@ -138,6 +164,22 @@ def _filled(sizes: Sequence[Size], field: Field, most: float) -> list[Page] | No
         else:
             return None
     return pages
+
+
+def shared(
+    pieces: Sequence[Piece], given: Sequence[float], pages: list[Page], field: Field, shrunk: float
+) -> tuple[list[float], list[Page]]:
+    """Larger rooms, and so many pages as there are, shared out so that the emptiest one is as full as can be."""
+    best, most = (list(given), pages), -1.0
+    for way in ways(sized(pieces, given), pages, field):
+        rooms = grown(pieces, given, way, field, shrunk)
+        sizes = sized(pieces, rooms)
+        least = min((area(sizes, page) for page in way), default=0.0)
+        if least > most:
+            best, most = (rooms, way), least
+        if least > EVEN * field.area:
+            break
+    return best
 
 
 def grown(

@@ -33,6 +33,7 @@ from tmm_cli.tolerances import NO_FORCE
 
 FIGURES = 4  # of each number
 NOTHING = 1e-9  # of the largest number of a column: less is written as zero
+DECIMALS = 6  # at most; what would need more is written with a power of ten
 BESIDE = 8  # quantities beside one another in a table
 POSITIONS = 36  # rows of a table at most: of more positions only some have one
 
@@ -61,8 +62,9 @@ def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
         ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
     ):
         moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
-        for start in range(0, len(moving), BESIDE):
-            yield f"table-{stem}", _over_positions(results, title, moving[start : start + BESIDE])
+        each = math.ceil(len(moving) / math.ceil(len(moving) / BESIDE)) if moving else 1
+        for start in range(0, len(moving), each):
+            yield f"table-{stem}", over_positions(results, title, moving[start : start + each])
 
 
 def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
@@ -81,17 +83,19 @@ def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
         __, ___, dimension = columns[0]
         checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
         columns.append((_("by the lever"), checked, dimension))
-    yield "table-balance", _over_positions(results, _("What balances the driver"), columns)
+    yield "table-balance", over_positions(results, _("What balances the driver"), columns)
 
 
-def _over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
+def over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
     """A row a position, angles of the driver first."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
-    place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
+    cycle = 2 * np.pi * motion.linkage.turns
+    place: Quantity = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
-    heads: list[Words] = [_("No."), *((name, f", {on_paper(units.spelt(kind))}") for name, __, kind in every)]
+    heads: list[Words] = [_("No.")]
+    heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
     cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
@@ -136,8 +140,18 @@ def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]
 
 
 def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
-    """Values (SI) in the units of the file; a dash where there is none."""
+    """Values (SI) in the units of the file, all with the decimals that the largest one needs; a dash where none is."""
     shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
-    least = NOTHING * np.max(np.abs(shown), where=np.isfinite(shown), initial=0.0)
-    picked = [float(shown[k if len(shown) > 1 else 0]) for k in rows]
-    return ["-" if not math.isfinite(v) else numeral(v if abs(v) > least else 0.0, f".{FIGURES}g") for v in picked]
+    picked = np.array([shown[k if len(shown) > 1 else 0] for k in rows])
+    known = shown[np.isfinite(shown)]
+    largest = float(np.max(np.abs(known), initial=0.0))
+    decimals = FIGURES - 1 - math.floor(math.log10(largest)) if largest else 0
+    form = f".{FIGURES}g"
+    if -DECIMALS < decimals <= DECIMALS:
+        needed = (
+            n for n in range(decimals) if np.allclose(np.round(known, n), known, rtol=0, atol=10.0**-decimals / 2)
+        )
+        decimals = next(needed, max(decimals, 0))
+        form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no zero with a sign
+    least = NOTHING * largest
+    return ["-" if not math.isfinite(v) else numeral(v, form) if abs(v) > least else "0" for v in picked.tolist()]

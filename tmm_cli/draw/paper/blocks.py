@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -135,9 +135,14 @@ def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[
     return best[1:]
 
 
-def nearest_free(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[Shape, complex]:
-    """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it."""
-    found: list[tuple[float, Shape, complex]] = []
+def nearest_free(
+    block: Block, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
+) -> tuple[Shape, complex]:  # fmt: skip
+    """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it.
+
+    fits: whether there is room for a drawing of this width and height (mm).
+    """
+    found: list[tuple[bool, float, Shape, complex]] = []
     for shape in block.shapes():
         places = corners(low, high, shape.size)
         free = places[covered(crowd, places, shape.size) == 0] if len(places) else places
@@ -145,8 +150,11 @@ def nearest_free(block: Block, low: complex, high: complex, crowd: Vector) -> tu
         if len(free):
             return shape, complex(free[0])
         below = complex(max(size.real, shape.size.real), size.imag + CLEAR + shape.size.imag)
-        found.append((below.real * below.imag, shape, low - 1j * (CLEAR + shape.size.imag)))
+        found.append(
+            (not fits(below.real, below.imag), below.real * below.imag, shape, low - 1j * (CLEAR + shape.size.imag))
+        )
         beside = complex(size.real + CLEAR + shape.size.real, max(size.imag, shape.size.imag))
-        found.append((beside.real * beside.imag, shape, complex(high.real + CLEAR, high.imag - shape.size.imag)))
-    __, shape, at = min(found, key=lambda one: one[0])
+        at = complex(high.real + CLEAR, high.imag - shape.size.imag)
+        found.append((not fits(beside.real, beside.imag), beside.real * beside.imag, shape, at))
+    *__, shape, at = min(found, key=lambda one: one[:2])
     return shape, at

@@ -16,8 +16,9 @@ from tmm_cli.draw.paper.fonts import SHARE
 from tmm_cli.draw.paper.ground import AIR, Ground
 from tmm_cli.draw.paper.labels import Label, place
 from tmm_cli.draw.paper.labels import extent as label_extent
-from tmm_cli.draw.paper.picture import covering, extremes, longest_for, on_large_sheet, paper_for, picture
+from tmm_cli.draw.paper.picture import covering, extremes, fits, longest_for, on_large_sheet, paper_for, picture
 from tmm_cli.draw.paper.room import Room
+from tmm_cli.draw.paper.writing import in_a_line
 from tmm_cli.language import numeral, spelt
 from tmm_cli.plans.record import MARGIN, PAD, STRIP, Symbol, extent, ground_of
 from tmm_cli.problem.units import UnitSystem, on_paper
@@ -67,8 +68,10 @@ class Sheet:
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
-        self.text(complex(MARGIN, height - MARGIN - 2), title[:90], 12, weight="bold")
-        self.text(complex(MARGIN, height - MARGIN - 8), self.caption[:120], 9, colour="#404040")
+        told, size = in_a_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
+        self.text(complex(MARGIN, height - MARGIN - 2), told, size / POINT, weight="bold")
+        told, size = in_a_line(self.caption, 9 * POINT, width - 2 * MARGIN)
+        self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """A value (SI) as a place on paper (mm)."""
@@ -209,7 +212,7 @@ class Sheet:
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
-            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks))
+            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks), fits)
         else:
             crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
             shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)

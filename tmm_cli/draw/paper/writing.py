@@ -51,6 +51,13 @@ def written(
     return [Text(at, line, smaller, DARK, align, bold) for at, line in zip(places, found, strict=True)]
 
 
+def in_a_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
+    """A text on one line of this room (mm) and its size, smaller or cut where it is too long for it."""
+    words = " ".join(text.split())
+    smaller = max(min(1.0, room / max(width(words[: int(8 * room / size)], size, bold=bold), room)), LEAST) * size
+    return cut(words, smaller, room, bold=bold), smaller
+
+
 def _fits(text: str, size: float, room: float, lines: int, bold: bool) -> bool:
     words = " ".join(text.split())[: int(8 * room * lines / size) + 1]
     found = wrap(words, size, room, lines, bold=bold)

@@ -27,7 +27,6 @@ from tmm_cli.draw.paper.sheet import (
 )
 from tmm_cli.draw.sheets import over_cycle
 from tmm_cli.draw.sheets.over_cycle import Quantities
-from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.problem.units import UnitSystem, on_paper
@@ -62,11 +61,12 @@ SYMBOLS = {
     LENGTH: "s", SPEED: "v", ACCELERATION: "a", ANGLE: "φ", ANGULAR_SPEED: "ω", ANGULAR_ACCELERATION: "ε",
     FORCE: "F", MOMENT: "M", MOMENT_OF_INERTIA: "J", MASS: "m",
 }  # fmt: skip
+UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the file
 
 
 def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
-    places, borders = _closely(results)
+    places, borders = closely(results)
     whole = at_places(results, places)
     motion = whole.motion
     assert motion is not None
@@ -78,19 +78,21 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     reactions = _("Reactions over the cycle; dots: computed positions")
     energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
     pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
+    balancing = _("What shakes the frame over the cycle; dots: computed positions")
     for caption, stem, every in (
         (cycle, "diagrams", [*first, *over_cycle.balances(whole, results)]),
         *((cycle, stem, every) for stem, every in of_outputs.items()),
         (reactions, "reactions", over_cycle.reactions(whole, results)),
         (energy, "energy", over_cycle.energy(whole, results)),
         (pressure, "pressure", over_cycle.pressure(results, motion)),
+        (balancing, "shaking", over_cycle.shaking(results, places)),
     ):
         for start in range(0, len(every), MOST_PANELS):
             name = safe(stem) + (f"-{start // MOST_PANELS + 1}" if start else "")
-            yield name, _sheet(results, caption, motion, borders, every[start : start + MOST_PANELS])
+            yield name, over_turn(results, caption, motion.q, borders, every[start : start + MOST_PANELS])
 
 
-def _closely(results: Results) -> tuple[Real, list[int]]:
+def closely(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
@@ -129,12 +131,11 @@ def _turned(results: Results, q: Real) -> Any:
     return np.degrees(results.linkage.driver.sense * (q - results.start))
 
 
-def _sheet(
-    results: Results, caption: str, motion: Motion, borders: Sequence[int], every: Sequence[Quantities]
-) -> Drawing:
+def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], every: Sequence[Quantities]) -> Drawing:
+    """Quantities at places q of the driver, which may jump after those of the numbers `borders`."""
     assert results.motion is not None
     sheet = Sheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
-    xs, marks, end = _turned(results, motion.q), _turned(results, results.motion.q), 360 * results.turns
+    xs, marks, end = _turned(results, q), _turned(results, results.motion.q), 360 * results.turns
     numbers = list(zip(marks.tolist(), map(str, results.numbers), strict=True))
     if end:
         marks = np.mod(marks + BESIDE, end) - BESIDE
@@ -147,7 +148,7 @@ def _sheet(
         for start, length, working in _strokes(results)
     ]
     over = Across(axis, words, sorted(numbers), spans)
-    chart(sheet, [_plot(one, results.problem.units, xs, marks, borders) for one in every], over)
+    chart(sheet, [plotted(one, results.problem.units, xs, marks, borders) for one in every], over)
     return sheet.finish()
 
 
@@ -161,7 +162,8 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
     return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
 
 
-def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+    """A panel of quantities over places xs, which may jump after those of the numbers `borders`; marks: of points."""
     factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):
@@ -207,6 +209,6 @@ def _scale(found: Quantities, units: UnitSystem, unit: str) -> Any:
     if found.dimension == LENGTH:
         unit, factor = "m", units.factor(LENGTH)
     elif not unit:
-        unit = {"T": "J", "P": "W"}.get(found.symbol, "1")
+        unit = UNITS.get(found.symbol, "1")
     per = f"({unit})/mm" if "/" in unit else f"{unit}/mm"
     return lambda mu: scale_words(symbol, mu * factor, per)

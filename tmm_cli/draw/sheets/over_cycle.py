@@ -26,6 +26,7 @@ from tmm_cli.quantities import (
     Dimension,
 )
 from tmm_cli.results.reports.cycle import output_motion
+from tmm_cli.tolerances import NO_FORCE
 
 MOST = 6  # courses in a panel of reactions
 
@@ -122,6 +123,27 @@ def energy(whole: Results, results: Results) -> list[Quantities]:
         if courses:
             found.append(Quantities(words, dimension, courses, symbol))
     return found
+
+
+def shaking(results: Results, q: Any) -> list[Quantities]:
+    """Force and moment on the frame before and after balancing."""
+    found = results.balancing
+    if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
+        return []
+    from tmm_cli.analysis.balancing import shaken  # few files ask for it
+
+    ways = [(_("without counterweights"), found.before), (_("with counterweights"), found.after)]
+    told = [(*way, curve) for way, curve in zip(ways, shaken(results.mechanism, found.cycle, q), strict=True)]
+    told = told if found.cycle.counterweights else told[:1]
+    nothing = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
+
+    def size(force: Any) -> Any:
+        return np.where(np.abs(force) > nothing, np.abs(force), 0 * np.abs(force))
+
+    forces = [Course(name, size(curve.force), size(here.force)) for name, here, curve in told]
+    moments = [Course(name, curve.moment, here.moment) for name, here, curve in told]
+    about = _("shaking moment about {pivot}").format(pivot=found.pivot or _("the origin"))
+    return [Quantities(_("shaking force"), FORCE, forces), Quantities(about, MOMENT, moments)]
 
 
 def pressure(results: Results, motion: Motion) -> list[Quantities]:

@@ -17,6 +17,7 @@ from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
 from tmm_cli.plans.record import Symbol
+from tmm_cli.results.understood import between_rows
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
@@ -24,13 +25,28 @@ ROUND = 1e-9  # of a speed in rpm that was given as such
 
 def drivers(subject: Subject) -> Iterable[Block]:
     """How each driving link moves."""
+    running = subject.results.running
     for driver in subject.results.linkage.drivers:
+        if running is not None:
+            yield said(
+                _("How fast driving link {link} moves follows from its law of motion, which is found below: it needs "
+                  "ratios of velocities only, and these are the same at every speed."),
+                link=driver.link,
+            )  # fmt: skip
+            continue
         yield from _turning(subject, driver) if driver.kind == "turn" else _sliding(subject, driver)
 
 
 def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    if driver.law is not None:
+        text = _(
+            "Driving link {link} turns about point {point} {sense}; its angular velocity is given by a table ({how})."
+        )
+        how = between_rows(driver.law)
+        yield said(text, link=driver.link, point=driver.joint, sense=sense(driver.sense), how=how)
+        return
     fields = {"link": driver.link, "point": driver.joint, "base": driver.base, "sense": sense(driver.sense)}
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
     if driver.base != FRAME:
@@ -76,6 +92,10 @@ def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
 def speed_here(here: Here) -> Iterable[Block]:
     """The speed in a position of a first driver that does not keep it."""
     results, driver = here.subject.results, here.motion.linkage.driver
+    if driver.law is not None or results.running is not None:
+        yield said(_("By the law of motion its speed and its acceleration are here"))
+        yield from _by_law(here)
+        return
     if not driver.acceleration:
         return
     turns = driver.kind == "turn"
@@ -92,6 +112,14 @@ def speed_here(here: Here) -> Iterable[Block]:
     start = Square(Leaf(Symbol(letter, "0"), driver.rate))
     root = SquareRoot(Sum(((1, start), (1, more))))
     yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit(letter)))
+
+
+def _by_law(here: Here) -> Iterable[Block]:
+    motion, k = here.motion, here.k
+    own, letters = motion.linkage.driver.link, "ωε" if motion.linkage.driver.kind == "turn" else "va"
+    for letter, values in zip(letters, (motion.rate, motion.acceleration), strict=True):
+        value = float(np.broadcast_to(values, motion.q.shape)[k])
+        yield _given(here.subject, Symbol(letter, own), value, unit(letter))
 
 
 def positions(subject: Subject) -> Iterable[Block]:

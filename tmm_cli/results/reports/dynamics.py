@@ -9,7 +9,6 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.running import Running
-from tmm_cli.dynamics.sizes import Disk
 from tmm_cli.dynamics.steady import Steady
 from tmm_cli.language import N_, _, numeral
 from tmm_cli.quantities import (
@@ -67,25 +66,22 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
         return
     yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
     if steady.found is not None:
-        exact = steady.found.inertia
-        for name, inertia in ((_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)):
+        ways = (_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)
+        for (name, inertia), error in zip(ways, steady.errors, strict=True):
             yield name, inertia, INERTIA
-            yield _("{way}, off by, %").format(way=name), 100 * (inertia / exact - 1), NUMBER
+            yield _("{way}, off by, %").format(way=name), 100 * error, NUMBER
     if steady.task.ratio != 1:
         yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
-    size = steady.task.size
-    diameter = size.diameter(steady.on_shaft)
-    yield _("diameter of a disk") if isinstance(size, Disk) else _("mean diameter of a rim"), diameter, LENGTH
-    yield _("its width"), size.width * diameter, LENGTH
-    yield _("its mass"), size.mass(diameter), MASS
+    shape = steady.task.size.shape
+    yield _("diameter of a disk") if shape == "disk" else _("mean diameter of a rim"), steady.diameter, LENGTH
+    yield _("its width"), steady.width, LENGTH
+    yield _("its mass"), steady.mass, MASS
 
 
 def _law(results: Results) -> Table:
     motion, running = results.motion, results.running
     assert motion is not None and isinstance(running, Running)
-    way = running.way(motion.q)
-    work = running.steady.law.energy(way) - running.steady.law.energy(0 * way)
-    driving = running.sense * running.steady.law.driving(way)
+    driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
     return Table(
         "law-of-motion", _("Law of motion of the driver"),
         (

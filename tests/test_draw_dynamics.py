@@ -1,0 +1,158 @@
+"""Drawings of the law of motion: the energy-mass diagram with its tangents, what goes over the cycle, what jumps."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from bank import drawn as sheets_of
+from bank import problem, solved
+from covering import covered
+from formulas import formulas
+
+from tmm_cli import solve
+from tmm_cli.draw.layout.contents import CONTENTS, chosen
+from tmm_cli.draw.paper.drawing import Circle, Line, Text
+from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion
+from tmm_cli.draw.sheets.single_run import single_run
+from tmm_cli.dynamics.motors import Linear
+from tmm_cli.dynamics.sizes import Rim
+from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.linkage import Load
+from tmm_cli.note import note
+from tmm_cli.note.formats.html import html
+
+THIN = 0.05  # mm: less than half of a line
+TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor
+    ("shaper", "constant"): SteadyTask(8.6, 1 / 30),
+    ("engine-four", "far"): SteadyTask(314.0, 1 / 30),
+    ("double-crank", "clockwise"): SteadyTask(7.0, 0.02),
+    ("six-bar", "given"): SteadyTask(20.0, flywheel=3.0, size=Rim(7200.0, 0.2, 0.1)),
+    ("engine-four", "none"): SteadyTask(314.0),
+    ("shaper", "motor"): SteadyTask(9.0, 0.05, Linear(2000.0, 9.5), ratio=4.0),
+}
+
+
+@cache
+def running(name, kind):
+    """A problem of the bank with a law of motion."""
+    return solve(replace(problem(name), dynamics=TASKS[name, kind]))
+
+
+@cache
+def drawn(name, kind):
+    return dict(law_of_motion(running(name, kind)))
+
+
+def curve(sheet, colour, style="-"):
+    """The line of this look that rises most, mm; one with corners rather than a straight one."""
+    lines = [m for m in sheet.marks if isinstance(m, Line) and m.colour == colour and m.style == style]
+    return np.array(max(lines, key=lambda line: (len(line.places) > 2, np.ptp(np.imag(line.places)))).places)
+
+
+def written(sheet):
+    return "\n".join(mark.text for mark in sheet.marks if isinstance(mark, Text))
+
+
+CASES = pytest.mark.parametrize("case", TASKS, ids="-".join)
+
+
+@CASES
+def test_tangents_touch_the_diagram_from_above_and_from_below(case):
+    sheet = drawn(*case)["energy-mass"]
+    diagram = curve(sheet, DARK)
+    for colour, side in ((LOAD, 1), (INERTIA, -1)):
+        start, *__, end = curve(sheet, colour, "--")
+        above = side * ((start - diagram) * np.conj(1j * (end - start) / abs(end - start))).real
+        assert above.min() == pytest.approx(0, abs=THIN)
+        point = next(m.centre for m in sheet.marks if isinstance(m, Circle) and m.edge == colour and m.face == "white")
+        assert np.abs(diagram - point).min() < 0.5 + THIN
+        assert ((point - start) * np.conj(1j * (end - start) / abs(end - start))).real == pytest.approx(0, abs=THIN)
+
+
+@CASES
+def test_slopes_of_tangents_are_half_of_the_squares_of_the_speeds_at_the_printed_scale(case):
+    sheet, steady = drawn(*case)["energy-mass"], running(*case).steady.steady
+    energy, inertia = (float(re.search(rf" = (\S+) {unit}/mm", written(sheet))[1]) for unit in ("J", r"\(kg·m²\)"))
+    printed = [float(text) for text in re.findall(r" = (\S+)°", written(sheet))]
+    for colour, speed, angle in zip((LOAD, INERTIA), reversed(steady.speeds), printed, strict=True):
+        start, *__, end = curve(sheet, colour, "--")
+        slope = (end - start).imag / (end - start).real
+        assert slope * energy / inertia == pytest.approx(speed**2 / 2, rel=1e-9)
+        assert math.degrees(math.atan(slope)) == pytest.approx(angle, rel=1e-3)
+
+
+@CASES
+def test_the_segment_between_them_tells_the_flywheel(case):
+    sheet, steady = drawn(*case)["energy-mass"], running(*case).steady.steady
+    text = written(sheet)
+    a, b = (curve(sheet, colour, "--")[0] for colour in (LOAD, INERTIA))
+    assert float(re.search(r"ab = (\S+) mm", text)[1]) == pytest.approx(abs(a - b), rel=1e-3, abs=1e-6)
+    if not steady.law.flywheel:
+        assert "kg·m²" not in text.partition("ab")[2]
+        return
+    mu = float(re.search(r" = (\S+) \(kg·m²\)/mm", text)[1])
+    ways = [np.diff(curve(sheet, colour, "--"))[0] for colour in (LOAD, INERTIA)]
+    upper, lower = (way.imag / way.real for way in ways)
+    begins = float((re.search(r" − ([\d.e-]+)$", text, re.M) or [0, 0])[1])
+    found = abs(a - b) * mu / (upper - lower) - begins
+    assert found == pytest.approx(steady.law.flywheel, rel=1e-6)
+    assert float(re.search(r" = (\S+) kg·m²$", text, re.M)[1]) == pytest.approx(found, rel=1e-3)
+
+
+@CASES
+def test_all_moments_together_do_no_work_over_the_cycle(case):
+    sheet = drawn(*case)["law-moments"]
+    work = curve(sheet, INERTIA, "-.")
+    assert work[0].imag == pytest.approx(work[-1].imag, abs=THIN)
+    assert np.ptp(work.imag) > 1
+
+
+@CASES
+def test_nothing_is_covered_on_these_sheets(case):
+    assert not [f"{stem}: {pair}" for stem, sheet in drawn(*case).items() for pair in covered(sheet)]
+
+
+def test_a_load_that_jumps_is_drawn_as_a_jump():
+    shaper = problem("shaper")
+    brake = Load("brake", "1", moment=-80.0, when="working stroke")
+    loaded = replace(shaper, linkage=replace(shaper.linkage, loads=(*shaper.linkage.loads, brake)), extended=None)
+    sheet = dict(law_of_motion(solve(replace(loaded, dynamics=SteadyTask(8.6, 1 / 30)))))["law-moments"]
+    steps = [np.diff(line.places) for line in sheet.marks if isinstance(line, Line) and len(line.places) > 20]
+    steep = [step for every in steps for step in every if abs(step.real) < 0.01 and abs(step.imag) > 1]
+    rings = [m for m in sheet.marks if isinstance(m, Circle) and m.face == "white"]
+    assert not steep and len(rings) > 2
+
+
+def test_a_file_without_the_block_has_none_of_it():
+    assert not [stem for stem in sheets_of("sine") if stem.startswith(("law", "energy-mass"))]
+    choice = chosen(solved("sine"), every=False)
+    assert not [found for source in CONTENTS if source.sheet == 3 for found in source.drawings(choice)]
+    assert "Law of motion" not in html(note(solved("sine"), drawn=False)).decode()
+
+
+@CASES
+def test_formulas_of_the_chapter_give_what_they_say(case):
+    page = html(note(running(*case), drawn=False)).decode()
+    assert "Law of motion" in page
+    read = formulas(page)
+    assert len(read) > 20 and all(one.true for one in read)
+
+
+def test_a_single_run_is_drawn_from_its_beginning_to_its_end():
+    """The press of the bank, braked: what works and energy leave is nothing, the blow begins with a jump."""
+    press = problem("press-single-run")
+    results = solve(replace(press, dynamics=replace(press.dynamics, brake=5.0)))
+    run = results.single.run
+    sheet = dict(single_run(results))["single-run"]
+    assert not covered(sheet) and not list(law_of_motion(results))
+    energy = curve(sheet, REACTION, ":")
+    mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
+    assert (energy[-1] - energy[0]).imag * mu == pytest.approx(run.kinetic[-1] - run.kinetic[0], abs=mu * THIN)
+    page = html(note(results, drawn=False)).decode()
+    assert "the brake" in page and all(one.true for one in formulas(page))

@@ -1,0 +1,83 @@
+"""The law of motion: the machine reduced to its driver, what drives it, the flywheel, speed and acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Heading, paragraph
+from tmm_cli.note.context import Subject
+from tmm_cli.note.tables import rows_of
+from tmm_cli.results.reports import walk
+from tmm_cli.results.reports.cycle import signs
+
+if TYPE_CHECKING:
+    from tmm_cli.analysis.running import Running
+    from tmm_cli.analysis.single_run import SingleRun
+
+TABLES = ("dynamics", "law-of-motion")
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Of a file that asks for it."""
+    if subject.results.motion is None:
+        return
+    if subject.results.steady is not None:
+        yield from _steady(subject, subject.results.steady)
+    elif subject.results.single is not None:
+        yield from _single(subject, subject.results.single)
+
+
+def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
+    from tmm_cli.note.dynamics.single import energies
+
+    yield Heading(_("Law of motion"))
+    yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
+    yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
+    yield from (rows_of(subject, table) for table in walk(subject.results, TABLES))
+
+
+def _steady(subject: Subject, running: Running) -> Iterable[Block]:
+    from tmm_cli.note.dynamics import driving, flywheel, law, reduced
+    from tmm_cli.note.dynamics.words import Here
+
+    every = [Here(subject, running, k) for k in subject.detail]
+    here = every[0]
+    yield Heading(_("Law of motion"))
+    yield Heading(_("Reduced moments"), 2)
+    yield from reduced.explained(here)
+    for one in every:
+        yield from reduced.inertia(one)
+        yield from reduced.moment(one)
+    yield from subject.figures(
+        "law", _("Reduced moments, works and energies are shown in figure {figure}."),
+        _("Reduced moments, works and energies over the cycle"), only="law-moments",
+    )  # fmt: skip
+    yield Heading(_("What drives the machine"), 2)
+    yield from driving.mean(here)
+    for one in every:
+        yield from driving.motor(one)
+    flies = here.steady.law.flywheel > 0
+    yield Heading(_("Flywheel") if flies else _("Fluctuation of speed"), 2)
+    yield from flywheel.speeds(here)
+    yield from flywheel.diagram(here)
+    yield from subject.figures(
+        "energy-mass", _("The energy-mass diagram is shown in figure {figure}."), _("Energy-mass diagram")
+    )
+    if flies:
+        for part in (flywheel.by_tangents, flywheel.by_mertsalov, flywheel.on_shaft, flywheel.size):
+            yield from part(here)
+    yield Heading(_("Speed and acceleration of the driving link"), 2)
+    yield from law.energy_at_start(here)
+    for one in every:
+        yield from law.position(one, explained=one is here)
+    yield from law.time(here)
+    yield from subject.figures(
+        "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
+        only="law-motion",
+    )  # fmt: skip
+    for table in walk(subject.results, TABLES):
+        if table.name == "law-of-motion" and running.sense < 0:
+            yield paragraph(signs(subject.results.linkage))
+        yield rows_of(subject, table)

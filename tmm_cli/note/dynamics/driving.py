@@ -1,0 +1,72 @@
+"""What drives: a moment from zero work over the cycle, or a motor by its characteristic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.dynamics.motors import Kloss, Linear
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.dynamics.words import DRIVING, MOMENT, Here
+from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.plans.record import Symbol
+
+CYCLE, WHOLE = Symbol("A", "c"), Symbol("φ", "c")
+STALL, FREE = Symbol("M", "s"), Symbol("ω", "0")
+BREAKDOWN, SLIP, CRITICAL = Symbol("M", "k"), Symbol("s"), Symbol("s", "k")
+
+
+def mean(here: Here) -> Iterable[Block]:
+    """Over a cycle all moments together do no work."""
+    steady = here.steady
+    turns = round(steady.machine.length / (2 * math.pi))
+    yield said(
+        _("In steady running the machine comes back to the same speed after every cycle, so that all moments together "
+          "do no work over the cycle. The work {A} of the loads is the area between the diagram of their reduced "
+          "moment {M} and its axis, and {phi} is the angle of the cycle."),
+        A=CYCLE, M=MOMENT, phi=WHOLE,
+    )  # fmt: skip
+    text = _("The driving moment is constant:")
+    if steady.task.motor is not None:
+        text = _("The mean moment of the motor, reduced to the driving link:")
+    yield said(text)
+    way = Product((Constant(2.0 * turns), Constant(math.pi, "π")))
+    work = Quotient(Leaf(CYCLE, steady.machine.work_of_cycle), way)
+    yield Found(Substitution(DRIVING, Sum(((-1, work),)), steady.moment, _("N·m")))
+
+
+def motor(here: Here) -> Iterable[Block]:
+    """The moment in a position, by the speed there."""
+    match here.steady.task.motor:
+        case Linear() as found:
+            yield said(
+                _("The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
+                  "rest and nothing at {omega}. At the speed of position {number}:"),
+                M=STALL, omega=FREE, number=here.number,
+            )  # fmt: skip
+            share = Sum(((1, Constant(1)), (-1, Quotient(here.speed, Leaf(FREE, found.free)))))
+            moment = Product((Leaf(STALL, found.stall), share))
+            yield Found(Substitution(DRIVING, moment, here.of(here.steady.law.driving), _("N·m")))
+        case Kloss() as found:
+            yield from _asynchronous(here, found)
+
+
+def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
+    yield said(
+        _("The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. Reduced to the "
+          "driving link its synchronous speed is {omega}; {M} is its largest moment, at the slip {sk}. At the speed of "
+          "position {number}:"),
+        s=SLIP, omega=FREE, M=BREAKDOWN, sk=CRITICAL, number=here.number,
+    )  # fmt: skip
+    value = 1 - here.speed.value / motor.synchronous
+    share = Quotient(here.speed, Leaf(FREE, motor.synchronous))
+    yield Found(Substitution(SLIP, Sum(((1, Constant(1)), (-1, share))), value))
+    slip, critical = Leaf(SLIP, value), Leaf(CRITICAL, motor.slip)
+    if value:
+        under = Sum(((1, Quotient(slip, critical)), (1, Quotient(critical, slip))))
+        moment = Quotient(Product((Constant(2), Leaf(BREAKDOWN, motor.breakdown))), under)
+        found = float(motor.moment(np.array([here.speed.value]))[0][0])
+        yield Found(Substitution(DRIVING, moment, found, _("N·m")))

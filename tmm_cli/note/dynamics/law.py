@@ -1,0 +1,61 @@
+"""Speed, acceleration and time of the driving link."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Equation, Found, said
+from tmm_cli.note.dynamics.flywheel import OFFSETS
+from tmm_cli.note.dynamics.words import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
+from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.math import Fraction, Letter, Sign, row
+from tmm_cli.plans.record import Symbol
+
+
+def energy_at_start(here: Here) -> Iterable[Block]:
+    """From the tangent of the largest speed."""
+    upper, __ = here.tangents
+    yield said(_("The kinetic energy of the machine in position 0:"))
+    square = Quotient(Square(Leaf(LARGEST, float(np.sqrt(2 * upper.slope)))), Constant(2))
+    flywheel = (1, Product((square, Leaf(FLYWHEEL, here.steady.law.flywheel))))
+    terms = (flywheel, (-1, Leaf(OFFSETS[0], upper.offset)))
+    own = Sum(terms if here.steady.law.flywheel else terms[1:])
+    yield Found(Substitution(START, own, here.start, _("J")))
+
+
+def position(here: Here, *, explained: bool) -> Iterable[Block]:
+    """Speed and acceleration there."""
+    if explained:
+        yield said(
+            _("The speed of the driving link follows from the kinetic energy, and its acceleration from the equation "
+              "of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle of the "
+              "driving link. Position {number}:"),
+            slope=SLOPE, number=here.number,
+        )  # fmt: skip
+    else:
+        yield said(_("Position {number}:"), number=here.number)
+    steady, link = here.steady, here.motion.linkage.driver.link
+    law, speed = steady.law, here.speed
+    inertia = Leaf(INERTIA, here.of(steady.machine.inertia))
+    every = Sum(((1, Leaf(FLYWHEEL, law.flywheel)), (1, inertia))) if law.flywheel else inertia
+    energy = Sum(((1, Leaf(START, here.start)), (1, Leaf(WORK, here.of(steady.work)))))
+    root = SquareRoot(Quotient(Product((Constant(2), energy)), every))
+    yield Found(Substitution(speed.symbol, root, speed.value, _("rad/s")))
+    moments = ((1, Leaf(DRIVING, here.of(law.driving))), (1, Leaf(MOMENT, here.of(steady.machine.moment))))
+    turned = Product((Leaf(SLOPE, here.of(steady.machine.slope)), Quotient(Square(speed), Constant(2))))
+    found = here.running.sense * float(np.broadcast_to(here.motion.acceleration, here.motion.q.shape)[here.k])
+    whole = Quotient(Sum((*moments, (-1, turned))), every)
+    yield Found(Substitution(Symbol("ε", link), whole, found, _("rad/s²")))
+
+
+def time(here: Here) -> Iterable[Block]:
+    """The time from position 0 on."""
+    omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
+    yield said(_("The time from position 0 on is the integral of the slowness over the angle:"))
+    yield Equation(row(Letter(Symbol("t")), "=", Sign("∫"), Fraction(row("d", Letter(Symbol("φ"))), omega)))
+    yield said(
+        _("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period)
+    )  # fmt: skip

@@ -1,0 +1,98 @@
+"""The reduced inertia and the reduced moment of a position, link by link and load by load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.forces.applied import Applied
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.dynamics.words import INERTIA, MOMENT, Here
+from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Square, Substitution, Sum
+from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.record import Symbol
+from tmm_cli.tolerances import NO_VECTOR
+
+Term = tuple[int, Expression, float]  # its sign, how it is written, its size
+
+
+def explained(here: Here) -> Iterable[Block]:
+    """What is reduced, and how."""
+    link = here.motion.linkage.driver.link
+    yield said(
+        _("The machine is replaced by its driving link {link}, to which all masses and all loads are reduced; what "
+          "moves or acts in the sense of its rotation is positive. The reduced moment of inertia {J} has the kinetic "
+          "energy of all links, the reduced moment {M} has the power of all loads. Both follow from ratios of "
+          "velocities, which do not depend on how fast the driving link turns."),
+        link=link, J=INERTIA, M=MOMENT,
+    )  # fmt: skip
+
+
+def inertia(here: Here) -> Iterable[Block]:
+    """Masses at the squares of the ratios of speeds."""
+    terms = [term for link in here.motion.linkage.moving for term in _of_link(here, link)]
+    if not terms:
+        return
+    yield said(
+        _("Position {number}: the reduced moment of inertia, {m} being the mass of a link, {v} the velocity of its "
+          "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"),
+        number=here.number, m=Symbol("m"), v=Symbol("v", "S"), J=Symbol("J", "S"), omega=Symbol("ω"),
+    )  # fmt: skip
+    yield Found(Substitution(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²")))
+
+
+def _of_link(here: Here, name: str) -> Iterable[Term]:
+    motion, link, omega = here.motion, here.motion.linkage.links[name], here.speed
+    for mass, letter, symbol, speed in (
+        (link.mass, Symbol("m", name), Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k]))),
+        (link.inertia, Symbol("J", f"S{name}"), Symbol("ω", name), abs(float(motion.link(name).omega[here.k]))),
+    ):
+        own = Leaf(letter, float(np.ravel(mass)[0]))
+        size = own.value * (speed / omega.value) ** 2
+        if symbol == omega.symbol:
+            yield 1, own, size
+        else:
+            yield 1, Product((own, Square(Quotient(Leaf(symbol, speed), omega)))), size
+
+
+def moment(here: Here) -> Iterable[Block]:
+    """Powers of all loads over the speed of the driving link."""
+    terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _of_load(here, load)]
+    if not terms:
+        return
+    yield said(
+        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
+          "angle between the two, and a couple acting with or against the angular velocity of its link:"),
+        v=Symbol("v"), alpha=Symbol("α"),
+    )  # fmt: skip
+    whole = Quotient(_sum(terms), here.speed)
+    yield Found(Substitution(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m")))
+
+
+def _of_load(here: Here, load: Applied) -> Iterable[Term]:
+    k, motion = here.k, here.motion
+    force, couple = load_symbols(load)
+    pull, turned = complex(load.force[k]), float(load.moment[k])
+    speed = complex(motion.point(load.link, load.at).v[k])
+    power = (pull * speed.conjugate()).real
+    if pull and speed:
+        in_centre = load.kind == "weight"
+        own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
+        angle, factors = abs(float(np.angle(pull / speed))), (Leaf(force, abs(pull)), own)
+        if min(angle, np.pi - angle) < NO_VECTOR:
+            yield (1 if angle < 1 else -1), Product(factors), abs(power)
+        else:
+            cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
+            yield 1, Product((*factors, cosine)), abs(power)
+    omega = float(motion.link(load.link).omega[k])
+    if turned and omega:
+        own = Leaf(Symbol("ω", load.link), abs(omega))
+        yield (1 if turned * omega > 0 else -1), Product((Leaf(couple, abs(turned)), own)), abs(turned * omega)
+
+
+def _sum(terms: list[Term]) -> Sum:
+    """Without terms that are nothing beside the others."""
+    largest = max(size for *__, size in terms)
+    return Sum(tuple((sign, term) for sign, term, size in terms if size > NO_VECTOR * largest))

@@ -1,0 +1,64 @@
+"""Letters of the law of motion, and what every part of its chapter is about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tmm_cli.analysis.running import Running
+from tmm_cli.dynamics.curves import Curve
+from tmm_cli.dynamics.flywheel import Tangent
+from tmm_cli.dynamics.steady import Steady
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Leaf
+from tmm_cli.plans.record import Symbol
+
+INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Symbol("M", "d"), Symbol("A")
+FLYWHEEL, START, MEAN, DELTA = Symbol("J", "f"), Symbol("T", "0"), Symbol("ω", "m"), Symbol("δ")
+LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
+
+
+@dataclass(frozen=True)
+class Here:
+    """The running machine, and a position of it; letters are those of what it is reduced to, along its sense."""
+
+    subject: Subject
+    running: Running
+    k: int
+
+    @property
+    def steady(self) -> Steady:
+        return self.running.steady
+
+    @property
+    def motion(self) -> Motion:
+        motion = self.subject.results.motion
+        assert motion is not None
+        return motion
+
+    @property
+    def number(self) -> str:
+        return str(self.subject.results.numbers[self.k])
+
+    @property
+    def speed(self) -> Leaf:
+        """Of the driving link, as a size."""
+        rate = float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[self.k])
+        return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(rate))
+
+    @cached_property
+    def tangents(self) -> tuple[Tangent, Tangent]:
+        return self.steady.tangents
+
+    @cached_property
+    def start(self) -> float:
+        """Kinetic energy in position 0, J."""
+        upper, __ = self.tangents
+        return upper.slope * self.steady.law.flywheel - upper.offset
+
+    def of(self, curve: Curve) -> float:
+        """A function of the way, here."""
+        return float(curve(self.running.way(self.motion.q))[self.k])
