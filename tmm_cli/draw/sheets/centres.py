@@ -13,7 +13,7 @@ from tmm_cli.draw.paper.sheet import INERTIA, LOAD, Sheet, border, scale_words
 from tmm_cli.draw.sheets.mechanism import Position, measured
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.kinematics.centres import Centre, Line, Links
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.centres import name
 from tmm_cli.vectors import dot
@@ -89,12 +89,12 @@ def _direction(through: Sequence[Centre]) -> complex:
     return complex(one.direction or other.direction or 1)
 
 
-def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[tuple[Symbol | str, ...]]:
+def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
     """Centres that are not on the sheet."""
     for centre in found:
-        symbol = Symbol("P", name(centre.links)[1:])
+        symbol = Symbol("P", name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
-            angle = f"{float(np.degrees(np.angle(centre.direction))) % 180:.1f}"
-            yield symbol, _(" at infinity, at {angle}°").format(angle=angle)
+            angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".4g")
+            yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
         elif centre.place is not None and centre.links not in near:
-            yield symbol, _(" beyond the sheet, see the table")
+            yield _("{centre} is beyond the sheet: see the table").format(centre=symbol)
