@@ -94,7 +94,7 @@ def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[st
     for centre in found:
         symbol = Symbol("P", name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
-            angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".4g")
+            angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
             yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
         elif centre.place is not None and centre.links not in near:
             yield _("{centre} is beyond the sheet: see the table").format(centre=symbol)
