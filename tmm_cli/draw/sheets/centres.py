@@ -89,12 +89,12 @@ def _direction(through: Sequence[Centre]) -> complex:
     return complex(one.direction or other.direction or 1)
 
 
-def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[tuple[Symbol | str, ...]]:
+def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
     """Centres that are not on the sheet."""
     for centre in found:
-        symbol = Symbol("P", name(centre.links)[1:])
+        symbol = Symbol("P", name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
             angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
-            yield symbol, _(" at infinity, at {angle}°").format(angle=angle)
+            yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
         elif centre.place is not None and centre.links not in near:
-            yield symbol, _(" beyond the sheet, see the table")
+            yield _("{centre} is beyond the sheet: see the table").format(centre=symbol)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.kinematics.centres import Centre, Line
+from tmm_cli.kinematics.centres import Centre
 from tmm_cli.kinematics.strokes import output_run
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
@@ -47,11 +47,8 @@ def _way(centre: Centre) -> str:
         return _("the links do not move beside one another")
     if not centre.lines:
         return _("velocities")
-    return _(" and ").join(_line(line) for line in centre.lines)
-
-
-def _line(line: Line) -> str:
-    return " ".join(map(name, line))
+    lines = [" ".join(map(name, line)) for line in centre.lines]
+    return lines[0] if len(lines) == 1 else _("{one} and {other}").format(one=lines[0], other=lines[1])
 
 
 def _advantage(results: Results) -> Iterable[Table]:
