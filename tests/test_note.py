@@ -101,9 +101,9 @@ def known(results: Results) -> np.ndarray:
         found += [float(np.ravel(link.mass)[0]), float(np.ravel(link.inertia)[0])]
         places = [*link.points.values(), link.centre, *(s.through for s in results.linkage.slides)]
         found += [float(np.ravel(part)[0]) for z in places for part in (np.real(z), np.imag(z))]
-    for load in results.linkage.loads:
-        if load.table is not None:  # a pressure of the file is a force in it
-            found += [*load.table.arguments, *load.table.values]
+    for own in results.linkage.loads:
+        if own.table is not None:  # a pressure of the file is a force in it
+            found += [*own.table.arguments, *own.table.values]
     for mesh in results.linkage.meshes:
         if mesh.law is not None:  # where its pieces begin and end
             found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]
