@@ -72,6 +72,8 @@ def test_plans_end_in_the_velocities_and_accelerations_of_the_points():
             x, y = plan["points"][found[point.lower()]]
             values = getattr(motion.named(point), quantity)
             assert np.asarray(x) + 1j * np.asarray(y) == pytest.approx(values, rel=1e-3, abs=1e-3)
+        every = [letter for n in plan["letters"] for letter in n["text"].split(", ")]
+        assert {"p", "π"} & set(every) and len(every) == len(set(every))  # each once, the pole too
 
 
 def test_a_single_position_of_a_mechanism_that_does_not_turn_is_no_motion():

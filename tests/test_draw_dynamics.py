@@ -17,8 +17,9 @@ from formulas import formulas
 from tmm_cli import solve
 from tmm_cli.draw.layout.contents import CONTENTS, chosen
 from tmm_cli.draw.paper.drawing import Circle, Line, Text
-from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD
+from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION
 from tmm_cli.draw.sheets.law_of_motion import law_of_motion
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.dynamics.motors import Linear
 from tmm_cli.dynamics.sizes import Rim
 from tmm_cli.dynamics.task import SteadyTask
@@ -141,3 +142,17 @@ def test_formulas_of_the_chapter_give_what_they_say(case):
     assert "Law of motion" in page
     read = formulas(page)
     assert len(read) > 20 and all(one.true for one in read)
+
+
+def test_a_single_run_is_drawn_from_its_beginning_to_its_end():
+    """The press of the bank, braked: what works and energy leave is nothing, the blow begins with a jump."""
+    press = problem("press-single-run")
+    results = solve(replace(press, dynamics=replace(press.dynamics, brake=5.0)))
+    run = results.single.run
+    sheet = dict(single_run(results))["single-run"]
+    assert not covered(sheet) and not list(law_of_motion(results))
+    energy = curve(sheet, REACTION, ":")
+    mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
+    assert (energy[-1] - energy[0]).imag * mu == pytest.approx(run.kinetic[-1] - run.kinetic[0], abs=mu * THIN)
+    page = html(note(results, drawn=False)).decode()
+    assert "the brake" in page and all(one.true for one in formulas(page))

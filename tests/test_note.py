@@ -105,6 +105,8 @@ def known(results: Results) -> np.ndarray:
         if mesh.law is not None:  # where its pieces begin and end
             found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]
             found += [*np.cumsum([mesh.offset, *(piece.rise for piece in mesh.law.pieces)])]
+    for table in (one.table for one in results.linkage.loads if one.table is not None):
+        found += [*table.arguments, *table.values]
     units = results.problem.units
     own = {float(units.from_si(1.0, kind.dimension)) for kind in KINDS.values()}
     every = np.outer(found, sorted(own | {1.0, 100.0, 180 / np.pi, 30 / np.pi}))

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tmm_cli.language import spoken
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem, parse_unit
 from tmm_cli.quantities import (
@@ -90,6 +91,11 @@ def test_products_of_any_two(a: str, b: str, sign: str) -> None:
     assert found.si(1.0) == pytest.approx(first.si(1.0) * second.si(1.0) ** power, rel=1e-14)
 
 
+def test_every_kind_has_its_article_and_an_example() -> None:
+    for kind in KINDS.values():
+        assert str(kind.dimension).startswith(("a ", "an ")) and kind.example in kind.dimension.example
+
+
 def test_defaults_of_bare_numbers() -> None:
     units = UnitSystem()
     symbols = ["", "mm", "deg", "s", "kg", "N", "N*m", "kg*m^2", "m/s", "m/s^2", "rad/s", "rad/s^2", "N/m", "N*m/rad",
@@ -99,13 +105,24 @@ def test_defaults_of_bare_numbers() -> None:
     assert units.factor(NUMBER) == 1
 
 
+def test_every_unit_is_told_in_latin_letters_whatever_those_of_the_file() -> None:
+    for kind, written, told in [
+        ("length", "мкм", "um"), ("angle", "°", "deg"), ("moment of force", "кН·м", "kN·m"),
+        ("moment of inertia", "кг·м²", "kg·m²"), ("angular speed", "мин⁻¹", "min⁻¹"),
+    ]:  # fmt: skip
+        assert UnitSystem({kind: written}).symbol(KINDS[kind].dimension) == told
+        assert parse_unit(told) == parse_unit(written)
+    with spoken("sr"):
+        assert UnitSystem({"length": "мм"}).spelt(LENGTH) == "mm"
+
+
 def test_a_file_chooses() -> None:
     units = UnitSystem({"length": "м", "angular_speed": "об/мин", "moment": "kN*m", "inertia": "kg*cm^2"})
     assert units.si(2, LENGTH) == 2
     assert units.si(30, ANGULAR_SPEED) == pytest.approx(math.pi)
     assert units.from_si(math.pi, ANGULAR_SPEED) == pytest.approx(30)
     assert (units.si(1, MOMENT), units.si(1, INERTIA)) == (1000, 1e-4)
-    assert (units.symbol(ANGULAR_SPEED), units.symbol(Dimension(length=2))) == ("об/мин", "м^2")
+    assert (units.symbol(ANGULAR_SPEED), units.symbol(Dimension(length=2))) == ("rev/min", "m^2")
     assert UnitSystem().si(1, Dimension(length=2)) == 1e-6
 
 

@@ -127,7 +127,8 @@ ARTICLED: Final[Mapping[str, str]] = {
     "number": N_("a number"), "length": N_("a length"), "angle": N_("an angle"), "time": N_("a time"),
     "mass": N_("a mass"), "force": N_("a force"), "moment of force": N_("a moment of force"),
     "moment of inertia": N_("a moment of inertia"), "speed": N_("a speed"), "acceleration": N_("an acceleration"),
-    "angular speed": N_("an angular speed"), "angular acceleration": N_("an angular acceleration"),
+    "pressure": N_("a pressure"), "angular speed": N_("an angular speed"),
+    "angular acceleration": N_("an angular acceleration"),
     "stiffness": N_("a stiffness"), "torsional stiffness": N_("a torsional stiffness"), "damping": N_("a damping"),
     "torsional damping": N_("a torsional damping"),
 }  # fmt: skip

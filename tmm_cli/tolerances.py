@@ -13,6 +13,8 @@ ROUNDINGS = 8.0  # units of the last place of the data: a distance below so many
 CONSTRUCTION_ROUNDINGS = 16  # units of the last place that a construction of a few steps may lose
 SURE_SIGN = 64 * 2.0**-52  # of a function's largest value: the sign of a larger one is sure
 
+KNOWN_LAW = 1e-12  # relative: a law of motion that was found for a machine is known so far
+
 # Dead positions
 DEAD = 1e-6  # margin: the least of it is found to half the digits, 1e-8; a hundred times that is sure
 DEAD_SKETCH = 1e-7  # margin in the sketch: closer, the assembly it shows cannot be told

@@ -30,7 +30,7 @@ from tmm_cli.kinematics.motion import move
 from tmm_cli.kinematics.strokes import Strokes, output_place
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
-from tmm_cli.tolerances import ROUNDOFF
+from tmm_cli.tolerances import KNOWN_LAW, ROUNDOFF
 from tmm_cli.vectors import Real
 
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
@@ -151,6 +151,8 @@ class _Judge:
         else:
             share, paper, by_q = self.responses(results.linkage, motion.q[chosen], results.start, chosen, values, STEP)
         bound = rounded(self.gap(values, true)) + ROUNDOFF * np.abs(values)
+        if results.running is not None:
+            bound = bound + KNOWN_LAW * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
         bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 

@@ -32,7 +32,7 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.tolerances import ROUNDOFF
+from tmm_cli.tolerances import KNOWN_LAW, ROUNDOFF
 from tmm_cli.vectors import Real
 
 LOSS = 128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
@@ -54,7 +54,7 @@ def relative(results: Results, blur: float = 0.0) -> Real:
     away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
     lost = growth(results)
     found: Real = LOSS * (ROUNDOFF + unit * (1 + np.abs(motion.q)) * slenderness(results) * lost) + AWAY * away * lost
-    return found
+    return found if results.running is None else np.maximum(found, KNOWN_LAW)
 
 
 def growth(results: Results) -> Real:

@@ -45,6 +45,13 @@ class SingleRun:
         gone = np.where((gone < -SAME_PLACE) | (gone > self.machine.length + SAME_PLACE), again, gone)
         return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_PLACE, 0.0, gone)
 
+    def driving(self, way: Real, speed: Real, accelerated: Real) -> Real:
+        """Moment (N m), or force, of what drives, where the driver moves like that on its way."""
+        machine = self.machine
+        own = (self.task.flywheel + machine.inertia(way)) * accelerated + machine.slope(way) * speed**2 / 2
+        found: Real = own + self.task.brake - machine.moment(way)
+        return found
+
     def speed(self, q: Real) -> Real:
         """rad/s, or m/s, with its sign; nan where the run does not come."""
         found: Real = self.sense * self.run.at(self.way(q))[1]
@@ -56,14 +63,22 @@ class SingleRun:
 
     def kinetic(self, q: Real) -> Real:
         """Kinetic energy, J; nan where the run does not come."""
-        found: Real = (self.task.flywheel + self.machine.inertia(self.way(q))) * self.speed(q) ** 2 / 2
+        return self.energy(self.way(q), self.speed(q))
+
+    def energy(self, way: Real, speed: Real) -> Real:
+        """Kinetic energy of such a way and speed of the driver, J."""
+        found: Real = (self.task.flywheel + self.machine.inertia(way)) * speed**2 / 2
         return found
+
+    def acceleration(self, time: Real, way: Real, speed: Real) -> Real:
+        """Of the driver, at such times, ways and speeds in its sense."""
+        return acceleration(self.machine, self.task, time, way, speed)
 
     def accelerated(self, q: Real) -> Real:
         """rad/s2, or m/s2, with its sign; nan where the run does not come."""
         way = self.way(q)
         time, speed = self.run.at(way)
-        found: Real = self.sense * acceleration(self.machine, self.task, time, way, speed)
+        found: Real = self.sense * self.acceleration(time, way, speed)
         return found
 
 

@@ -39,7 +39,6 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
     letters: dict[int, list[str]] = {}
     for letter in first.ends:
         letters.setdefault(index(plan.ends[letter] for plan in plans), []).append(letter)
-    letters.setdefault(index(0j for __ in plans), []).insert(0, sort.pole)
     vectors: dict[tuple[int, int], dict[str, Any]] = {}
     for n, vector in enumerate(first.vectors):
         ends = index(plan.vectors[n].start for plan in plans), index(plan.vectors[n].end for plan in plans)

@@ -20,6 +20,7 @@ from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import at_sketch, scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import _, numeral
@@ -61,6 +62,7 @@ def _of_mechanism(results: Results) -> Drawn:
         yield from diagrams(results)
         yield from shaking(results)
         yield from law_of_motion(results)
+        yield from single_run(results)
 
 
 def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:

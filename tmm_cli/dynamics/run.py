@@ -26,6 +26,7 @@ from tmm_cli.vectors import Real
 TOLERANCE = 1e-12  # of a step, relative
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
+INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
 Ending = Literal["way", "standstill", "time"]
 
 
@@ -64,7 +65,15 @@ class Run:
                 missed = partial(_short_of, step, way[here])
                 found = roots(missed, low + 0 * way[here], high + 0 * way[here])
                 time[here], speed[here] = found, step(found)[1]
-        return time, speed
+        begins = way == self.way[0]  # where a search from rest would find what rounding leaves
+        return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
+
+    def closely(self, count: int) -> list[tuple[Real, Real]]:
+        """Times of each piece close together, just inside its ends, and there the way, the speed and the works of what
+        drives, of the loads and of the brake, (5, count)."""
+        ends = [(step.ts[0], step.ts[-1]) for step in self.steps]
+        inner = [np.linspace(low + INSIDE * (high - low), high - INSIDE * (high - low), count) for low, high in ends]
+        return [(times, step(times)) for times, step in zip(inner, self.steps, strict=True)]
 
 
 def run(machine: Reduced, task: RunTask) -> Run:

@@ -22,6 +22,7 @@ from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
@@ -37,6 +38,7 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
     "law": (law_of_motion.over_cycle, 225), "energy-mass": (law_of_motion.diagram, 190),
+    "run": (single_run, 225),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),

@@ -117,8 +117,10 @@ SYMBOLS: Final[Mapping[str, Unit]] = {
 }
 _PER_MINUTE: Final = SYMBOLS["rpm"]  # a bare "per minute" counts turns in machine theory, a bare "per second" radians
 _LOOKALIKES: Final = {latin(name): unit for name, unit in SYMBOLS.items()}
+_FIRST: Final = {latin(name): names.split()[0] for names, *__ in _ROWS for name in names.split()}
 
 _SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
+_LETTERS = re.compile("[^\\W\\d_⁰¹²³⁴-⁹]+|°")
 _FROM_SUPERSCRIPT = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2009\u202f\t\r\n", "···*--μ°      ")
 _FACTOR = re.compile(r"\s*([·*/]?)\s*([^\W\d_]+|°|%|1(?=\s*/))(?:\^\s*\(?([+-]?\d+)\)?|(\d))?")
@@ -133,6 +135,11 @@ def plain_text(text: str) -> str:
 def symbol(name: str) -> Unit | None:
     """The unit of one symbol, also when Cyrillic letters stand for their Latin look-alikes or the reverse."""
     return SYMBOLS.get(name) or _LOOKALIKES.get(latin(name))
+
+
+def in_latin(text: str) -> str:
+    """A unit that is known, with the names that are not in ASCII by their first ones: deg for ° and for град."""
+    return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(latin(name[0]), name[0]), text)
 
 
 def parse_unit(text: str) -> Unit:
@@ -208,7 +215,7 @@ class UnitSystem:
                 if not found.fits(kind.dimension):
                     allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
                     raise UnitError(_("wrong unit"), found=f"{quote(name)}, {found}", allowed=allowed)
-            self._names[kind.dimension] = name
+            self._names[kind.dimension] = in_latin(name)
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
     functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max, "abs": abs}  # what arithmetic computes with
@@ -240,7 +247,7 @@ class UnitSystem:
         return self.si(1.0, dimension)
 
     def symbol(self, dimension: Dimension) -> str:
-        """The file's unit as it is written; empty for a number."""
+        """The file's unit in Latin letters, whatever the letters of the file; empty for a number."""
         if dimension in self._names:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _bases(dimension)})

@@ -208,7 +208,7 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
         notes.append(closed if table.closed else natural)
     title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return table_of_words(name, title, (table.against, _("size")), rows, tuple(notes))
+    return table_of_words(name, title, (_(FILE_WORDS[table.against]), _("size")), rows, tuple(notes))
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:

@@ -290,7 +290,7 @@ def _loads(results: Results, motion: Motion) -> Iterable[str]:
         if given.table is not None and _short_table(results, motion, given):
             yield _(
                 "the table of load {load} does not reach as far as the {against} goes: its end value is held"
-            ).format(load=given.name, against=given.table.against)
+            ).format(load=given.name, against=_(given.table.against))
     for name in working if results.strokes is None or not results.strokes.strokes else ():
         yield _(
             "load {load} is one of the working stroke, but there are no whole strokes on this way of "

@@ -20,6 +20,7 @@ from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, detailed, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import N_
@@ -88,6 +89,7 @@ CONTENTS = (
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),
     Source(2, balancing, 150),
+    Source(2, single_run, 240),
     Source(3, law_of_motion, 240),
     Source(3, law_tables),
 )

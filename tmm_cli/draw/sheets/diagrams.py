@@ -66,7 +66,7 @@ UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the f
 
 def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
-    places, borders = _closely(results)
+    places, borders = closely(results)
     whole = at_places(results, places)
     motion = whole.motion
     assert motion is not None
@@ -92,7 +92,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
             yield name, over_turn(results, caption, motion.q, borders, every[start : start + MOST_PANELS])
 
 
-def _closely(results: Results) -> tuple[Real, list[int]]:
+def closely(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
@@ -148,7 +148,7 @@ def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], e
         for start, length, working in _strokes(results)
     ]
     over = Across(axis, words, sorted(numbers), spans)
-    chart(sheet, [_plot(one, results.problem.units, xs, marks, borders) for one in every], over)
+    chart(sheet, [plotted(one, results.problem.units, xs, marks, borders) for one in every], over)
     return sheet.finish()
 
 
@@ -162,7 +162,8 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
     return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
 
 
-def _plot(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
+    """A panel of quantities over places xs, which may jump after those of the numbers `borders`; marks: of points."""
     factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Heading, paragraph
@@ -11,15 +12,37 @@ from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
 from tmm_cli.results.reports.cycle import signs
 
+if TYPE_CHECKING:
+    from tmm_cli.analysis.running import Running
+    from tmm_cli.analysis.single_run import SingleRun
+
+TABLES = ("dynamics", "law-of-motion")
+
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """Of a file that asks for it."""
-    if subject.results.steady is None or subject.results.motion is None:
+    if subject.results.motion is None:
         return
+    if subject.results.steady is not None:
+        yield from _steady(subject, subject.results.steady)
+    elif subject.results.single is not None:
+        yield from _single(subject, subject.results.single)
+
+
+def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
+    from tmm_cli.note.dynamics.single import energies
+
+    yield Heading(_("Law of motion"))
+    yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
+    yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
+    yield from (rows_of(subject, table) for table in walk(subject.results, TABLES))
+
+
+def _steady(subject: Subject, running: Running) -> Iterable[Block]:
     from tmm_cli.note.dynamics import driving, flywheel, law, reduced
     from tmm_cli.note.dynamics.words import Here
 
-    every = [Here(subject, subject.results.steady, k) for k in subject.detail]
+    every = [Here(subject, running, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
@@ -31,7 +54,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         "law", _("Reduced moments, works and energies are shown in figure {figure}."),
         _("Reduced moments, works and energies over the cycle"), only="law-moments",
     )  # fmt: skip
-    yield Heading(_("What drives the machine"), 2)
+    yield Heading(_("Driving moment"), 2)
     yield from driving.mean(here)
     for one in every:
         yield from driving.motor(one)
@@ -54,7 +77,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
         only="law-motion",
     )  # fmt: skip
-    for table in walk(subject.results, ("dynamics", "law-of-motion")):
-        if table.name == "law-of-motion" and here.running.sense < 0:
+    for table in walk(subject.results, TABLES):
+        if table.name == "law-of-motion" and running.sense < 0:
             yield paragraph(signs(subject.results.linkage))
         yield rows_of(subject, table)

@@ -110,11 +110,11 @@ def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) 
 
 
 def _places(subject: Subject) -> Iterable[Column]:
-    """Of the drivers; of a crank within a turn."""
+    """Of the drivers; of a crank within a turn, or within the turns of a cycle of loads."""
     results = subject.results
     motion = results.motion
     assert motion is not None
-    several = bool(results.linkage.others)
+    several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
     for driver in results.linkage.drivers:
         value = np.asarray(motion.drives[driver.link].value, float)
         link = driver.link if several else ""
@@ -122,7 +122,7 @@ def _places(subject: Subject) -> Iterable[Column]:
             yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)
             continue
         full = results.driver_range is not None and results.driver_range.full
-        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, 2 * np.pi) if full else value))
+        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
 
 
 def _cell(subject: Subject, value: float) -> str:

@@ -1,0 +1,44 @@
+"""A single run in the note: its energies and works, and the speed at its end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.analysis.single_run import SingleRun
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.dynamics.words import FLYWHEEL, INERTIA, START
+from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Quotient, SquareRoot, Substitution, Sum
+from tmm_cli.plans.record import Symbol
+
+DRIVEN, LOADED, BRAKED, END = Symbol("A", "d"), Symbol("A", "l"), Symbol("A", "b"), Symbol("T", "1")
+
+
+def energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
+    """Of the whole run."""
+    run = single.run
+    yield said(
+        _("The machine is replaced by its driving link, to which all masses and all loads are reduced, and its "
+          "equation of motion is integrated from the beginning of the run on.")
+    )  # fmt: skip
+    parts = [(START, run.kinetic[0]), (DRIVEN, run.driven[-1]), (LOADED, run.loaded[-1])]
+    text = _("The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives and the work {Al} of the "
+             "loads:")  # fmt: skip
+    if single.task.brake:
+        parts.append((BRAKED, run.braked[-1]))
+        text = _("The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives, the work {Al} of the "
+                 "loads and the work {Ab} of the brake:")  # fmt: skip
+    yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
+    terms = tuple((1, Leaf(symbol, float(value))) for symbol, value in parts)
+    yield Found(Substitution(END, Sum(terms), float(run.kinetic[-1]), _("J")))
+    inertia = float(single.machine.inertia(np.array([run.way[-1]]))[0])
+    every: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
+    if single.task.flywheel:
+        every = Sum(((1, Leaf(FLYWHEEL, single.task.flywheel)), (1, every)))
+    if run.speed[-1] > 0:
+        yield said(_("With the reduced inertia at the end of the run the speed there is"))
+        root = SquareRoot(Quotient(Product((Constant(2), Leaf(END, float(run.kinetic[-1])))), every))
+        unit = _("rad/s") if crank else _("m/s")
+        yield Found(Substitution(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit))
