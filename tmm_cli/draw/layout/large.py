@@ -123,9 +123,9 @@ def _sheet(
     begin = eased(pieces, rooms, EASED, free)
     for wanted in (shared(pieces, begin, pages, field, shrunk)[0], grown(pieces, begin, pages, field, shrunk)):
         larger = drawn(wanted)
-        found = filled(_sizes(larger), field)
-        if found is not None and len(found) <= len(pages):
-            pieces, pages = larger, found
+        held = filled(_sizes(larger), field)
+        if held is not None and len(held) <= len(pages):
+            pieces, pages = larger, held
             break
     else:  # something became larger than thought
         large = list(range(len(pieces)))
