@@ -116,9 +116,9 @@ class _Writer:
             case Link(key):
                 paragraph.add_run(f"[{self.numbers[key]}]")
             case Symbol():
-                paragraph._p.append(parse_xml(omath(Letter(part))))
+                paragraph._p.append(parse_xml(omath(Letter(part), size)))
             case _:
-                paragraph._p.append(parse_xml(omath(part)))
+                paragraph._p.append(parse_xml(omath(part, size)))
 
     def _mark(self, key: str) -> str:
         """The bookmark of a number that is referred to."""
@@ -163,21 +163,18 @@ class _Writer:
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
         size = 10.0 if len(block.head) <= 6 else 8.5
-        widths = [
-            size * WIDE * (3 + max(map(_letters, column))) for column in zip(block.head, *block.rows, strict=True)
-        ]
-        share = min(1.0, TEXT / sum(widths))
+        widths = _widths(block, size * WIDE)
         for column, wide in zip(table.columns, widths, strict=True):
-            column.width = Mm(share * wide)
+            column.width = Mm(wide)
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
             unbroken(row, head=number == 0)
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
-                cell.width = Mm(share * widths[k])
+                cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
                 if number and block.numeric[k]:
-                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
                 self._line(paragraph, line, size=size, bold=number == 0)
         self._paragraph("TableText")
 
@@ -186,7 +183,8 @@ class _Writer:
         width, height = block.drawing.paper
         share = min(1.0, TEXT / width, HIGH / height)
         self.parts.picture(paragraph, block.drawing, share, block.caption)
-        self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+        caption = self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+        caption.paragraph_format.space_after = Pt(12)
 
     def _contents(self) -> None:
         self._paragraph("ContentsHeading").add_run(_("Contents"))
@@ -197,3 +195,18 @@ def _letters(line: Line) -> float:
     """About how wide a cell is, in letters."""
     return sum(width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
                for part in line if not isinstance(part, Ref | Link))  # fmt: skip
+
+
+def _widths(block: Rows, letter: float) -> list[float]:
+    """Of columns, mm: as wide as their cells, or less where the page is not so wide, but no word is broken."""
+    columns = list(zip(block.head, *block.rows, strict=True))
+    whole = [letter * (3 + max(map(_letters, column))) for column in columns]
+    least = [min(wide, letter * (3 + max(map(_longest, column)))) for column, wide in zip(columns, whole, strict=True)]
+    room = (TEXT - sum(least)) / (sum(whole) - sum(least) or 1.0)
+    return [low + max(0.0, min(1.0, room)) * (wide - low) for low, wide in zip(least, whole, strict=True)]
+
+
+def _longest(line: Line) -> float:
+    """The longest word of a cell, in letters."""
+    words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
+    return max([_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0)
