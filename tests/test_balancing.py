@@ -232,3 +232,25 @@ def test_balancing_is_told_and_written(tmp_path):
     assert whole["left"] < 1e-12 and [w["link"] for w in whole["counterweights"]] == ["1", "3"]
     with (folder / "shaking.csv").open(encoding="utf-8") as stream:
         assert len(list(csv.reader(stream))) == 13
+
+
+def test_a_shaft_that_turns_backwards_takes_what_one_counterweight_leaves_of_the_first_harmonic():
+    """Two counterweights that turn against one another (F. W. Lanchester): of a crank-slider the second one is left."""
+    text = """
+tmm: 1
+points: {O: [0, 0], Q: [0, -80]}
+guides: {x: {through: O, angle: 0}}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: [A, B], length: 220}
+  3: {points: [B], slides: x}
+  4: {points: {Q: [0, 0]}}
+gears: {g: {between: [1, 4], radii: [40, 40]}}
+driver: {link: 1, speed: 600 rpm}
+sketch: {at: 60, B: [245, 0]}
+masses: {1: {mass: 1, centre: O}, 2: {mass: 1, centre: {on: AB, at: 0.3}}, 3: {mass: 1}}
+balancing: {counterweights: {1: {}, 4: {}}}
+"""
+    found = solve(build(read_text(text, "lanchester.yaml"))).balancing.cycle
+    before, after = (np.abs(np.fft.fft(shaking.force)) / 720 for shaking in (found.before, found.after))
+    assert max(after[1], after[-1]) < 1e-12 * before[1] and after[2] == pytest.approx(before[2], rel=1e-9)
