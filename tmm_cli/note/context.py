@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -31,6 +31,7 @@ from tmm_cli.plans.record import subscript
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
 
+EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
 
 
@@ -96,7 +97,7 @@ class Subject:
         if (draw, k) not in self._drawings:
             with within(Space(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
-                self._drawings[draw, k] = dict(draw(subject))
+                self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
@@ -114,6 +115,13 @@ class Subject:
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
             sentence = further or sentence
+
+
+def edged(drawing: Drawing) -> Drawing:
+    """With a little room about it, in which its outer lines are drawn whole."""
+    width, height = drawing.paper
+    marks = tuple(mark.moved(EDGE * (1 + 1j)) for mark in drawing.marks)
+    return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
 def figures(text: str, language: str) -> str:

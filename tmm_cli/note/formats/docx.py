@@ -40,6 +40,7 @@ from tmm_cli.note.formats.omml import display, omath
 from tmm_cli.note.math import Letter, Words
 from tmm_cli.plans.record import Symbol
 
+WHOLE = 13  # rows of a table that is not parted between pages
 HIGH = 225.0  # mm, of a picture at most
 WIDE = 0.19  # mm, of a letter, a point of its size
 
@@ -47,8 +48,8 @@ WIDE = 0.19  # mm, of a letter, a point of its size
 def docx(note: Note) -> bytes:
     """A file of Word."""
     writer = _Writer(note)
-    for block in note.blocks:
-        writer.write(block)
+    for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
+        writer.write(block, leads=isinstance(following, Equation | Found | Items | Rows))
     file = io.BytesIO()
     writer.document.save(file)
     return file.getvalue()
@@ -64,13 +65,16 @@ class _Writer:
         self.parts = Parts(self.document)
         self.counted: dict[str, int] = {}
 
-    def write(self, block: Block) -> None:
+    def write(self, block: Block, *, leads: bool = False) -> None:
+        """leads: what follows is on the same page as a paragraph's end."""
         match block:
             case Heading(text, level):
                 heading = self.document.add_heading(plain(text), level)
                 self.parts.marked(heading, f"_Toc{self._next('heading')}", 1)
             case Paragraph(line):
-                self._line(self._paragraph(), line)
+                paragraph = self._paragraph()
+                paragraph.paragraph_format.keep_with_next = leads or None
+                self._line(paragraph, line)
             case Items(lines):
                 for line in lines:
                     self._line(self._paragraph("ListBullet"), line)
@@ -173,6 +177,7 @@ class _Writer:
                 cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
+                paragraph.paragraph_format.keep_with_next = number < len(block.rows) <= WHOLE or None
                 if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
                 self._line(paragraph, line, size=size, bold=number == 0)
