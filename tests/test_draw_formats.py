@@ -82,8 +82,8 @@ def test_letters_of_a_font_that_is_cut_down_keep_their_outlines_also_those_made_
 
 
 def _descriptors(page):
-    for font in page["/Resources"]["/Font"].values():
-        own = font.get_object()
+    for one in page["/Resources"]["/Font"].values():
+        own = one.get_object()
         for part in own.get("/DescendantFonts", [own]):
             yield part.get_object()["/FontDescriptor"]
 
