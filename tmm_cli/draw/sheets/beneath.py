@@ -165,7 +165,8 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
         return most - written.left(low, low + complex(wide, most)).imag
 
     sizes = [(wide, up + 2 * PAD + height(wide)) for wide in (max(wide, across + 2 * PAD) for wide in WIDTHS)]
-    wide, high = min(sizes, key=lambda size: (not fits(size[0], size[1] + BEYOND), size[0] * size[1]))
+    found = [(wide, high) for wide, high in sizes if fits(wide, high + BEYOND)]
+    wide, high = min(found, key=lambda size: size[0] * size[1]) if found else min(sizes, key=lambda size: size[1])
     paper = complex(wide, high) + low - edge
     return _Placed((paper.real, paper.imag), mu, middle, written)
 
