@@ -197,9 +197,12 @@ class _Writer:
 
 
 def _letters(line: Line) -> float:
-    """About how wide a cell is, in letters."""
-    return sum(width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
-               for part in line if not isinstance(part, Ref | Link))  # fmt: skip
+    """About how wide a cell is, in letters; a capital is wider than a small one."""
+    capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
+    return 0.3 * capitals + sum(
+        width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
+        for part in line if not isinstance(part, Ref | Link)
+    )  # fmt: skip
 
 
 def _widths(block: Rows, letter: float) -> list[float]:
