@@ -32,7 +32,10 @@ KEYWORDS = {
 }  # what marks a message, and its context
 UNITS = sorted({*filter(str.isascii, SYMBOLS), "J", "W"} - {"%"})
 NOT_TRANSLATED = "bench"
-FINISHED: tuple[str, ...] = ()  # languages that are held to be whole: add one when nothing is left to translate
+FINISHED: tuple[str, ...] = (
+    "ru",
+    "sr",
+)  # languages that are held to be whole: add one when nothing is left to translate
 TRANSLATED = tuple(language for language in LANGUAGES if language != ENGLISH)
 
 

@@ -2,6 +2,8 @@
 
 import csv
 import json
+import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -147,6 +149,26 @@ balancing: {counterweights: {1: {radius: 400}}, share: 2/3}
     assert abs(results.balancing.after.force[0]) == pytest.approx(2849, rel=2e-3)
 
 
+def test_masses_in_one_plane_to_the_digits_of_a_textbook():
+    """B. K. Sarkar, Theory of Machines (2004), chapter 8, illustration 1, p. 221."""
+    masses = ((12, 40, 0), (10, 50, 60), (18, 60, 130), (15, 30, 270))  # kg, mm, deg
+    sizes = np.array([m * r * np.exp(1j * np.radians(angle)) for m, r, angle in masses])
+    (found,) = Rotor(sizes, np.zeros(4), (Plane(0.0),)).corrections()
+    assert abs(found) / 100 == pytest.approx(8.1, abs=0.05)
+    assert np.degrees(np.angle(found)) % 360 == pytest.approx(267.5, abs=0.05)
+
+
+def test_masses_in_two_planes_as_a_textbook_measures_them():
+    """R. S. Khurmi, J. K. Gupta, Theory of Machines (2005), example 21.2; drawn there, and in B. K. Sarkar, p. 223:
+    X 350 to 355 kg at 145 to 146 deg clockwise from A, Y 182.5 kg, both at 100 mm."""
+    masses = ((200, 80, 0, 0), (300, 70, 45, 300), (400, 60, 115, 400), (200, 80, 235, 700))  # kg, mm, deg, mm
+    sizes = np.array([m * r * np.exp(1j * np.radians(angle)) for m, r, angle, __ in masses])
+    rotor = Rotor(sizes, np.array([at for *__, at in masses]), (Plane(100.0), Plane(500.0)))
+    x, y = rotor.corrections()
+    assert 350 < abs(x) / 100 < 355 and abs(y) / 100 == pytest.approx(182.5, rel=0.01)
+    assert -np.degrees(np.angle(x)) % 360 == pytest.approx(146, abs=1)
+
+
 MASSES = st.lists(
     st.tuples(st.floats(0.1, 50), st.floats(0, 6.2), st.floats(-1, 1)).map(lambda m: (m[0] * np.exp(1j * m[1]), m[2])),
     min_size=1, max_size=6,
@@ -185,6 +207,20 @@ def test_what_cannot_be_balanced_is_refused(tmp_path, name, block, said):
         solve(load(file))
 
 
+def test_without_the_block_nothing_of_it_is_imported():
+    code = (
+        "import sys; from tmm_cli import load, solve; from tmm_cli.results.as_json import to_json;"
+        "to_json(solve(load('problems/crank-rocker.yaml')));"
+        "print([name for name in sys.modules if 'balancing' in name and name.startswith('tmm_cli.')])"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PROBLEMS.parent
+    )
+    assert json.loads(found.stdout.replace("'", '"')) == [
+        "tmm_cli.problem.schema_balancing", "tmm_cli.results.json_balancing",
+    ]  # fmt: skip
+
+
 def test_balancing_is_told_and_written(tmp_path):
     file = tmp_path / "four.yaml"
     text = (PROBLEMS / "crank-rocker.yaml").read_text(encoding="utf-8")
@@ -196,3 +232,25 @@ def test_balancing_is_told_and_written(tmp_path):
     assert whole["left"] < 1e-12 and [w["link"] for w in whole["counterweights"]] == ["1", "3"]
     with (folder / "shaking.csv").open(encoding="utf-8") as stream:
         assert len(list(csv.reader(stream))) == 13
+
+
+def test_a_shaft_that_turns_backwards_takes_what_one_counterweight_leaves_of_the_first_harmonic():
+    """Two counterweights that turn against one another (F. W. Lanchester): of a crank-slider the second one is left."""
+    text = """
+tmm: 1
+points: {O: [0, 0], Q: [0, -80]}
+guides: {x: {through: O, angle: 0}}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: [A, B], length: 220}
+  3: {points: [B], slides: x}
+  4: {points: {Q: [0, 0]}}
+gears: {g: {between: [1, 4], radii: [40, 40]}}
+driver: {link: 1, speed: 600 rpm}
+sketch: {at: 60, B: [245, 0]}
+masses: {1: {mass: 1, centre: O}, 2: {mass: 1, centre: {on: AB, at: 0.3}}, 3: {mass: 1}}
+balancing: {counterweights: {1: {}, 4: {}}}
+"""
+    found = solve(build(read_text(text, "lanchester.yaml"))).balancing.cycle
+    before, after = (np.abs(np.fft.fft(shaking.force)) / 720 for shaking in (found.before, found.after))
+    assert max(after[1], after[-1]) < 1e-12 * before[1] and after[2] == pytest.approx(before[2], rel=1e-9)

@@ -90,3 +90,13 @@ def test_a_crank_that_does_not_turn_fully_has_no_cycle_of_turns(monkeypatch):
     monkeypatch.setattr("test_loads.MACHINE", MACHINE.replace("length: 150", "length: 40").replace(
         "{at: 90, B: [140, 0]}", "{at: 10, B: [88, 0]}"))  # fmt: skip
     assert refused("cycle: 2 turns") == "x.yaml:12:1: cycle: a cycle of 2 turns needs a crank that turns fully"
+
+
+def test_the_law_of_motion_goes_on_from_the_end_of_the_cycle_as_it_began():
+    """Rows of a diagram stand at the ends of strokes, where the piston rests: no piece of the law is a mere crack."""
+    loads = FOUR_STROKES.replace("loads:", "loads:\n  rings: {on: 3, force: {resists: 60 N}}")
+    results = solved(f"{loads}dynamics: {{delta: 1/50}}")
+    law, cycle = results.running.steady.law, 4 * np.pi
+    assert np.min(np.diff(law.energy.edges)) > 1e-4
+    ends = law.speed(np.array([0, cycle - 1e-9, cycle, cycle + 1e-9]))
+    assert ends == pytest.approx(ends[0], rel=1e-8)

@@ -5,13 +5,15 @@ import re
 from xml.etree import ElementTree
 
 import pytest
+from fontTools import ttLib
 from PIL import Image
 from pypdf import PdfReader
 
 from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.formats.pdf import pdf
+from tmm_cli.draw.formats.truetype import cut
 from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.paper.fonts import corners, lacking, width
+from tmm_cli.draw.paper.fonts import corners, font, lacking, width
 
 LINE = Line((20 + 30j, 120 + 30j), "#b3261e", 0.5, layer="links")
 TRIANGLE = Area((20 + 60j, 60 + 60j, 40 + 90j), "#1f4e9c", None, 0.0)
@@ -59,9 +61,29 @@ def test_a_length_in_a_pdf_is_true_and_its_font_is_in_it():
     assert any("/FontFile2" in str(font.get_object()) for font in _descriptors(page))
 
 
+def test_letters_that_look_alike_are_found_in_a_pdf_as_what_they_are():
+    words = "A\u0410 \u00b5\u03bc"  # Latin and Cyrillic, micro and Greek
+    (page,) = PdfReader(io.BytesIO(FORMATS["pdf"](drawn(Text(50 + 50j, words, 4, "#000000", turn=90))))).pages
+    assert words in page.extract_text()
+
+
+def test_letters_of_a_font_that_is_cut_down_keep_their_outlines_also_those_made_of_parts():
+    face, letters = font(), "Aй\u00c9\u1eaf"
+    whole = ttLib.TTFont(face.fname)
+    data = cut(face.fname, [0, *(face.get_char_index(ord(letter)) for letter in letters)])
+    small = ttLib.TTFont(io.BytesIO(data), checkChecksums=2)
+    for number, letter in enumerate(letters, 1):
+        before, after = whole.getBestCmap()[ord(letter)], small.getGlyphOrder()[number]
+        shapes = [
+            every["glyf"][name].getCoordinates(every["glyf"]) for every, name in ((whole, before), (small, after))
+        ]
+        assert list(shapes[0][0]) == list(shapes[1][0]) and shapes[0][1] == shapes[1][1]
+        assert whole["hmtx"][before] == small["hmtx"][after]
+
+
 def _descriptors(page):
-    for font in page["/Resources"]["/Font"].values():
-        own = font.get_object()
+    for one in page["/Resources"]["/Font"].values():
+        own = one.get_object()
         for part in own.get("/DescendantFonts", [own]):
             yield part.get_object()["/FontDescriptor"]
 

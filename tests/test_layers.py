@@ -62,6 +62,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
+    "cli.forces": "drawing",
     "cli.kinematics": "drawing",
     "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "cli.run": "drawing",

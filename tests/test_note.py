@@ -101,10 +101,15 @@ def known(results: Results) -> np.ndarray:
         found += [float(np.ravel(link.mass)[0]), float(np.ravel(link.inertia)[0])]
         places = [*link.points.values(), link.centre, *(s.through for s in results.linkage.slides)]
         found += [float(np.ravel(part)[0]) for z in places for part in (np.real(z), np.imag(z))]
+    for own in results.linkage.loads:
+        if own.table is not None:  # a pressure of the file is a force in it
+            found += [*own.table.arguments, *own.table.values]
     for mesh in results.linkage.meshes:
         if mesh.law is not None:  # where its pieces begin and end
             found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]
             found += [*np.cumsum([mesh.offset, *(piece.rise for piece in mesh.law.pieces)])]
+    for table in (one.table for one in results.linkage.loads if one.table is not None):
+        found += [*table.arguments, *table.values]
     units = results.problem.units
     own = {float(units.from_si(1.0, kind.dimension)) for kind in KINDS.values()}
     every = np.outer(found, sorted(own | {1.0, 100.0, 180 / np.pi, 30 / np.pi}))

@@ -14,6 +14,7 @@ from tmm_cli.note.chapters.forces import blocks
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Leaf
 from tmm_cli.note.math import Letter, Row
+from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, reaction_symbol
 
 FRICTION = "friction: {coefficient: 0.1, radius: 15}"
@@ -117,7 +118,7 @@ def rubbing(tmp_path_factory):
 def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
     found = [block.substitution for block in blocks(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
     rubbed = {s.name.below for s in found if s.name.letter == "T"}
-    assert rubbed == {pair.pair for pair in rubbing.linkage.friction}
+    assert rubbed == {one.pair + rubbing.reactions.of(one.pair).on for one in rubbing.linkage.friction}
     without = [s.result for s in found if s.name == Symbol("M", "b", "0")]
     free = solved("shaper").reactions.balance.moment
     assert without == pytest.approx([abs(free[3]), abs(free[8])])
@@ -130,6 +131,12 @@ def test_the_method_is_explained_once_and_sections_are_named_after_their_positio
     headings = [block.text for block in found if isinstance(block, Heading)]
     assert [re.findall(r"position (\d)", text) for text in headings].count(["3"]) == 5
     said = [str(block.line) for block in found if isinstance(block, Paragraph)]
-    once = ("d'Alembert", "acceleration of free fall", "angular acceleration", "Two lines are under", "rigid lever")
+    once = ("d'Alembert", "acceleration of gravity", "angular acceleration", "Two lines are under", "rigid lever")
     for words in once:
         assert sum(words in text for text in said) == 1, words
+
+
+def test_friction_of_a_hinge_and_of_the_guide_beside_it_have_letters_of_their_own(rubbing):
+    letters = [load_symbols(load)[0] for load in rubbing.loads if load.kind == "friction"]
+    assert {"TA2", "TA1", "TA'2", "TA'3"} <= {letter.plain for letter in letters}
+    assert len({*letters}) == len(letters)

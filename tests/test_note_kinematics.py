@@ -58,7 +58,7 @@ def test_two_lines_stand_under_what_is_known_whole_and_one_under_a_known_directi
     ("name", "systems"), [("shaper", 0), ("excavator", 0), ("press-class-iii", 2), ("loader", 2), ("class-iv", 2)]
 )
 def test_a_group_that_no_polygon_solves_is_said_to_be_one(name, systems):
-    assert sum(text.startswith("More magnitudes are unknown") for text in sentences(name)) == systems
+    assert sum(text.startswith("These equations have more unknown magnitudes") for text in sentences(name)) == systems
 
 
 def test_each_position_in_detail_has_its_numbers_and_the_method_is_told_once():

@@ -13,6 +13,7 @@ from test_properties import solved as solved_for
 
 from tmm_cli.forces.lever import lever
 from tmm_cli.plans.acceleration import acceleration_plan
+from tmm_cli.plans.bodies import named
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.lever import lever_plan
 from tmm_cli.plans.readings import Reading, readings, turns
@@ -146,3 +147,12 @@ def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points(
     found = [s for r in readings(acceleration_plan(results.motion, 2)) for s in r.symbols]
     assert Symbol("a", "D5E", "n") not in found and Symbol("a", "DC", "n") in found
     assert Symbol("a", "DD5", "k") in found  # zero, as the guide does not turn: worth a line
+
+
+@pytest.mark.parametrize(
+    ("name", "letter", "below"),
+    [("F", "F", ""), ("F5", "F", "5"), ("Fc", "F", "c"), ("F_cut", "F", "cut"), ("Q'", "Q′", ""),
+     ("press", "P", "press"), ("gas1", "P", "gas1"), ("press'", "P′", "press")],
+)  # fmt: skip
+def test_a_load_has_a_letter_with_its_word_below_the_line(name, letter, below):
+    assert named(name, "P") == Symbol(letter, below)

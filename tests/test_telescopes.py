@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from models import solved_text as solved
 from random_linkages import Anything, any_linkage, loaded
 from test_commands import ROOT
-from test_cylinders import SWINGING, solved
+from test_cylinders import SWINGING
 
 from tmm_cli import load, solve
 from tmm_cli.accuracy.data import widened

@@ -7,14 +7,15 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from tmm_cli.analysis.mechanism import Mechanism
-from tmm_cli.forces.given import setting_off
+from tmm_cli.forces.given import motion_on_base, setting_off
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.driver_range import SCAN
-from tmm_cli.kinematics.motion import move
+from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.kinematics.strokes import OutputCurve
 from tmm_cli.linkage import Load
 from tmm_cli.roots import roots
-from tmm_cli.vectors import Real, Vector, dot
+from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.vectors import Real, dot
 
 
 def jumps(mechanism: Mechanism) -> Iterable[float]:
@@ -50,7 +51,8 @@ def _rows_of_strokes(mechanism: Mechanism, rows: Iterable[float]) -> Iterable[fl
         middle = stroke.low + stroke.run / 2
         for row in rows:
             wanted = first.low + np.sign(first.run) * row
-            if abs(wanted - middle) < abs(stroke.run) / 2:
+            # at the ends themselves the output rests: rounding would put the row a little beside them
+            if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):
                 end = stroke.start + linkage.driver.sense * stroke.length
                 yield float(roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
 
@@ -73,15 +75,18 @@ def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
     linkage, whole = mechanism.linkage, mechanism.driver_range
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
 
-    def direction(q: Real) -> tuple[Vector, Real]:
-        return setting_off(load, move(linkage, mechanism.kernels, q, law))
+    def moved(q: Real, order: int) -> Motion:
+        return move(linkage, mechanism.kernels, q, law, order)
 
     q = np.linspace(whole.start, whole.end, SCAN * whole.turns + 1)
-    along, turning = direction(q)
+    half = (q[1] - q[0]) / 2  # a place of the scan may be the end itself: a little beyond it there is no doubt
+    along, turning = setting_off(load, moved(q, 2))
     if load.force:
         back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)
         before = along[back]
-        yield from roots(lambda places: dot(direction(places)[0], before), q[back], q[back + 1]).tolist()
+        yield from roots(
+            lambda places: dot(motion_on_base(load, moved(places, 1))[0], before), q[back], q[back + 1] + half
+        ).tolist()
     if load.moment:
         back = np.flatnonzero(turning[1:] * turning[:-1] < 0)
-        yield from roots(lambda places: direction(places)[1], q[back], q[back + 1]).tolist()
+        yield from roots(lambda places: motion_on_base(load, moved(places, 1))[1], q[back], q[back + 1] + half).tolist()

@@ -5,7 +5,7 @@ Only what is asked for is computed: the structure alone moves nothing, kinematic
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -38,10 +38,12 @@ from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.analysis.balancing import Balancing
+    from tmm_cli.analysis.extremes import Extreme
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.centres import Centre
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -53,7 +55,8 @@ class Results:
     """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
 
     of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
-    on the positions is found when it is asked for. problem: whatever the caller wants to find here again.
+    on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
+    are there where they are asked for by name. problem: whatever the caller wants to find here again.
     """
 
     inputs: Inputs
@@ -70,6 +73,8 @@ class Results:
     running: Running | SingleRun | None = None
     balancing: Balancing | None = None
     assemblies: tuple[Assemblies, ...] | None = None
+    centres: Mapping[int, Sequence[Centre]] | None = None
+    extremes: tuple[Extreme, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
 

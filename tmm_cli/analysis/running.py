@@ -54,7 +54,8 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
         return found.inertia, sense * found.slope, sense * found.moment
 
     places = np.array([*jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
-    inner = np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns)
+    inner = np.sort(np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns))
+    inner = inner[np.diff(inner, prepend=-1.0) > SAME_PLACE]
     return reduced(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
 
 

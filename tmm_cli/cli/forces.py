@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli.analysis.extremes import with_extremes
+from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import opened, variant_settings
-from tmm_cli.cli.reporting import report
+from tmm_cli.cli.reporting import report, write_pictures
+from tmm_cli.cli.talk import say
 from tmm_cli.library import solve
+
+Extremes = Annotated[bool, typer.Option("--extremes", help="Largest and smallest reactions over the cycle.")]
+Hodographs = Annotated[bool, typer.Option("--hodographs", help="Draw the hodograph of every reaction.")]
 
 
 def forces(
@@ -13,6 +24,8 @@ def forces(
     as_json: Json = False,
     out: Out = None,
     position: Position = None,
+    extremes: Extremes = False,
+    hodographs: Hodographs = False,
     digits: WithDigits = False,
     settings: Settings = None,
     variants: Variants = None,
@@ -25,6 +38,20 @@ def forces(
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)
         results = solve(opened(file, own, position, digits), "forces", position)
-        return report(results, names, as_json, out, digits, tables)
+        if extremes:
+            results = with_extremes(results)
+        code = report(
+            results, ("extremes",) if extremes else names, as_json, None if hodographs else out, digits, tables
+        )
+        if hodographs:
+            _draw_hodographs(results, out)
+        return code
 
     each(files, work, as_json=as_json, out=out)
+
+
+def _draw_hodographs(results: Results, out: Path | None) -> None:
+    from tmm_cli.draw.formats import files
+    from tmm_cli.draw.sheets.hodographs import reactions
+
+    write_pictures(results, out, dict(files(reactions(results), say)), "hodographs")

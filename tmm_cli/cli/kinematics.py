@@ -8,6 +8,9 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli.analysis.centres import with_centres
+from tmm_cli.analysis.extremes import with_extremes
+from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import listed
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, each
 from tmm_cli.cli.opening import opened, variant_settings
@@ -19,6 +22,10 @@ from tmm_cli.library import assemblies, solve
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
 ]
+Centres = Annotated[
+    bool, typer.Option("--centres", help="Instantaneous centres in the positions in detail; mechanical advantage.")
+]
+Extremes = Annotated[bool, typer.Option("--extremes", help="Extreme places of all points, links and stones.")]
 Of = Annotated[
     str,
     typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
@@ -31,6 +38,8 @@ def kinematics(
     out: Out = None,
     position: Position = None,
     assemblies: Assemblies = False,
+    centres: Centres = False,
+    extremes: Extremes = False,
     of: Of = "",
     digits: WithDigits = False,
     settings: Settings = None,
@@ -48,9 +57,23 @@ def kinematics(
         if assemblies:
             return _list_assemblies(file, as_json, out, position, own)
         results = solve(opened(file, own, position, digits), "kinematics", position, asked)
-        return report(results, names, as_json, out, digits, tables)
+        if extremes:
+            results = with_extremes(results)
+        if centres:
+            return _draw_centres(with_centres(results), as_json, out)
+        return report(results, ("extremes",) if extremes else names, as_json, out, digits, tables)
 
     each(files, work, as_json=as_json, out=out)
+
+
+def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
+    """Instantaneous centres, listed and drawn; the exit code."""
+    from tmm_cli.draw.formats import files
+    from tmm_cli.draw.sheets.centres import sheets
+
+    code = report(results, ("extremes", "centres", "advantage"), as_json, None)
+    write_pictures(results, out, dict(files(sheets(results), say)))
+    return code
 
 
 def _list_assemblies(

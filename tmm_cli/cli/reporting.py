@@ -106,10 +106,13 @@ def emit_results(results: Results | ChainResults, digits: AccuracyReport | None 
         sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 
-def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes]) -> None:
-    """With the tables into the folder asked for; alone beside what is in the usual one, but never in place of it."""
+def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes], part: str = "") -> None:
+    """With the tables into the folder asked for; alone beside what is in the usual one, but never in place of it.
+
+    part: what they are, where the results do not say it.
+    """
     if out is not None:
-        say_written(write_results(results, out, pictures.items()))
+        say_written(write_results(results, out, pictures.items(), part=part))
     elif pictures:
         usual, own = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
         taken = not listed(usual).isdisjoint(pictures)

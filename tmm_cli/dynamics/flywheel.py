@@ -23,7 +23,10 @@ import numpy as np
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.roots import least, roots
+from tmm_cli.roots import top as place_of_extreme
 from tmm_cli.vectors import Real
+
+NEAR = 0.02  # rad (or m): about the point of a tangent the diagram is looked at that far
 
 
 @dataclass(frozen=True)
@@ -117,6 +120,8 @@ def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tange
         return found
 
     x, __ = lowest(height, work.places())
+    # values alone tell the place to half the digits only
+    x = float(place_of_extreme(lambda at: height(np.clip(at, 0.0, work.length)), x, NEAR))
     at = np.array([x])
     return Tangent(x, float(machine.inertia(at)[0]), float(work(at)[0]), slope)
 

@@ -65,7 +65,8 @@ class Run:
                 missed = partial(_short_of, step, way[here])
                 found = roots(missed, low + 0 * way[here], high + 0 * way[here])
                 time[here], speed[here] = found, step(found)[1]
-        return time, speed
+        begins = way == self.way[0]  # where a search from rest would find what rounding leaves
+        return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
 
     def closely(self, count: int) -> list[tuple[Real, Real]]:
         """Times of each piece close together, just inside its ends, and there the way, the speed and the works of what

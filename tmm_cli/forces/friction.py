@@ -168,7 +168,7 @@ def _loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real
     for link, sense in ((pair.on, -1.0), (pair.by, 1.0)):
         if link == FRAME:
             continue
-        name = f"T{friction.pair}" + ("" if link == pair.on else "'")
+        name = f"T{friction.pair}{link}"  # as v_A3 is the velocity at A of link 3
         if pair.pair.slide is None:
             moment = sense * friction.coefficient * friction.radius * force * sign
             yield Applied(name, "friction", link, motion.linkage.local(link, pair.pair.point), still + 0j, moment, name)

@@ -59,22 +59,26 @@ def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
     In an end of its way a thing has the direction in which it sets off from there.
     """
-    base, sense = load.base, np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
-    pose, first = motion.poses[load.link], motion.first[load.link]
-    arm = load.at * pose.z
-    other = pose.at(load.at) - motion.poses[base].x
-    turn = motion.first[base].w
-    velocity = sense * (first.at(arm) - motion.first[base].at(other))
-    spin = sense * (first.w - turn)
+    velocity, spin = motion_on_base(load, motion)
     if motion.order > 1:
-        second, own = motion.second[load.link], motion.second[base]
+        pose, other = motion.poses[load.link], motion.second[load.base]
+        arm, far = load.at * pose.z, pose.at(load.at) - motion.poses[load.base].x
+        second = motion.second[load.link]
+        gain = second.at(arm, motion.first[load.link].w) - other.at(far, motion.first[load.base].w)
         reach = reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
-        gain = second.at(arm, first.w) - own.at(other, turn)
         velocity = np.where(np.abs(velocity) > SETS_OFF * reach, velocity, gain)
-        spin = np.where(np.abs(spin) > SETS_OFF, spin, second.e - own.e)
+        spin = np.where(np.abs(spin) > SETS_OFF, spin, second.e - other.e)
     length = np.abs(velocity)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(length > 0, velocity / length, 0j), np.sign(spin)
+
+
+def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
+    """Velocity of the point of a load and turning of its link on the base, in units of the driver's motion."""
+    sense = np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
+    pose, first, base = motion.poses[load.link], motion.first[load.link], motion.first[load.base]
+    far = pose.at(load.at) - motion.poses[load.base].x
+    return sense * (first.at(load.at * pose.z) - base.at(far)), sense * (first.w - base.w)
 
 
 def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:

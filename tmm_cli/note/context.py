@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -27,9 +27,11 @@ from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import plain, rounded
+from tmm_cli.plans.record import subscript
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
 
+EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
 
 
@@ -95,22 +97,31 @@ class Subject:
         if (draw, k) not in self._drawings:
             with within(Space(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
-                self._drawings[draw, k] = dict(draw(subject))
+                self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def figures(
-        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = ""
+        self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""
     ) -> Iterable[Block]:
         """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
 
-        caption: else the drawing's own heading. only: those of this stem, and what is continued of it.
+        caption: else the drawing's own heading. only: those of this stem, and what is continued of it. further: the
+        sentence of the second drawing, and of those after it.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and stem != only and not stem.startswith(f"{only}-sheet-"):
                 continue
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
+            sentence = further or sentence
+
+
+def edged(drawing: Drawing) -> Drawing:
+    """With a little room about it, in which its outer lines are drawn whole."""
+    width, height = drawing.paper
+    marks = tuple(mark.moved(EDGE * (1 + 1j)) for mark in drawing.marks)
+    return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
 def figures(text: str, language: str) -> str:
@@ -119,5 +130,14 @@ def figures(text: str, language: str) -> str:
 
 
 def with_degrees(text: str) -> str:
-    """90 deg is 90°, in every language."""
-    return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text)
+    """90 deg is 90°, in every language; 5 % stays on one line."""
+    return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+GREEK = {"alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π", "phi": "φ", "psi": "ψ"}
+
+
+def by_hand(text: str) -> str:
+    """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
+    text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
+    return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), text).replace(" - ", " − ")

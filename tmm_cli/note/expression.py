@@ -234,7 +234,7 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Function(name, argument):
             node = of(argument)
             if name == "abs":
-                return paper.row("|", node, "|")
+                return paper.Brackets(node, bars=True)
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
 
 

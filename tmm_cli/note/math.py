@@ -69,11 +69,15 @@ class Root:
 
 @dataclass(frozen=True)
 class Brackets:
-    """Round brackets as high as what is in them; in a broken formula the other one may stand on another line."""
+    """Round brackets as high as what is in them; in a broken formula the other one may stand on another line.
+
+    bars: straight ones, of a size.
+    """
 
     inside: Node
     opens: bool = True
     closes: bool = True
+    bars: bool = False
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,9 @@ def _of(node: Node) -> str:
             return f"<msup>{_of(base)}{_of(exponent)}</msup>"
         case Root(of):
             return f"<msqrt>{_of(of)}</msqrt>"
-        case Brackets(inside, opens, closes):
-            return f"<mrow>{'<mo>(</mo>' * opens}{_of(inside)}{'<mo>)</mo>' * closes}</mrow>"
+        case Brackets(inside, opens, closes, bars):
+            left, right = "||" if bars else "()"
+            return f"<mrow>{f'<mo>{left}</mo>' * opens}{_of(inside)}{f'<mo>{right}</mo>' * closes}</mrow>"
         case Lines(lines):
             rows = "".join(f"<mtr><mtd>{_of(line)}</mtd></mtr>" for line in lines)
             return f'<mtable columnalign="left" displaystyle="true">{rows}</mtable>'

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tmm_cli.note.blocks import Line, Rows
-from tmm_cli.note.context import Subject, with_degrees
+from tmm_cli.note.context import Subject, by_hand, with_degrees
 from tmm_cli.problem.units import on_paper
 from tmm_cli.results.table import Column, Table
 from tmm_cli.results.terminal import cells
@@ -23,7 +23,7 @@ def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", di
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
     shown = [
-        [with_degrees(t) if dimension is None else subject.figures_of(t) for t in texts]
+        [by_hand(with_degrees(t)) if dimension is None else subject.figures_of(t) for t in texts]
         for __, texts, dimension in kept
     ]
     head: Sequence[Line] = [(text,) for text, *__ in kept]

@@ -16,6 +16,7 @@ from tmm_cli.vectors import cross, dot, unit
 
 FAR = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
 DRIVE = "drive"
+SHORT = 2  # letters after the first one of a name that is an index of it: Fc, Fcut is a word
 
 
 @dataclass(frozen=True)
@@ -170,6 +171,23 @@ def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
     if load.kind == "inertia":
         return lettered("U", load.link), lettered("M", load.link)
     names = load.name, load.couple_name or load.name
-    if load.kind != "load":
+    if load.kind == "friction":
         return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
-    return Symbol(names[0]), Symbol(names[1])
+    return named(names[0], "P"), named(names[1], "M")
+
+
+def load_names(load: Applied) -> tuple[str, str]:
+    """The same on one line, as tables of the results have them; one that is given has its name of the file."""
+    if load.kind == "load":
+        return load.name, load.couple_name or load.name
+    force, couple = load_symbols(load)
+    return force.plain, couple.plain
+
+
+def named(name: str, letter: str) -> Symbol:
+    """F of F, F₅ of F5, F_c of Fc or F_c; of a word this letter with the word below it: P_press of press."""
+    base = name.rstrip("'")
+    first, rest = base[:1], base[1:].removeprefix("_")
+    short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= SHORT)
+    symbol = Symbol(first, rest) if first.isalpha() and short else Symbol(letter, base)
+    return symbol.primed if name != base else symbol

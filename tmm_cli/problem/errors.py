@@ -169,6 +169,8 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     if wanted in folded:
         return folded[wanted]
     swapped = [other for other in folded if sorted(other) == sorted(wanted)]
+    if len(wanted) < 2:  # one letter is near to all names that have it
+        return None
     close = swapped or difflib.get_close_matches(wanted, folded, n=1, cutoff=CLOSE)
     return folded[close[0]] if close else None
 

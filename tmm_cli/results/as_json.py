@@ -6,6 +6,7 @@ A further part is a line in MOTION_PARTS (json_motion) or here.
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Collection, Iterator
 from typing import Any
 
@@ -26,6 +27,8 @@ from tmm_cli.results.shapes import (
     JsonType,
     contents,
     list_of,
+    map_of,
+    optional,
     properties,
     record,
 )
@@ -60,7 +63,28 @@ CHECK = record(
     Field("limit", NUMBER, "the most, of margins the least"),
     Field("holds", FLAG, "within its limit"),
 )  # fmt: skip
+CENTRE = record(
+    "of two links",
+    Field("links", NAMES, "the two"),
+    Field("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
+    Field("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
+    Field("direction", optional(NUMBER), "in which it is at infinity, rad; null elsewhere",
+          lambda c: None if c.direction is None else cmath.phase(c.direction)),
+    Field("pair", TEXT, "that shows it; empty where there is none"),
+)  # fmt: skip
+EXTREME = record(
+    "a quantity",
+    Field("kind", TEXT, "x, y of a point; angle of a link; s of a slide; R, M in a pair; R pin; M_b, F_b of a driver"),
+    Field("name", TEXT, "of what"),
+    Field("low", NUMBER, "least value, SI"),
+    Field("low_at", NUMBER, "driver's place there, rad or m"),
+    Field("high", NUMBER, "largest value, SI"),
+    Field("high_at", NUMBER, "driver's place there"),
+)
 LAST = (
+    Field("centres", map_of(list_of(CENTRE)), "with --centres: instantaneous centres, by the numbers of positions",
+          lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()}, "centres"),
+    Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),

@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 
 
 def _at_start(results: Results, name: str) -> float:
-    """Speed or acceleration of the driver at position 0, in its sense."""
+    """Speed or acceleration of the driver at position 0, in its sense; beside the block dynamics, as they are given."""
     driver = results.linkage.driver
-    if driver.law is None and results.running is None:
+    if driver.law is None:
         given: float = getattr(driver, name)
         return given
     start, law = np.array([results.start]), results.law

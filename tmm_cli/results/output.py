@@ -27,9 +27,9 @@ def part_of(results: Results | ChainResults, drawn: bool) -> str:
         return ""
     if results.motion is None:
         return "structure"
-    words: list[str] = []
+    words = [word for word in ("assemblies", "centres", "extremes") if getattr(results, word) is not None]
     if results.reactions is None:
-        words = ["kinematics" if results.assemblies is None else "assemblies", *results.of]
+        words = [*(words or ["kinematics"]), *results.of]
     numbers = results.numbers
     if numbers != tuple(range(len(results.asked))):
         few = len(numbers) <= NAMED
@@ -47,14 +47,15 @@ class Written(NamedTuple):
 
 def write_results(
     results: Results | ChainResults, out: Path, drawings: Iterable[tuple[str, bytes]] | None = None,
-    digits: AccuracyReport | None = None, people: Kind | None = None,
+    digits: AccuracyReport | None = None, people: Kind | None = None, part: str = "",
 ) -> Written:  # fmt: skip
     """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
 
     Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
-    an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too.
+    an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too. part: what
+    the drawings are, where they are others than those of a whole run.
     """
-    part = part_of(results, drawings is not None)
+    part = "-".join(word for word in (part_of(results, drawings is not None), part) if word)
     folder, kept = folder_of(out, results.problem.name, part)
 
     def tables() -> Iterable[Table]:

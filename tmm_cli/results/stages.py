@@ -109,6 +109,9 @@ def stages(results: Results) -> Iterable[Row]:
     if results.inputs.dynamics is not None:
         note = _("and more, until sums along the way are exact; then kinematics and forces with it")
         yield _("law of motion"), every, str(PANELS * driver_range.turns), accelerations, note
+    if results.inputs.balancing is not None:
+        note = _("what shakes the frame, at constant speed of the driver")
+        yield _("balancing"), every, str(CYCLE * driver_range.turns), accelerations, note
     note = _("--position: these only; --of: groups on the way only")
     yield _("kinematics"), every, asked, accelerations, note
     yield _("forces"), every, asked, _("reactions"), f"{_inertia(linkage)}; {_acting(linkage)}"

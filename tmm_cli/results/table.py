@@ -62,9 +62,9 @@ class Column:
         return np.where(known, true_digits(np.where(known, numbers, 0.0), np.where(known, bound, 0.0)), -1)
 
 
-def with_unit(units: UnitSystem, value: float, dimension: Dimension) -> str:
-    """A value (SI) in the unit of the file, to six digits: `110 mm`."""
-    return f"{numeral(units.from_si(value, dimension) + 0.0, '.6g')} {units.spelt(dimension)}"
+def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int = 6) -> str:
+    """A value (SI) in the unit of the file, to so many digits: `110 mm`."""
+    return f"{numeral(units.from_si(value, dimension) + 0.0, f'.{digits}g')} {units.spelt(dimension)}"
 
 
 def true_digits(values: Any, bound: Any) -> Any:

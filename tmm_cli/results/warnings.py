@@ -28,8 +28,8 @@ MOST_POSITIONS = 100  # that cannot be reached, each with its own words
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
-def warnings(results: Results | ChainResults) -> Iterable[str]:
-    """One sentence each, in the units of the file."""
+def warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
+    """One sentence each, in the units of the file. checked: also of what the table of checks has with its number."""
     if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return
     yield from _range(results)
@@ -40,14 +40,16 @@ def warnings(results: Results | ChainResults) -> Iterable[str]:
     yield from _passive(results)
     if not results.driver_range.repeats:
         yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
-    yield from _slots(results)
-    yield from _pressure(results)
+    if checked:
+        yield from _slots(results)
+        yield from _pressure(results)
     yield from _locked(results)
     yield from _twisted(results)
     yield from _impacts(results)
     yield from _loads(results, results.motion)
     yield from missed(measured_on(results), results.problem.units)
-    yield from _lever(results, results.motion)
+    if checked:
+        yield from _lever(results, results.motion)
 
 
 def _place(results: Results, q: float) -> str:
@@ -205,7 +207,7 @@ def _pressure(results: Results) -> Iterable[str]:
         said = limits_set[0 if pressure.slides else 1]
         if pressure.holds or not (chosen or said):
             continue
-        largest, allowed = (with_unit(units, angle, ANGLE) for angle in (pressure.largest, pressure.allowed))
+        largest, allowed = (with_unit(units, angle, ANGLE, 4) for angle in (pressure.largest, pressure.allowed))
         text = (
             _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
             if said

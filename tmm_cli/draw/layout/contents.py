@@ -88,7 +88,7 @@ CONTENTS = (
     Source(2, lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),
-    Source(2, balancing, 150),
+    Source(2, balancing, 100),
     Source(2, single_run, 240),
     Source(3, law_of_motion, 240),
     Source(3, law_tables),

@@ -21,6 +21,7 @@ from tmm_cli.draw.layout.pieces import (
     eased,
     evenest,
     filled,
+    grown,
     shared,
     spaced,
 )
@@ -119,10 +120,13 @@ def _sheet(
 
     rooms, pages = begun(pieces, field, shrunk)
     free = [k for k, piece in enumerate(pieces) if not piece.length]
-    wanted, pages = shared(pieces, eased(pieces, rooms, EASED, free), pages, field, shrunk)
-    larger = drawn(wanted)
-    if all(pack(spaced(_sizes(larger), page), field) is not None for page in pages):
-        pieces = larger
+    begin = eased(pieces, rooms, EASED, free)
+    for wanted in (shared(pieces, begin, pages, field, shrunk)[0], grown(pieces, begin, pages, field, shrunk)):
+        larger = drawn(wanted)
+        held = filled(_sizes(larger), field)
+        if held is not None and len(held) <= len(pages):
+            pieces, pages = larger, held
+            break
     else:  # something became larger than thought
         large = list(range(len(pieces)))
         for __ in range(TRIES):

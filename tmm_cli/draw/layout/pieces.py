@@ -112,20 +112,31 @@ def spaced(sizes: Sequence[Size], page: Page) -> list[Size]:
 
 
 def filled(sizes: Sequence[Size], field: Field) -> list[Page] | None:
-    """As few pages as hold the pieces in their order, about equally full; None where a piece alone does not fit."""
-    fewest = _filled(sizes, field, math.inf)
+    """As few pages as hold the pieces, about equally full; None where a piece alone does not fit.
+
+    The pieces stay in their order unless fewer pages hold them where some stand earlier.
+    """
+    fewest, back = _filled(sizes, field, math.inf), False
     if fewest is None or len(fewest) < 2:
         return fewest
-    most = sum(area(sizes, page) for page in fewest) / len(fewest)
+    closer = _filled(sizes, field, math.inf, back=True)
+    if closer is not None and len(closer) < len(fewest):
+        fewest, back = closer, True
+    return _evenly(sizes, field, len(fewest), back=back)
+
+
+def _evenly(sizes: Sequence[Size], field: Field, count: int, *, back: bool) -> list[Page] | None:
+    """So many pages, of which none is much fuller than it must be."""
+    most = area(sizes, [*range(len(sizes))]) / count
     while True:
-        pages = _filled(sizes, field, most)
-        if pages is not None and len(pages) == len(fewest):
+        pages = _filled(sizes, field, most, back=back)
+        if (pages is not None and len(pages) <= count) or most > field.area:
             return pages
         most *= EVENER
 
 
 def ways(sizes: Sequence[Size], pages: list[Page], field: Field) -> Iterator[list[Page]]:
-    """These pages, then others that hold the pieces in their order: as many, the most even ones first."""
+    """These pages, then as many others: in the order of the pieces, the most even ones first, then in another one."""
     yield pages
     every, count = range(len(sizes)), len(pages)
     if count < 2 or math.comb(len(sizes) - 1, count - 1) > WAYS:
@@ -140,6 +151,9 @@ def ways(sizes: Sequence[Size], pages: list[Page], field: Field) -> Iterator[lis
     others = [[[*every[start:end]] for start, end in pairwise(cuts)] for cuts in found]
     others.sort(key=lambda way: max(area(sizes, page) for page in way))
     yield from islice((way for way in others if all(held(page[0], page[-1] + 1) for page in way)), FEW)
+    mixed = _evenly(sizes, field, count, back=True)
+    if mixed is not None and len(mixed) == count:
+        yield mixed
 
 
 def evenest(sizes: Sequence[Size], pages: list[Page], field: Field) -> list[Page]:
@@ -152,17 +166,19 @@ def area(sizes: Sequence[Size], page: Page) -> float:
     return sum(sizes[k][0] * sizes[k][1] for k in page)
 
 
-def _filled(sizes: Sequence[Size], field: Field, most: float) -> list[Page] | None:
-    """Pages filled one after the other, each with no more than so much."""
+def _filled(sizes: Sequence[Size], field: Field, most: float, *, back: bool = False) -> list[Page] | None:
+    """Pages filled one after the other, each with no more than so much; back: what follows may be on earlier ones."""
     pages: list[Page] = []
     for number in range(len(sizes)):
-        longer = [*pages[-1], number] if pages else []
-        if longer and area(sizes, longer) <= most and pack(spaced(sizes, longer), field) is not None:
-            pages[-1] = longer
-        elif pack(spaced(sizes, [number]), field) is not None:
-            pages.append([number])
+        for page in pages if back else pages[-1:]:
+            longer = [*page, number]
+            if area(sizes, longer) <= most and pack(spaced(sizes, longer), field) is not None:
+                page.append(number)
+                break
         else:
-            return None
+            if pack(spaced(sizes, [number]), field) is None:
+                return None
+            pages.append([number])
     return pages
 
 

@@ -91,7 +91,8 @@ def over_positions(results: Results, title: str, columns: Sequence[Quantity]) ->
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
-    place: Quantity = ("φ", np.mod(motion.q, 2 * np.pi), ANGLE) if crank else ("s", motion.q, LENGTH)
+    cycle = 2 * np.pi * motion.linkage.turns
+    place: Quantity = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
     heads: list[Words] = [_("No.")]
     heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]

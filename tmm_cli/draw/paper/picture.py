@@ -86,9 +86,12 @@ def longest_for(usual: float) -> float:
 
 
 def fits(width: float, height: float) -> bool:
-    """Whether there is room on the sheet for what is so large (mm) and has a heading."""
+    """Whether there is room on the sheet for what is so large (mm) and has a heading, if it is written."""
     space = _SPACE.get()
-    return space is None or (width <= space.most[0] and height + MOST * LINE * HEAD + AIR <= space.most[1])
+    if space is None:
+        return True
+    heading = MOST * LINE * HEAD + AIR if space.written else 0.0
+    return width <= space.most[0] and height + heading <= space.most[1]
 
 
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:

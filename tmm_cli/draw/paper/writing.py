@@ -9,6 +9,7 @@ DARK = "#1a1a1a"
 CUT = "…"
 LEAST = 0.75  # of its size: a text is made that much smaller before it is cut
 GAP = 0.8  # mm between a text and the lines of its cell
+SHORTER = 0.01  # of the size: by how much a room in which the longest line has no place is narrower than that
 LINE = 1.25  # of the size: from line to line
 
 
@@ -26,7 +27,17 @@ def cut(text: str, size: float, room: float, *, bold: bool = False) -> str:
 
 
 def wrap(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
-    """A text in lines that fit the room (mm), at most so many of them; the last one is cut."""
+    """A text in lines that fit the room (mm), at most so many and about equally long; the last one is cut."""
+    found = narrower = _wrapped(text, size, room, most, bold)
+    while 1 < len(narrower) == len(found) and " ".join(narrower) == " ".join(found):
+        found = narrower
+        room = max(width(line, size, bold=bold) for line in found) - SHORTER * size
+        narrower = _wrapped(text, size, room, most, bold)
+    return found
+
+
+def _wrapped(text: str, size: float, room: float, most: int, bold: bool) -> list[str]:
+    """Lines each as long as there is room for."""
     lines: list[str] = []
     left = text.split()
     while left and len(lines) < most - 1:

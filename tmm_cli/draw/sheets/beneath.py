@@ -21,6 +21,7 @@ from tmm_cli.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_s
 TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
 PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
+BEYOND = 8.0  # mm that labels may take beyond that
 MOST = 0.5  # of a sheet: more than this is written on another one
 WIDTHS = (110.0, 150.0, 200.0, 260.0, 330.0)  # mm: what is beneath a drawing on a large sheet is folded into one
 LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
@@ -164,7 +165,8 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
         return most - written.left(low, low + complex(wide, most)).imag
 
     sizes = [(wide, up + 2 * PAD + height(wide)) for wide in (max(wide, across + 2 * PAD) for wide in WIDTHS)]
-    wide, high = min(sizes, key=lambda size: (not fits(*size), size[0] * size[1]))
+    found = [(wide, high) for wide, high in sizes if fits(wide, high + BEYOND)]
+    wide, high = min(found, key=lambda size: size[0] * size[1]) if found else min(sizes, key=lambda size: size[1])
     paper = complex(wide, high) + low - edge
     return _Placed((paper.real, paper.imag), mu, middle, written)
 

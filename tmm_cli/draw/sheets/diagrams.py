@@ -66,7 +66,7 @@ UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the f
 
 def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
-    places, borders = _closely(results)
+    places, borders = closely(results)
     whole = at_places(results, places)
     motion = whole.motion
     assert motion is not None
@@ -92,7 +92,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
             yield name, over_turn(results, caption, motion.q, borders, every[start : start + MOST_PANELS])
 
 
-def _closely(results: Results) -> tuple[Real, list[int]]:
+def closely(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)

@@ -7,29 +7,35 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
+from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.draw.paper.drawing import Drawing, Style
 from tmm_cli.draw.paper.script import Words
-from tmm_cli.draw.paper.sheet import DARK, LOAD, REACTION, THIN, Sheet, scale_words
+from tmm_cli.draw.paper.sheet import DARK, LOAD, REACTION, THIN, Sheet, safe, scale_words
+from tmm_cli.draw.sheets.diagrams import closely, over_turn
+from tmm_cli.draw.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _
+from tmm_cli.plans.record import reaction_symbol
+from tmm_cli.quantities import FORCE
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import Vector
 
 BEYOND = 8.0  # mm of the axes beyond the curves
 HEAD = 1.0  # mm: half the width of their heads
 AIR = 30.0  # mm about the figure
+LEAP = 0.5  # mm from a place to the next at the end of a stroke
 NUMBERED = 24  # positions with numbers, at most
 
 
 @dataclass(frozen=True)
 class Hodograph:
-    """A force (N) over the whole cycle, and at the positions."""
+    """A force (N) over the whole cycle, and at the positions; leaps: after which places it may leap."""
 
     name: Words
     cycle: Vector
     positions: Vector
     colour: str
     style: Style = "-"
+    leaps: Sequence[int] = ()
 
 
 def balancing(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -44,6 +50,35 @@ def balancing(results: Results) -> Iterable[tuple[str, Drawing]]:
     yield "shaking-force", hodograph(results, _("Hodograph of the shaking force on the frame"), drawn, "F")
 
 
+def reactions(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Of every pair: the ends of its reaction from one pole, then its parts and its size over the turn of the crank."""
+    assert results.reactions is not None
+    places, borders = closely(results)
+    whole = at_places(results, places)
+    assert whole.reactions is not None
+    for here, cycle in zip(results.reactions.all, whole.reactions.all, strict=True):
+        pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
+        title = _("Hodograph of the reaction {name} in pair {pair}").format(name=symbol.name, pair=pair)
+        one = Hodograph("", cycle.force, here.force, REACTION, leaps=borders)
+        if np.nanmax(np.abs(cycle.force)) > 0:
+            yield safe(f"hodograph-{pair}"), hodograph(results, title, [one], "R")
+            over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
+            yield (
+                safe(f"reaction-{pair}"),
+                over_turn(results, over, places, borders, _parts(cycle.force, here.force)),
+            )
+
+
+def _parts(cycle: Vector, here: Vector) -> list[Quantities]:
+    """The size of a force, and its parts along the axes of the drawing."""
+    parts = [("x", cycle.real, here.real), ("y", cycle.imag, here.imag)]
+    size = Course("", np.abs(cycle), np.abs(here))
+    return [
+        Quantities(_("its size"), FORCE, [size], "R"),
+        Quantities(_("its parts along x and y"), FORCE, [Course(*part) for part in parts], "R"),
+    ]
+
+
 def hodograph(results: Results, caption: str, drawn: Sequence[Hodograph], letter: str) -> Drawing:
     """A sheet of hodographs from one pole at one scale; of a force that is nothing beside the others a dot."""
     largest = max(float(np.nanmax(np.abs(one.cycle))) for one in drawn)
@@ -56,11 +91,20 @@ def hodograph(results: Results, caption: str, drawn: Sequence[Hodograph], letter
         if not np.nanmax(np.abs(one.cycle)) > NO_FORCE * largest:
             sheet.circle(sheet.on(0j), 1.0, one.colour, one.colour, 0.3, 6)
             continue
-        closed = np.append(one.cycle, one.cycle[:1]) if results.turns else one.cycle
-        sheet.line([sheet.on(complex(p)) for p in closed], one.colour, 1.4, one.style)
+        _curve(sheet, results, one)
         _numbers(sheet, results, one)
     sheet.note(scale_words(letter, sheet.mu, "N/mm"))
     return sheet.finish()
+
+
+def _curve(sheet: Sheet, results: Results, one: Hodograph) -> None:
+    """Its line, which comes back to its beginning; thin and dotted where it leaps."""
+    closed = np.append(one.cycle, one.cycle[:1]) if results.turns else one.cycle
+    places = sheet.origin + closed / sheet.mu
+    leaps = [k for k in one.leaps if abs(places[k + 1] - places[k]) > LEAP]
+    sheet.line(np.insert(places, np.array(leaps, int) + 1, np.nan).tolist(), one.colour, 1.4, one.style)
+    for k in leaps:
+        sheet.line(places[k : k + 2].tolist(), one.colour, 0.7, ":")
 
 
 def _axes(sheet: Sheet, places: Sequence[complex]) -> None:

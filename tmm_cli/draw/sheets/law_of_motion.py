@@ -75,11 +75,12 @@ def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Q
         square = law.speed(x) ** 2 / 2
         return machine.inertia(x) * square, law.flywheel * (square - law.speed(0 * x) ** 2 / 2)
 
-    driving = [_course(_("loads"), machine.moment, way, here), _course(_("what drives"), law.driving, way, here)]
+    driver = _("constant moment") if steady.task.motor is None else _("motor")
+    driving = [_course(_("loads"), machine.moment, way, here), _course(driver, law.driving, way, here)]
     return [
         Quantities(_("reduced moments of the loads"), MOMENT, loads),
         Quantities(_("moments"), MOMENT, driving),
-        Quantities(_("works, J"), NUMBER, _courses((_("loads"), _("what drives"), _("sum")), works, way, here), "A"),
+        Quantities(_("works, J"), NUMBER, _courses((_("loads"), driver, _("sum")), works, way, here), "A"),
         Quantities(
             _("kinetic energy, J"), NUMBER,
             _courses((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1], "T",

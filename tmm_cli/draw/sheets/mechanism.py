@@ -31,6 +31,7 @@ from tmm_cli.vectors import Vector, dot
 
 ABOUT = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 ONE_LINE = 0.1  # mm between lines that look like one
+DECIMALS = 2  # of the place of the driver, in the unit of the file
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 
 
@@ -60,11 +61,12 @@ class Position:
         return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
-def place_of_driver(results: Results, q: float) -> str:
+def place_of_driver(results: Results, q: float, digits: int = 6) -> str:
     """In words."""
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
-    place = f"{numeral(units.from_si(q % (2 * np.pi) if crank else q, measure), '.6g')} {units.spelt(measure)}"
+    value = round(units.from_si(q % (2 * np.pi) if crank else q, measure), DECIMALS)
+    place = f"{numeral(value, f'.{digits}g')} {units.spelt(measure)}"
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 

@@ -38,6 +38,7 @@ EXTREME = "#6a6a6a"
 BOLD = 4  # how much more a link in full is in the way than a thin one
 BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
 NEAR, FULL, PIVOT, GUIDE = 3.0, 8.0, 11.0, 13.0  # mm about thin lines, what is drawn in full, pivots, sliders
+RIM = 10.0  # mm about the pitch line of a wheel, for a hatched rim
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,8 @@ def _figure(view: View, whole: list[Vector]) -> Figure:
     figure, pivots = Figure(), fixed_pivots(view.results.linkage)
     used = [*pivots, *(place for path in whole for place in path.tolist())]
     figure.spots(pivots, PIVOT)
-    figure.spots(to_scale(view.scene, used), NEAR)
+    figure.spots(used, NEAR)
+    figure.spots(to_scale(view.scene, used)[len(used) :], RIM)
     for k in view.shown:
         figure.spots(view.lines(k), FULL if k == view.scene.k else NEAR)
     sliding = [pair for pair in view.scene.structure.pairs if pair.slide is not None]

@@ -10,6 +10,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.forces import lever, loads, sections, tables
 from tmm_cli.note.forces.parts import parts_of
 from tmm_cli.note.forces.words import at_position
+from tmm_cli.plans.record import Symbol
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
@@ -22,7 +23,10 @@ def blocks(subject: Subject) -> Iterable[Block]:
         _("The reactions in the kinematic pairs, and what balances the driving link, are found by the method of "
           "kinetostatics: when the forces of inertia are added to the forces that act (principle of d'Alembert), every "
           "group of links is in equilibrium. The groups are taken in the order opposite to that of the kinematic "
-          "analysis, and the driving link last. Forces are in the senses of the figures, so what is found is positive.")
+          "analysis, and the driving link last. A reaction {R} has the numbers of two links: the first one acts on the "
+          "second. The figures show all forces in the senses that they really have, so their magnitudes are positive; "
+          "their arms {h} are measured there."),
+        R=Symbol("R"), h=Symbol("h"),
     )  # fmt: skip
     for k in subject.detail:
         yield from _position(subject, k)

@@ -12,7 +12,8 @@ from tmm_cli.note.kinematics.driver import drivers, place_here, positions, speed
 from tmm_cli.note.kinematics.on_paper import Here
 from tmm_cli.note.kinematics.tables import tables
 from tmm_cli.note.kinematics.velocities import velocities
-from tmm_cli.plans.vector_equations import Step, steps
+from tmm_cli.note.kinematics.words import name_of
+from tmm_cli.plans.vector_equations import Along, Step, steps
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
@@ -39,10 +40,19 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
             _(
                 "Velocities are found by plans: of the driving links first, then of the groups in the order of the "
                 "formula of structure. Of a vector under which two lines stand the size and the direction are "
-                "known, of one with a single line its direction only. A point of a link under a stone has the "
-                "number of the link in its name."
+                "known, of one with a single line its direction only."
             )
         )
+        slid = next((e for step in every for e in step.equations if isinstance(e, Along)), None)
+        if slid is not None:
+            yield said(
+                _(
+                    "The point of a guide that a stone covers in this position has the number of the guide's link in "
+                    "its name: {under} of link {link} lies at {point}; its distances to other points of the link are "
+                    "those of this position."
+                ),
+                under=name_of(slid.base), link=slid.slide.carrier, point=slid.point.at,
+            )  # fmt: skip
     yield place_here(here)
     yield from speed_here(here)
     yield from subject.figures(
@@ -54,12 +64,18 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
     if here.first:
         yield said(
             _(
-                "The acceleration of a point about another one of its link has a normal part, towards that other "
-                "point, and a tangential one across their line. The acceleration of a stone about the point under "
-                "it has a part along the guide and, where the guide turns, that of Coriolis: it has the direction "
-                "of the relative velocity turned through 90° in the sense of the guide's rotation."
+                "The acceleration of a point relative to another one of its link has a normal part, towards that other "
+                "point, and a tangential one, perpendicular to their line."
             )
         )
+        if any(isinstance(e, Along) for step in every for e in step.equations):
+            yield said(
+                _(
+                    "The acceleration of a stone relative to the point of the guide that it covers has a part along "
+                    "the guide and, where the guide turns, that of Coriolis: it has the direction of the relative "
+                    "velocity turned through 90° in the sense of the guide's rotation."
+                )
+            )
     yield from subject.figures(
         "acceleration", _("The plan of accelerations is shown in figure {figure}."),
         _("Plan of accelerations, position {number}").format(number=number), here.k,

@@ -54,7 +54,7 @@ def _steady(subject: Subject, running: Running) -> Iterable[Block]:
         "law", _("Reduced moments, works and energies are shown in figure {figure}."),
         _("Reduced moments, works and energies over the cycle"), only="law-moments",
     )  # fmt: skip
-    yield Heading(_("What drives the machine"), 2)
+    yield Heading(_("Driving moment"), 2)
     yield from driving.mean(here)
     for one in every:
         yield from driving.motor(one)

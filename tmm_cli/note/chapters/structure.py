@@ -39,7 +39,12 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     told = [
-        (name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
+        (
+            name,
+            linkage.links[name].label or _(ROLES[roles[name]]),
+            _motion(linkage, name),
+            ", ".join(linkage.links[name].points),
+        )
         for name in subject.results.structure.links
     ]
     rows = tuple(tuple(line(text) for text in row) for row in told)
@@ -75,11 +80,11 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     yield said(
         _(
-            "The mobility of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+            "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
             "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
             "higher pairs:"
         ),
-        source=Link("artobolevskii"), n=N, lower=LOWER, higher=HIGHER,
+        source=Link("artobolevskii"), w=W, n=N, lower=LOWER, higher=HIGHER,
         turning=str(turning), sliding=str(lower - turning),
     )  # fmt: skip
     yield Found(Substitution(W, chebyshev(n, lower, higher), structure.mobility, whole=True))
@@ -118,7 +123,7 @@ def _groups(subject: Subject) -> Iterable[Block]:
         )
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
-    text = _("The class of a mechanism is the highest of its groups' classes {source}; it is of class {number}.")
+    text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
     yield said(text, source=Link("frolov"), number=ROMAN[min(structure.mechanism_class, 10)])
     yield from _apart(subject)
 
@@ -128,6 +133,8 @@ def _apart(subject: Subject) -> Iterable[Block]:
     drawn = subject.drawings("groups")
     if drawn:
         sentence = _("The parts of the mechanism are shown in figures {first} to {last}.")
+        if len(drawn) == 2:
+            sentence = _("The parts of the mechanism are shown in figures {first} and {last}.")
         if len(drawn) == 1:
             sentence = _("The only part of the mechanism is shown in figure {first}.")
         yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
@@ -143,7 +150,7 @@ def _group(group: Group) -> tuple[Line, ...]:
     w = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + (f" − {drivers}" if drivers else "")
     own = f"{w} = {3 * n - 2 * lower - higher - drivers}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
-    outer = ", ".join(_("{pair} (of {link})").format(pair=pair, link=link_name(link)) for pair, link in known)
+    outer = ", ".join(_("{pair} (to {link})").format(pair=pair, link=link) for pair, link in known)
     return (
         line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(group.type),
         line(", ".join(pair.name for pair in group.inner)), line(outer), line(own),

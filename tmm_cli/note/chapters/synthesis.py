@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.language import _, translated
-from tmm_cli.note.blocks import Block, Found, Heading, paragraph
-from tmm_cli.note.context import Subject
+from tmm_cli.note.blocks import Block, Found, Heading, Ref, paragraph, said
+from tmm_cli.note.context import Subject, by_hand
 from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Substitution, Sum
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.record import Symbol
@@ -29,28 +29,39 @@ def blocks(subject: Subject) -> Iterable[Block]:
     if task is None:
         return
     yield Heading(_("Synthesis of the mechanism"))
-    yield paragraph(_("The sizes of the mechanism are found from what it must do."))
     tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
-    if "synthesis-asked" in tables:
-        yield rows_of(subject, tables.pop("synthesis-asked"), _("What is asked"), digits=FOUND)
-    yield paragraph(_("The way of the solution: {source}.").format(source=translated(task.outcome.source).rstrip(".")))
+    asked = tables.pop("synthesis-asked", None)
+    if asked is None:
+        yield paragraph(_("The sizes of the mechanism are found from what it must do."))
+    else:
+        yield said(_("The sizes of the mechanism are found from what it must do (table {table})."), table=Ref("asked"))
+        yield rows_of(subject, asked, _("What is asked"), "asked", FOUND)
+    source = by_hand(translated(task.outcome.source).rstrip("."))
+    yield paragraph(_("The way of the solution: {source}.").format(source=source))
     yield from _formulas(task)
     found = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
     if found is not None:
-        yield rows_of(subject, found, _("What is found"), digits=FOUND)
-        yield from (paragraph(translated(note)) for note in task.outcome.notes)
+        yield said(_("What is found is in table {table}."), table=Ref("found"))
+        yield rows_of(subject, found, _("What is found"), "found", FOUND)
+        yield from (paragraph(by_hand(translated(note))) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
+    diagrams = [drawn for drawn in task.outcome.drawings if isinstance(drawn, Diagram)]
     for drawn in task.outcome.drawings:
         sentence = _("The construction is drawn in figure {figure}.")
-        if isinstance(drawn, Diagram):
-            sentence = _("How what is found changes with what may be chosen is shown in figure {figure}.")
+        if drawn in diagrams[:1]:
+            sentence = _("How the result depends on what may be chosen is shown in figure {figure}.")
+        elif drawn in diagrams:
+            sentence = _("The same is shown in figure {figure}.")
         yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
     sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
-        yield paragraph(_("On the mechanism with these sizes the same quantities are measured."))
-        yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), digits=FOUND)
+        yield said(
+            _("The same quantities, measured on the mechanism with these sizes, are in table {table}."),
+            table=Ref("measured"),
+        )  # fmt: skip
+        yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), "measured", FOUND)
 
 
 def _formulas(task: Synthesised) -> Iterable[Block]:
@@ -60,6 +71,7 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
     }
     if "k" in values:
         theta = float(theta_of(values["k"]))
+        yield said(_("The angle {theta} follows from the coefficient {k} of change of mean speed:"), theta=THETA, k=K)
         yield Found(_theta(values["k"], theta))
         half = Function("sin", Quotient(Leaf(THETA, theta, angle=True), Constant(2)))
         if task.task == "shaper":

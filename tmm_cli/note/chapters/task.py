@@ -12,6 +12,7 @@ from tmm_cli.linkage import FRAME, Link, Load
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.tables import rows_of
+from tmm_cli.plans.bodies import named
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.results.explain import given
@@ -32,18 +33,21 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield paragraph(problem.description.strip())
     sentence = _("The sizes of the links are given in table {table}.")
     if problem.synthesis is not None:
-        sentence = _("The sizes of the links, those among them that the synthesis finds, are given in table {table}.")
+        sentence = _("The sizes of the links are in table {table}; those that are not given are found by synthesis.")
     yield said(sentence, table=Ref("sizes"))
     yield _sizes(subject)
-    yield said(_("The places of the fixed points and guides are given in table {table}."), table=Ref("fixed"))
+    yield said(_("The coordinates of the fixed points and guides are given in table {table}."), table=Ref("fixed"))
     yield _fixed(subject)
     for driver in linkage.drivers:
         yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
-        sentence = _(
-            "The masses of the links, their moments of inertia and centres of mass are given in table {table}."
-        )
-        yield said(sentence, table=Ref("masses"))
+        yield said(
+            _("Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres of mass "
+              "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
+              "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
+              "the link on which it slides."),
+            m=Symbol("m"), J=Symbol("J", "S"), table=Ref("masses"), sizes=Ref("sizes"),
+        )  # fmt: skip
         yield _masses(subject)
         yield from _gravity(subject)
     if linkage.loads:
@@ -66,7 +70,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
         yield paragraph(_("The weights of the links are not taken into account."))
         return
     yield said(
-        _("The acceleration of gravity is {g} = {size} m/s², its direction {angle} from the x axis."),
+        _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the axis x."),
         g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE),
     )  # fmt: skip
 
@@ -82,7 +86,7 @@ def _sizes(subject: Subject) -> Rows:
 
 
 def _lengths(subject: Subject, link: Link) -> Line:
-    """l_AB = 110 mm, ..."""
+    """l_AB = 110 mm, ...; then the coordinates of points that are not on the axis x."""
     points = list(link.points)
     pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
     found: list[Line] = []
@@ -90,6 +94,10 @@ def _lengths(subject: Subject, link: Link) -> Line:
         length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
         if length > 0:
             found.append(line(Symbol("l", a + b), f" = {subject.value(length, LENGTH, 6)}"))
+    if any(np.any(np.imag(place) != 0) for place in link.points.values()):
+        for point, place in link.points.items():
+            x, y = _place(subject, place)
+            found.append(line(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}"))
     return tuple(part for k, one in enumerate(found) for part in ((", ", *one) if k else one))
 
 
@@ -131,13 +139,13 @@ def _masses(subject: Subject) -> Rows:
         line(Symbol("x", "S"), f", {subject.unit(LENGTH)}"), line(Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
     )  # fmt: skip
     return Rows(
-        _("Masses, moments of inertia and centres of mass (in the axes of each link)"), head, tuple(rows), "masses"
+        _("Masses, moments of inertia, and centres of mass in the axes of each link"), head, tuple(rows), "masses"
     )
 
 
 def _loads(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    head = tuple(line(text) for text in (_("load"), _("on link"), _("acts at"), _("size"), _("acts")))
+    head = tuple(line(text) for text in (_("load"), _("on link"), _("point of action"), _("size"), _("when")))
     return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
 
 
@@ -160,7 +168,8 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
     if load.window is not None:
         first, last = (subject.value(angle, ANGLE, 6) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
-    return line(load.name), line(link_name(load.link)), line(place if load.force else "—"), line(size), line(when)
+    name = named(load.name, "P" if load.force else "M")
+    return line(name), line(link_name(load.link)), line(place if load.force else "—"), line(size), line(when)
 
 
 def _wanted(subject: Subject) -> Iterable[str]:

@@ -30,6 +30,8 @@ def mean(here: Here) -> Iterable[Block]:
         A=CYCLE, M=MOMENT, phi=WHOLE,
     )  # fmt: skip
     text = _("The driving moment is constant:")
+    if steady.moment < 0:
+        text = _("The loads do work, and what the machine drives takes it with a constant moment:")
     if steady.task.motor is not None:
         text = _("The mean moment of the motor, reduced to the driving link:")
     yield said(text)

@@ -37,7 +37,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
         "lever", _("The lever is shown in figure {figure}."),
         _("Zhukovsky lever, {position}").format(position=at_position(subject, k)), k,
     )  # fmt: skip
-    yield said(_("The moments about the pole:"))
+    yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
     if plan.equation.sought is None and found is not None:
         yield Found(found)
@@ -84,7 +84,7 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
     if turned:
         yield said(
-            _("Another couple acts on the lever as {M}, in the ratio of the speed of its link to that of the driving "
+            _("Any other couple acts on the lever as {M}, in the ratio of the speed of its link to that of the driving "
               "link:"),
             M=Symbol("M").primed,
         )  # fmt: skip
@@ -148,9 +148,9 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     if not largest:
         return
     yield said(
-        _("The difference from the force plan, against the largest {name} of all positions; here {plan} is that of the "
-          "force plan:"),
-        name=name, plan=Symbol(name.letter, name.below, "R"),
+        _("The difference {delta} from {plan} of the force plan is in percent of {largest}, the largest size in all "
+          "positions:"),
+        delta=Symbol("Δ"), plan=Symbol(name.letter, name.below, "R"), largest=Symbol(name.letter, "max"),
     )  # fmt: skip
     gap = Function("abs", Sum(((1, Leaf(Symbol(name.letter, name.below, "R"), plan)), (-1, Leaf(name, own)))))
     whole = Product((Quotient(gap, Leaf(Symbol(name.letter, "max"), largest)), Constant(100.0)))

@@ -13,12 +13,13 @@ from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
-from tmm_cli.note.blocks import Block, Found, Line, Rows, line, said
+from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, line, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
 from tmm_cli.note.forces.words import direction, listed, sense, shown
+from tmm_cli.note.kinematics.words import equal
 from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import dot
 
@@ -31,9 +32,9 @@ def weights(results: Results) -> Iterable[Block]:
     if not own or not gravity.value:
         return
     yield said(
-        _("The weight of a link is the product of its mass {m} and the acceleration of free fall {g}; it acts in the "
+        _("The weight {G} of a link is the product of its mass {m} and the acceleration of gravity {g}; it acts in the "
           "centre of mass of the link:"),
-        m=Symbol("m"), g=gravity.symbol,
+        G=lettered("G"), m=Symbol("m"), g=gravity.symbol,
     )  # fmt: skip
     for load in own:
         mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
@@ -47,20 +48,20 @@ def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     if not found:
         return
     explanation = (
-        _("The force of inertia of a link acts in its centre of mass against the acceleration of this point, and the "
-          "couple of the forces of inertia acts against the angular acceleration {epsilon} of the link; {J} is its "
-          "moment of inertia about the centre of mass:")
+        _("The force of inertia {U} of a link acts in its centre of mass against the acceleration of this point, and "
+          "the couple {M} of the forces of inertia acts against the angular acceleration {epsilon} of the link; {J} is "
+          "its moment of inertia about the centre of mass:")
         if explained
         else _("Forces and couples of inertia:")
     )  # fmt: skip
-    yield said(explanation, epsilon=Symbol("ε"), J=Symbol("J", "S"))
+    yield said(explanation, U=lettered("U"), M=lettered("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
     units = {one.unit for one in found}
     largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
     there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
     yield from map(Found, there)
     nothing = [one.name for one in found if one not in there]
     if nothing:
-        yield said(_("There is no acceleration for these, which are zero: {names}."), names=listed(nothing))
+        yield said(_("These are zero, as the accelerations are: {names}."), names=listed(nothing))
 
 
 def _of_inertia(results: Results, load: Applied, k: int) -> Iterable[Substitution]:
@@ -118,13 +119,15 @@ def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     if not given or reactions is None:
         return
     explanation = (
-        _("Friction acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a moment, on a "
-          "guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. Reactions and "
-          "friction are therefore found together, so that each friction is that of the reactions below:")
+        _("Friction {T} acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a "
+          "moment, on "
+          "a guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. The name of "
+          "the pair stands below the line, after it the link on which the friction acts. Reactions and friction are "
+          "found together, so that each friction is that of the reactions below:")
         if explained
         else _("Friction, of the reactions below:")
     )  # fmt: skip
-    yield said(explanation, r=Symbol("r"), f=Symbol("f"))
+    yield said(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
     for one in given:
         yield from _rubbing(results, one, k)
 
@@ -132,10 +135,11 @@ def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
 def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
     assert results.reactions is not None
     reaction = results.reactions.of(given.pair)
-    own = ((reaction.on, f"T{given.pair}"), (reaction.by, f"T{given.pair}'"))  # on the frame it is left out
-    load = next((x for x in results.loads if x.kind == "friction" and (x.link, x.name) in own), None)
-    if load is None:
+    own = [f"T{given.pair}{link}" for link in (reaction.on, reaction.by)]  # on the frame it is left out
+    loads = [x for x in results.loads if x.kind == "friction" and x.name in own]
+    if not loads:
         return
+    load = loads[0]
     f, r = Leaf(Symbol("f", given.pair), given.coefficient), Leaf(Symbol("r", given.pair), given.radius)
     normal = Leaf(reaction_symbol(reaction.by, reaction.on), abs(complex(reaction.force[k])))
     slides = reaction.pair.slide is not None
@@ -143,6 +147,8 @@ def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
     if size:
         factors = (f, normal) if slides else (f, r, normal)
         yield Found(Substitution(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m")))
+        if len(loads) > 1:
+            yield equal(*(load_symbols(one)[0] for one in reversed(loads)))
 
 
 def without_friction(results: Results, k: int) -> Iterable[Block]:
@@ -175,9 +181,12 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             told = f"{shown(subject, abs(moment))} {_('N·m')}"
             rows.append((line(couple), line(load.link), line(told), line(sense(moment))))
     if rows:
-        yield said(_("The table has all that acts on the links in this position but reactions."))
+        yield said(
+            _("Table {table} has all that acts on the links in this position except reactions."),
+            table=Ref(f"loads-{k}"),
+        )
         head = (line(_("acts")), line(_("on link")), line(_("size")), line(_("angle from x, or sense")))
-        yield Rows(caption, head, tuple(rows))
+        yield Rows(caption, head, tuple(rows), f"loads-{k}")
 
 
 def losses(results: Results) -> Iterable[Block]:

@@ -57,8 +57,9 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
     """A sum along a guide."""
     node, found = along_guide(forces)
     yield said(
-        _("The projections of the forces (link {link}) on the guide {guide} give {symbol}; {angles} are the acute "
-          "angles between the forces and the guide:"),
+        _("The sum of the projections of the forces on the guide {guide} (link {link}) gives {symbol}; {angles} "
+          "are the "
+          "acute angles between the forces and the guide:"),
         guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
     )  # fmt: skip
     yield from (Equation(node), Found(found))
@@ -68,23 +69,30 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     """What acts, what is unknown of the outer reactions, and a figure."""
     given = listed(dict.fromkeys(one.symbol for one in part.given))
     if part.forces is None:
-        yield said(_("The driving link is taken last. Known on it: {given}. Sought:"), given=given or _("nothing"))
+        yield said(
+            _("The driving link is taken last. These are known on it: {given}. It is required to find:"),
+            given=given or _("nothing"),
+        )
     elif given:
         yield said(
-            _("The group {group} is taken apart from the mechanism. Known on its links: {given}. Sought:"),
+            _("The group {group} is separated from the mechanism. These are known on its links: {given}. It is "
+              "required "
+              "to find:"),
             group=part.forces.group.title, given=given,
         )  # fmt: skip
     else:
-        yield said(_("The group {group} is taken apart from the mechanism. Sought:"), group=part.forces.group.title)
+        yield said(
+            _("The group {group} is separated from the mechanism. It is required to find:"),
+            group=part.forces.group.title,
+        )
     leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
     drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
     yield Items((*unknown, *drives))
     yield from part.subject.figures(
-        "group-loads",
-        _("All that acts is shown in figure {figure} without scale, each force with its arm, which is to scale."),
+        "group-loads", _("All that acts is shown in figure {figure}: forces without scale, their arms to scale."),
         _("Loads and reactions: {links}; {position}").format(links=links_of(part.links), position=part.caption),
-        part.here.k, part.stem("group-loads"),
+        part.here.k, part.stem("group-loads"), further=_("The other arms are shown in figure {figure}."),
     )  # fmt: skip
 
 
@@ -93,7 +101,9 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     pair, names = reaction.pair, (reaction.by, reaction.on)
     whole = reaction_symbol(*names)
     if not pair.lower:
-        return filled(_("pair {pair}: size of the reaction {R}, whose line is known"), pair=pair.name, R=whole)
+        return filled(
+            _("pair {pair}: size of the reaction {R} along the normal of the profiles"), pair=pair.name, R=whole
+        )
     if pair.slide is not None:
         return filled(
             _("guide {guide}: size and place of the reaction {R}, which is across the guide"), guide=pair.name, R=whole
@@ -163,9 +173,11 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
         yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
     elif unknown:
-        yield said(_("The lengths of its sides times the scale {mu} give what is unknown yet:"), mu=Symbol("μ", "F"))
+        yield said(
+            _("The lengths of its sides times the scale factor {mu} give what is still unknown:"), mu=Symbol("μ", "F")
+        )
     else:
-        yield said(_("All its vectors are known by now; that it closes is a check."))
+        yield said(_("All its vectors are known already; that it closes is a check."))
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Rows, filled, line, paragraph, said
+from tmm_cli.note.blocks import Block, Line, Rows, filled, line, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
-from tmm_cli.results.reports.cycle import signs
 from tmm_cli.tolerances import NO_DIFFERENCE
 from tmm_cli.vectors import Real, Vector
 
@@ -23,7 +23,7 @@ def reactions(subject: Subject) -> Iterable[Block]:
     """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
     found = subject.results.reactions
     assert found is not None
-    yield said(_("The tables have the reactions of all positions, and the angles from the axis x at which they act."))
+    yield said(_("The following tables give the reactions in all positions and their angles with the axis x."))
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
     yield from _sized(subject, _("Reactions in the pairs {names}"), pairs)
     pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
@@ -72,8 +72,16 @@ def balancing(subject: Subject) -> Iterable[Block]:
         head.append(line(_("difference, %")))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     caption = _("What balances the driving link") if not several else _("What balances the driven links")
-    yield paragraph(signs(results.linkage))
+    yield from _signs(subject, of_all)
     yield _table(subject, caption, head, columns)
+
+
+def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
+    """What is positive."""
+    slides = subject.results.linkage.driver.kind == "slide"
+    along = _("{balance} is positive along the guide of the driving link, however this link moves.")
+    turning = _("{balance} is positive counterclockwise, however the driving link turns.")
+    yield said(along if slides else turning, balance=balance)
 
 
 def _table(
@@ -87,7 +95,7 @@ def _table(
     for k, number in enumerate(results.numbers):
         cells = [line(str(number))]
         for place, column in enumerate(columns):
-            value = float(column[k]) if moving[k] else np.nan
+            value = _without_rounding(column, k) if moving[k] else np.nan
             if not np.isfinite(value):
                 text = NONE
             else:
@@ -95,3 +103,9 @@ def _table(
             cells.append(line(text))
         rows.append(tuple(cells))
     return Rows(caption, tuple(head), tuple(rows))
+
+
+def _without_rounding(column: Real, k: int) -> float:
+    """A value of a column; zero where it is nothing but rounding beside the largest of them."""
+    value = float(column[k])
+    return 0.0 if abs(value) <= NOTHING * float(np.nanmax(np.abs(column), initial=0.0)) else value

@@ -9,7 +9,7 @@ import numpy as np
 from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Inline, Line
-from tmm_cli.note.context import Subject
+from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.expression import FIGURES, fixed
 
 
@@ -50,5 +50,5 @@ def at_position(subject: Subject, k: int) -> str:
     """Which position, and where the driver stands."""
     results = subject.results
     assert results.motion is not None
-    place = place_of_driver(results, float(results.motion.q[k]))
+    place = with_degrees(place_of_driver(results, float(results.motion.q[k]), 4))
     return _("position {number}, {place}").format(number=results.numbers[k], place=place)

@@ -40,6 +40,7 @@ from tmm_cli.note.formats.omml import display, omath
 from tmm_cli.note.math import Letter, Words
 from tmm_cli.plans.record import Symbol
 
+WHOLE = 13  # rows of a table that is not parted between pages
 HIGH = 225.0  # mm, of a picture at most
 WIDE = 0.19  # mm, of a letter, a point of its size
 
@@ -47,8 +48,8 @@ WIDE = 0.19  # mm, of a letter, a point of its size
 def docx(note: Note) -> bytes:
     """A file of Word."""
     writer = _Writer(note)
-    for block in note.blocks:
-        writer.write(block)
+    for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
+        writer.write(block, leads=isinstance(following, Equation | Found | Items | Rows))
     file = io.BytesIO()
     writer.document.save(file)
     return file.getvalue()
@@ -64,13 +65,16 @@ class _Writer:
         self.parts = Parts(self.document)
         self.counted: dict[str, int] = {}
 
-    def write(self, block: Block) -> None:
+    def write(self, block: Block, *, leads: bool = False) -> None:
+        """leads: what follows is on the same page as a paragraph's end."""
         match block:
             case Heading(text, level):
                 heading = self.document.add_heading(plain(text), level)
                 self.parts.marked(heading, f"_Toc{self._next('heading')}", 1)
             case Paragraph(line):
-                self._line(self._paragraph(), line)
+                paragraph = self._paragraph()
+                paragraph.paragraph_format.keep_with_next = leads or None
+                self._line(paragraph, line)
             case Items(lines):
                 for line in lines:
                     self._line(self._paragraph("ListBullet"), line)
@@ -116,9 +120,9 @@ class _Writer:
             case Link(key):
                 paragraph.add_run(f"[{self.numbers[key]}]")
             case Symbol():
-                paragraph._p.append(parse_xml(omath(Letter(part))))
+                paragraph._p.append(parse_xml(omath(Letter(part), size)))
             case _:
-                paragraph._p.append(parse_xml(omath(part)))
+                paragraph._p.append(parse_xml(omath(part, size)))
 
     def _mark(self, key: str) -> str:
         """The bookmark of a number that is referred to."""
@@ -163,21 +167,19 @@ class _Writer:
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
         size = 10.0 if len(block.head) <= 6 else 8.5
-        widths = [
-            size * WIDE * (3 + max(map(_letters, column))) for column in zip(block.head, *block.rows, strict=True)
-        ]
-        share = min(1.0, TEXT / sum(widths))
+        widths = _widths(block, size * WIDE)
         for column, wide in zip(table.columns, widths, strict=True):
-            column.width = Mm(share * wide)
+            column.width = Mm(wide)
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
             unbroken(row, head=number == 0)
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
-                cell.width = Mm(share * widths[k])
+                cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
+                paragraph.paragraph_format.keep_with_next = number < len(block.rows) <= WHOLE or None
                 if number and block.numeric[k]:
-                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+                    paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
                 self._line(paragraph, line, size=size, bold=number == 0)
         self._paragraph("TableText")
 
@@ -186,7 +188,8 @@ class _Writer:
         width, height = block.drawing.paper
         share = min(1.0, TEXT / width, HIGH / height)
         self.parts.picture(paragraph, block.drawing, share, block.caption)
-        self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+        caption = self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+        caption.paragraph_format.space_after = Pt(12)
 
     def _contents(self) -> None:
         self._paragraph("ContentsHeading").add_run(_("Contents"))
@@ -194,6 +197,24 @@ class _Writer:
 
 
 def _letters(line: Line) -> float:
-    """About how wide a cell is, in letters."""
-    return sum(width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
-               for part in line if not isinstance(part, Ref | Link))  # fmt: skip
+    """About how wide a cell is, in letters; a capital is wider than a small one."""
+    capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
+    return 0.3 * capitals + sum(
+        width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
+        for part in line if not isinstance(part, Ref | Link)
+    )  # fmt: skip
+
+
+def _widths(block: Rows, letter: float) -> list[float]:
+    """Of columns, mm: as wide as their cells, or less where the page is not so wide, but no word is broken."""
+    columns = list(zip(block.head, *block.rows, strict=True))
+    whole = [letter * (3 + max(map(_letters, column))) for column in columns]
+    least = [min(wide, letter * (3 + max(map(_longest, column)))) for column, wide in zip(columns, whole, strict=True)]
+    room = (TEXT - sum(least)) / (sum(whole) - sum(least) or 1.0)
+    return [low + max(0.0, min(1.0, room)) * (wide - low) for low, wide in zip(least, whole, strict=True)]
+
+
+def _longest(line: Line) -> float:
+    """The longest word of a cell, in letters."""
+    words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
+    return max([_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0)

@@ -75,7 +75,8 @@ def _styles(document: Any, language: str) -> None:
     picture = styles["Picture"].paragraph_format
     picture.alignment, picture.keep_with_next = WD_ALIGN_PARAGRAPH.CENTER, True
     table = styles["Table Text"]
-    table.font.size, table.paragraph_format.space_after = Pt(10), Pt(0)
+    table.font.size = Pt(10)
+    table.paragraph_format.space_before = table.paragraph_format.space_after = Pt(1.5)
     _font(styles["Contents Heading"], 16, bold=True)
     for level in (1, 2):
         entry = styles[f"TOC {level}"].paragraph_format

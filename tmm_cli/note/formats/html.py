@@ -36,6 +36,7 @@ from tmm_cli.note.math import Letter, Node
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
+STOPS = ".,;:)"
 WHOLE = 13  # rows of a table that is not parted between pages
 
 
@@ -101,8 +102,13 @@ class Writer:
                 return f'<ol class="sources">{listed}</ol>'
 
     def line(self, line: Line) -> str:
-        """Texts and formulas."""
-        return "".join(self.inline(part) for part in line)
+        """Texts and formulas; a stop stays on the line of the formula before it."""
+        texts = [self.inline(part) for part in line]
+        for k, part in enumerate(line[1:], 1):
+            if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
+                texts[k - 1] = f'<span class="joined">{texts[k - 1]}{part[0]}</span>'
+                texts[k] = data(part[1:])
+        return "".join(texts)
 
     def inline(self, part: Inline) -> str:
         """One of these."""

@@ -13,6 +13,11 @@ SPACES = (
     'xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"'
 )
 FONT = '<w:rPr><w:rFonts w:ascii="Cambria Math" w:hAnsi="Cambria Math"/></w:rPr>'
+PLAIN, UPRIGHT, ITALIC = (
+    '<m:rPr><m:sty m:val="p"/></m:rPr>',
+    "<m:rPr><m:nor/></m:rPr>",
+    "",
+)  # of figures, words, letters
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE000), 65534, 65535), "�")
 
 
@@ -21,9 +26,12 @@ def data(text: str) -> str:
     return escape(text.translate(NOT_XML))
 
 
-def omath(node: Node) -> str:
-    """A formula in a line of text."""
-    return f"<m:oMath {SPACES}>{_of(node)}</m:oMath>"
+def omath(node: Node, size: float = 0.0) -> str:
+    """A formula in a line of text. size: of its letters, points, where it is not that of the text."""
+    shown = _of(node)
+    if size:
+        shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
+    return f"<m:oMath {SPACES}>{shown}</m:oMath>"
 
 
 def display(node: Node) -> list[str]:
@@ -41,8 +49,10 @@ def _begun(line: Node) -> Node:
 
 def _of(node: Node) -> str:
     match node:
-        case Number(text) | Sign(text) | Words(text):
+        case Number(text) | Sign(text):
             return _run(text)
+        case Words(text):
+            return _run(text, UPRIGHT)
         case Letter(symbol, vector, lines):
             shown = _symbol(symbol, vector)
             for _ in range(lines):
@@ -56,18 +66,19 @@ def _of(node: Node) -> str:
             return f"<m:sSup><m:e>{_of(base)}</m:e><m:sup>{_of(exponent)}</m:sup></m:sSup>"
         case Root(of):
             return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_of(of)}</m:e></m:rad>'
-        case Brackets(inside, opens, closes):
-            marks = ("" if opens else '<m:begChr m:val=""/>') + ("" if closes else '<m:endChr m:val=""/>')
+        case Brackets(inside, opens, closes, bars):
+            own = {"begChr": "|" if bars else "(" if opens else "", "endChr": "|" if bars else ")" if closes else ""}
+            marks = "".join(f'<m:{kind} m:val="{mark}"/>' for kind, mark in own.items() if mark not in ("(", ")"))
             return f"<m:d>{f'<m:dPr>{marks}</m:dPr>' if marks else ''}<m:e>{_of(inside)}</m:e></m:d>"
 
 
 def _symbol(symbol: Symbol, vector: bool) -> str:
-    letter = _run(symbol.letter, upright=False)
+    letter = _run(symbol.letter, ITALIC)
     if vector:
         letter = _bar(letter, "top")
     base = f"<m:e>{letter}</m:e>"
-    below = f"<m:sub>{_run(symbol.below)}</m:sub>" if symbol.below else ""
-    above = f"<m:sup>{_run(symbol.above, upright=False)}</m:sup>" if symbol.above else ""
+    below = f"<m:sub>{_run(symbol.below, UPRIGHT)}</m:sub>" if symbol.below else ""
+    above = f"<m:sup>{_run(symbol.above, ITALIC)}</m:sup>" if symbol.above else ""
     if below and above:
         return f"<m:sSubSup>{base}{below}{above}</m:sSubSup>"
     if below:
@@ -79,6 +90,5 @@ def _bar(inside: str, place: str) -> str:
     return f'<m:bar><m:barPr><m:pos m:val="{place}"/></m:barPr><m:e>{inside}</m:e></m:bar>'
 
 
-def _run(text: str, *, upright: bool = True) -> str:
-    style = '<m:rPr><m:sty m:val="p"/></m:rPr>' if upright else ""
+def _run(text: str, style: str = PLAIN) -> str:
     return f'<m:r>{style}{FONT}<m:t xml:space="preserve">{data(text)}</m:t></m:r>'

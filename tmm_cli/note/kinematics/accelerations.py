@@ -57,13 +57,16 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
                 _("All points of link {link} have the acceleration {a} of the drive."), link=step.links[0], a=a.symbol
             )
         else:
-            text = _("The driving link {link} moves evenly, so that {a} = 0.")
+            text = _("The driving link {link} moves uniformly, so that {a} = 0.")
             yield said(text, link=step.links[0], a=a.symbol)
     turned = further(step)
     if turned and here.first:
-        even = _("Driving link {link} turns evenly: the accelerations of its points are normal ones, towards its axis.")
+        even = _(
+            "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
+        )
         uneven = _(
-            "Driving link {link} turns unevenly: the accelerations of its points have normal and tangential parts."
+            "Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
+            "tangential parts."
         )
         yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
     for about in turned:
@@ -188,12 +191,13 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     for spot in points:
         yield here.a.read(here.a.of(spot))
     yield from _rates(here, together)
-    yield from turning_as_one(step, here.epsilon, "ε")
+    yield from turning_as_one(step, here.epsilon, "ε", explained=here.first and not step.ratios)
     found = {*known, *points_of(step)}
     for about in further(step):
-        if here.first and not about.base.fixed:
+        if here.first:
             text = _("Point {point} is one of link {link}, whose rotation is known:")
             yield said(text, point=name_of(about.point), link=about.link)
+        if here.first and not about.base.fixed:
             yield from equations(Step((), ()), [about], "a", found - {about.point.name}, here.omega)
         yield from _parts(here, about)
         yield from _whole(here, about)

@@ -166,8 +166,8 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
     yield said(
-        _("The output, {output}, is in its extreme positions at {phi} = {places}; between them it goes through "
-          "{size}."),
+        _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = {places}; "
+          "between them it goes through {size}."),
         output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
     )  # fmt: skip
     if not np.isfinite(strokes.k):
@@ -176,8 +176,8 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     idle = sum(s.length for s in strokes.strokes if not s.working)
     yield said(
         _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; the "
-          "coefficient of change of mean speed is"),
-        working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
+          "coefficient of change of mean speed is {k}:"),
+        k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
     )  # fmt: skip
     angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
     yield Found(Substitution(Symbol("k"), Quotient(*angles), strokes.k))
@@ -206,7 +206,7 @@ def place_here(here: Here) -> Block:
     """Where the driving link is in a position."""
     driver, q = here.motion.linkage.driver, float(here.motion.q[here.k])
     if driver.kind == "turn":
-        text = _("In position {number} the driving link is at {phi} = {angle}°.")
+        text = _("In position {number} the driving link is at the angle {phi} = {angle}° to the axis x.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
         return said(text, number=str(here.subject.results.numbers[here.k]), phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the driving link is at {run} = {place} m.")

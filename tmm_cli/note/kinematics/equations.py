@@ -37,8 +37,9 @@ def equations(
         base = Letter(Symbol(letter, equation.base.name), True, _lines(equation.base, known, lined))
         point = Letter(Symbol(letter, equation.point.name), True, _lines(equation.point, known, lined))
         yield Equation(row(point, "=", base, *(node for term, __ in terms for node in ("+", term))))
-        if equation.base.fixed:
-            told[row(vector(Symbol(letter, equation.base.name)), "=", Number("0"))] = None
+        for spot in (equation.base, equation.point):
+            if spot.fixed:
+                told[row(vector(Symbol(letter, spot.name)), "=", Number("0"))] = None
         told |= dict.fromkeys(direction for __, direction in terms)
     yield from _in_lines(list(told))
 

@@ -88,23 +88,29 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
         over, under = (row(symbol, "−", carrier) for symbol in symbols)
         yield said(
             _(
-                "The teeth of links {i} and {j} are in mesh; their axes are on carrier {carrier}. By Willis' method "
-                "all links are turned back with the carrier; then the ratio of the wheels is (positive "
-                "counterclockwise)"
+                "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier "
+                "{carrier}. By "
+                "Willis' method all links are given the carrier's rotation backwards, so that it rests; then the ratio "
+                "of the wheels is (positive counterclockwise)"
             ),
-            i=mesh.i, j=mesh.j, carrier=mesh.carrier,
+            i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=Symbol("r", mesh.i), rj=Symbol("r", mesh.j),
         )  # fmt: skip
     else:
         over, under = symbols
         yield said(
-            _("The teeth of links {i} and {j} are in mesh; their ratio is (positive counterclockwise)"),
+            _(
+                "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive "
+                "counterclockwise)"
+            ),
             i=mesh.i,
             j=mesh.j,
+            ri=Symbol("r", mesh.i),
+            rj=Symbol("r", mesh.j),
         )
     yield Equation(row(Letter(_ratio(mesh)), "=", Fraction(over, under)))
     outer = mesh.ratio < 0
     yield Found(Substitution(_ratio(mesh), Sum(((-1, radii),)) if outer else radii, mesh.ratio))
-    yield said(_("The angular velocity that is sought follows from this:"))
+    yield said(_("The angular velocity sought follows from this:"))
 
 
 def _ratio(mesh: Mesh) -> Symbol:

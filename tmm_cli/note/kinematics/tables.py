@@ -10,12 +10,15 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import FIGURES, fixed
 from tmm_cli.note.kinematics.driver import output
 from tmm_cli.note.kinematics.on_paper import unit
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.cycle import output_motion, states
 from tmm_cli.tolerances import NO_VECTOR
 from tmm_cli.vectors import Real
+
+BESIDE = 6  # columns of what links turn with in one table
 
 
 @dataclass(frozen=True)
@@ -42,19 +45,7 @@ def tables(subject: Subject) -> Iterable[Block]:
         key = f"output-{link}"
         yield said(_("The motion of the output in all positions is in table {table}."), table=Ref(key))
         yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
-    for letter, what, caption, sentence in (
-        (
-            "ω", "omega", _("Angular velocities of the links"),
-            _("The angular velocities of the links are in table {table}."),
-        ), (
-            "ε", "epsilon", _("Angular accelerations of the links"),
-            _("The angular accelerations of the links are in table {table}."),
-        ),
-    ):  # fmt: skip
-        columns = _rates(subject, letter, what)
-        if columns:
-            yield said(sentence, table=Ref(what))
-            yield _table(subject, caption, columns, what)
+    yield from _turning(subject)
     for stem, drawing in subject.drawings("diagrams").items():
         if stem.startswith("diagrams"):
             yield said(_("The diagrams of motion are shown in figure {figure}."), figure=Ref(stem))
@@ -62,6 +53,23 @@ def tables(subject: Subject) -> Iterable[Block]:
         elif stem.startswith("pressure"):
             yield said(_("The pressure angles are shown in figure {figure}."), figure=Ref(stem))
             yield Figure(_("Pressure angles over the cycle"), drawing, stem)
+
+
+def _turning(subject: Subject) -> Iterable[Block]:
+    """Of the links, in one table if it is not too wide."""
+    velocities, accelerations = _rates(subject, "ω", "omega"), _rates(subject, "ε", "epsilon")
+    if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
+        text = _("The angular velocities and accelerations of the links are in table {table}.")
+        yield said(text, table=Ref("rates"))
+        caption = _("Angular velocities and accelerations of the links")
+        yield _table(subject, caption, [*velocities, *accelerations], "rates")
+        return
+    if velocities:
+        yield said(_("The angular velocities of the links are in table {table}."), table=Ref("omega"))
+        yield _table(subject, _("Angular velocities of the links"), velocities, "omega")
+    if accelerations:
+        yield said(_("The angular accelerations of the links are in table {table}."), table=Ref("epsilon"))
+        yield _table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
 
 
 def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
@@ -110,11 +118,11 @@ def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) 
 
 
 def _places(subject: Subject) -> Iterable[Column]:
-    """Of the drivers; of a crank within a turn."""
+    """Of the drivers; of a crank within a turn, or within the turns of a cycle of loads."""
     results = subject.results
     motion = results.motion
     assert motion is not None
-    several = bool(results.linkage.others)
+    several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
     for driver in results.linkage.drivers:
         value = np.asarray(motion.drives[driver.link].value, float)
         link = driver.link if several else ""
@@ -122,8 +130,8 @@ def _places(subject: Subject) -> Iterable[Column]:
             yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)
             continue
         full = results.driver_range is not None and results.driver_range.full
-        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, 2 * np.pi) if full else value))
+        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
 
 
 def _cell(subject: Subject, value: float) -> str:
-    return subject.text(value) if np.isfinite(value) else "–"
+    return subject.figures_of(fixed(value, FIGURES)) if np.isfinite(value) else "–"

@@ -16,6 +16,7 @@ from tmm_cli.note.kinematics.words import (
     listed,
     name_of,
     not_on_paper,
+    not_turning,
     points_of,
     remaining,
     sense,
@@ -46,10 +47,13 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
     turned = further(step)
     if here.first and turned:
-        one = _("The velocity of point {points} of the driving link is across {line}, in the sense of its rotation:")
-        several = _(
-            "The velocities of points {points} of the driving link are across their radii, in the sense of its "
+        one = _(
+            "The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
             "rotation:"
+        )
+        several = _(
+            "The velocities of points {points} of the driving link are perpendicular to their radii, in the sense of "
+            "its rotation:"
         )
         line = turned[0].base.at + turned[0].point.at
         yield said(one if len(turned) == 1 else several, points=listed(about.point for about in turned), line=line)
@@ -114,6 +118,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         text = none if not points else one if len(points) == 1 else several
         yield said(text, group=title, points=listed(points))
         yield from equations(step, together, "v", found, here.omega)
+        yield from not_turning(together)
         yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))
@@ -121,7 +126,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
     yield from _rates(here, together)
-    yield from turning_as_one(step, here.omega, "ω")
+    yield from turning_as_one(step, here.omega, "ω", explained=here.first and not step.ratios)
     for about in further(step):
         yield from _known_about(here, about, found)
 
@@ -136,6 +141,9 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
         yield _turned(here, about)
         yield here.v.read(here.v.of(about.point))
     else:
+        if here.first:
+            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            yield said(text, point=name_of(about.point), link=about.link)
         yield _turned(here, about)
 
 

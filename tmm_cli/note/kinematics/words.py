@@ -71,10 +71,12 @@ def equal(*symbols: Symbol) -> Block:
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
 
 
-def turning_as_one(step: Step, rates: Collection[str], letter: str) -> Iterable[Block]:
-    """Links that turn as others do."""
+def turning_as_one(step: Step, rates: Collection[str], letter: str, *, explained: bool) -> Iterable[Block]:
+    """Links that turn as others do. explained: that they do."""
     for links in step.same:
         if links[0] in rates:
+            if explained:
+                yield said(_("Links {links} turn as one:"), links=", ".join(links))
             yield equal(*(Symbol(letter, link) for link in links))
 
 
@@ -98,12 +100,18 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
         yield plan.read(vector) if twin is None else equal(vector.symbol, plan.of(twin).symbol)
 
 
+def not_turning(chosen: Iterable[VectorEquation]) -> Iterable[Block]:
+    """Of links all of whose points move as one."""
+    for link in dict.fromkeys(e.link for e in chosen if isinstance(e, About) and e.idle):
+        yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
+
+
 def not_on_paper() -> Block:
     """Of a group that no polygon solves."""
     return said(
         _(
-            "More magnitudes are unknown in these equations than a polygon of vectors gives, and none of them is "
+            "These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
             "found before the others. The equations of the group were solved together, numerically; the plan shows "
-            "their solution."
+            "their solution:"
         )
     )

@@ -28,6 +28,8 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("energy", "energy", ("energy", "friction")),
     ("dynamics", "running", ("dynamics", "law-of-motion")),
     ("balancing", "balancing", ("balancing", "shaking")),
+    ("centres", "centres", ("centres", "advantage")),
+    ("extremes", "extremes", ("extremes",)),
     ("assemblies", "assemblies", ()),
     ("checks", "lever", ("checks",)),
 )

@@ -27,7 +27,7 @@ def _place(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
     at = check.at if abs(check.at) > SAME_PLACE else 0.0
-    return with_unit(results.problem.units, at, place_dimension(results.linkage.driver.kind))
+    return with_unit(results.problem.units, at, place_dimension(results.linkage.driver.kind), 4)
 
 
 def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
@@ -40,12 +40,12 @@ def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
                 runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier
             )
             found = _("{far} left before {point}") if check.holds else _("{far} beyond {point}")
-            far = with_unit(units, abs(check.value), LENGTH)
+            far = with_unit(units, abs(check.value), LENGTH, 4)
             return _("stone in its slot"), slot, found.format(far=far, point=check.detail), _("its ends")
         case "pressure":
             link = _("link {link} of {group}").format(link=check.of, group=check.detail)
-            most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE))
-            return _("pressure angle"), link, with_unit(units, check.value, ANGLE), most
+            most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE, 4))
+            return _("pressure angle"), link, with_unit(units, check.value, ANGLE, 4), most
         case "load":
             found = _("one way")
             if not check.holds:

@@ -50,9 +50,9 @@ def driver_columns(results: Results) -> list[Column]:
 
 
 def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
-    """A driver's places, within a turn where it turns round and round."""
+    """A driver's places, within a turn where it turns round and round, or within the turns of a cycle of loads."""
     full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
-    return Column(name, np.mod(q, 2 * pi(q)) if full else q, place_dimension(driver.kind))
+    return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, place_dimension(driver.kind))
 
 
 def tables(results: Results) -> Iterable[Table]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.bodies import load_names
 from tmm_cli.quantities import FORCE, LOAD, MOMENT, REACTION, columns
 from tmm_cli.results.reports.cycle import driver_columns, signs
 from tmm_cli.results.reports.long import long_table
@@ -44,7 +44,7 @@ def tables(results: Results) -> Iterable[Table]:
         yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
-        words = {N_("link"): [x.link for x in loads], N_("name"): [load_symbols(x)[0].plain for x in loads]}
+        words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
         title = _("Loads: weights G, inertia forces U and couples M, and those of the task")
         yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
     yield _balances(results)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.lever import Item
 from tmm_cli.language import N_, _
-from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.bodies import load_names
 from tmm_cli.quantities import LEVER_COUPLE, LEVER_FORCE, LEVER_MOMENT, NamedValues, columns
 from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Table
@@ -23,8 +23,8 @@ def tables(results: Results) -> Iterable[Table]:
     assert results.reactions is not None
     own: dict[str, str] = {}  # letters of the course
     for load in results.reactions.applied:
-        force, couple = load_symbols(load)
-        own |= {load.couple_name: couple.plain, load.name: force.plain}
+        force, couple = load_names(load)
+        own |= {load.couple_name: couple, load.name: force}
     words = {N_("name"): [own[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
     note = _(
         "Arms are those of the lever drawn for a crank that turns counterclockwise with 1 rad/s, 1 m for 1 m/s; "
