@@ -76,6 +76,11 @@ def test_plans_end_in_the_velocities_and_accelerations_of_the_points():
         assert {"p", "π"} & set(every) and len(every) == len(set(every))  # each once, the pole too
 
 
+def test_a_diagram_is_zero_at_the_ends_of_a_stroke_and_not_nearly_zero():
+    velocity = data_of(page_of("crank-slider"))["charts"][1]["courses"][0]["values"]
+    assert velocity[0] == velocity[-1] == 0 and max(velocity) > 1
+
+
 def test_a_single_position_of_a_mechanism_that_does_not_turn_is_no_motion():
     text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M)

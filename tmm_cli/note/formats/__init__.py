@@ -31,6 +31,7 @@ def formats_of(text: str) -> list[str]:
             )  # fmt: skip
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(
-            _("DOCX is written by python-docx, which is not installed"), allowed="html; or: pip install 'tmm-cli[note]'"
+            _("DOCX is written by python-docx, which is not installed"),
+            allowed=_("html; or: pip install 'tmm-cli[note]'"),
         )
     return wanted
