@@ -221,3 +221,14 @@ def test_what_was_understood_of_loads_is_told():
 )  # fmt: skip
 def test_what_cannot_be_is_refused_with_its_place(tail, told):
     assert refused(tail) == told
+
+
+def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
+    own = "  2: {points: [A, B], length: 150, also: {S2: [75, 10]}}"
+    machine = MACHINE.replace("  2: {points: [A, B], length: 150}", own)
+    mass = "masses: {{2: {{mass: 1 kg, inertia: 0.01, centre: {}}}}}\n"
+    point = complex(solve(problem_of(read_text(machine + mass.format("S2"), "x.yaml"))).linkage.links["2"].centre)
+    assert point == pytest.approx(0.075 + 0.01j)
+    with pytest.raises(ProblemError) as refusal:
+        problem_of(read_text(machine + mass.format("[75, 0]"), "x.yaml"))
+    assert "this centre of mass is called S2, and so is another point" in str(refusal.value)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
 from higher import PROBLEMS
+from models import PROBLEMS as FILES
 from models import results_of
 
 from tmm_cli import solve
@@ -97,3 +99,15 @@ def test_a_dwell_within_the_rise_makes_one_stroke_of_it_and_one_at_the_top_is_to
 def test_the_useful_resistance_of_a_working_stroke_does_not_act_in_its_dwell():
     strokes = solve(build(read_text(PROBLEMS["flat follower"], "cam.yaml")), "kinematics").strokes
     assert strokes.share(np.radians([10, 110, 130, 170, 190, 300, 350]), 1).tolist() == [True] * 2 + [False] * 5
+
+
+def test_a_stroke_over_places_asked_for_on_both_sides_of_a_gap_is_that_of_both_ways():
+    text = (FILES / "crank-slider.yaml").read_text(encoding="utf-8").replace("l: 220", "l: 50")
+    text = text.replace("at: 60 deg, B: [245, 0]", "at: 20 deg, B: [100, 0]").replace(
+        "inertia: 0.006", "inertia: 0.0001"
+    )
+    text = re.sub(r"^positions: .*$", "positions: {at: [0, 20, 90, 180]}", text, flags=re.M)
+    (travel,) = solve(build(read_text(text, "two-ways"))).travels
+    assert travel.high == pytest.approx(0.11)  # at 0 deg, 60 + 50 mm
+    # dead where the rod is across the guide: to where it is known, in steps of the driver
+    assert -math.sqrt(0.06**2 - 0.05**2) <= travel.low < -0.03

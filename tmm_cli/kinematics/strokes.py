@@ -168,11 +168,13 @@ def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link
     q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
     moved = link_states(linkage, kernels, q, 1)  # all groups: it goes only where the whole linkage can
     run, slope = output_place(moved, link), output_slope(moved, link)
-    q, run, slope = q[moved.placed], run[moved.placed], slope[moved.placed]
+    before, after = moved.placed[:-1], moved.placed[1:]
+    turning = (before & after & (slope[:-1] * slope[1:] < 0))[before]  # not over a gap between two ways of the driver
+    q, run = q[moved.placed], run[moved.placed]
     if len(q) < 2:
         return None
     run = np.unwrap(run) if curve.swings else run
-    change = np.flatnonzero(slope[:-1] * slope[1:] < 0)
+    change = np.flatnonzero(turning)
     if change.size:
         ends = roots(curve.slope, q[change], q[change + 1])
         there = curve.place(ends)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import string
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.note.expression import Substitution
@@ -77,7 +78,7 @@ class Rows:
     rows: tuple[tuple[Line, ...], ...]
     key: str = ""
 
-    @property
+    @cached_property
     def numeric(self) -> list[bool]:
         """Of each column, whether its cells have figures only or are empty."""
         return [all(_is_number(row[k]) for row in self.rows) for k in range(len(self.head))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -31,6 +32,7 @@ def with_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Li
         part = Part(given, ("masses", name), values)
         values.known(name, linkage.moving, part.path, "link", key=True)
         links[name] = _with_points(_with_mass(links[name], part, gravity), part)
+        _check_centre(links, name, part)
     return replace(linkage, links=links, gravity=gravity)
 
 
@@ -67,6 +69,17 @@ def _with_points(link: Link, part: Part) -> Link:
     return replace(
         link, mass=mass, centre=centre, inertia=link.inertia + sum(m * square(at - centre) for m, at in bodies)
     )
+
+
+def _check_centre(links: Mapping[str, Link], name: str, part: Part) -> None:
+    """S3 is the centre of mass of link 3 in tables, plans and formulas; a point of this name is there too."""
+    point, own = f"S{name}", links[name]
+    of = [link for link in links if point in links[link].points]
+    if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_PLACE):
+        raise part.refusal(
+            "centre", _("this centre of mass is called {point}, and so is another point").format(point=point),
+            allowed=_("centre: {point}, or another name of the point").format(point=point),
+        )  # fmt: skip
 
 
 def _gravity(given: Any, values: ValueReader) -> complex:
