@@ -87,11 +87,16 @@ def longest_for(usual: float) -> float:
 
 def fits(width: float, height: float) -> bool:
     """Whether there is room on the sheet for what is so large (mm) and has a heading, if it is written."""
+    return excess(width, height) <= 1.0
+
+
+def excess(width: float, height: float) -> float:
+    """How many times what is so large is larger than the room that there is for it."""
     space = _SPACE.get()
     if space is None:
-        return True
+        return 0.0
     heading = MOST * LINE * HEAD + AIR if space.written else 0.0
-    return width <= space.most[0] and height + heading <= space.most[1]
+    return max(width / space.most[0], (height + heading) / space.most[1])
 
 
 def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.drawing import POINT
 from tmm_cli.draw.paper.ground import Ground
-from tmm_cli.draw.paper.picture import fits, longest_for, on_large_sheet
+from tmm_cli.draw.paper.picture import excess, fits, longest_for, on_large_sheet
 from tmm_cli.draw.paper.room import Room
 from tmm_cli.draw.paper.script import Words, width, wrapped
 from tmm_cli.draw.paper.sheet import DARK, GREY_TEXT, THIN, Sheet
@@ -166,7 +166,10 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
 
     sizes = [(wide, up + 2 * PAD + height(wide)) for wide in (max(wide, across + 2 * PAD) for wide in WIDTHS)]
     found = [(wide, high) for wide, high in sizes if fits(wide, high + BEYOND)]
-    wide, high = min(found, key=lambda size: size[0] * size[1]) if found else min(sizes, key=lambda size: size[1])
+    if found:
+        wide, high = min(found, key=lambda size: size[0] * size[1])
+    else:
+        wide, high = min(sizes, key=lambda size: (excess(size[0], size[1] + BEYOND), size[1]))
     paper = complex(wide, high) + low - edge
     return _Placed((paper.real, paper.imag), mu, middle, written)
 
