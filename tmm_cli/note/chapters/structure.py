@@ -39,16 +39,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     told = [
-        (
-            name,
-            linkage.links[name].label or _(ROLES[roles[name]]),
-            _motion(linkage, name),
-            ", ".join(linkage.links[name].points),
-        )
+        (name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
         for name in subject.results.structure.links
     ]
     rows = tuple(tuple(line(text) for text in row) for row in told)
-    head = tuple(line(text) for text in (_("link"), _("name"), _("motion"), _("points")))
+    head = tuple(line(text) for text in (_("link"), _("kind"), _("motion"), _("points")))
     return Rows(_("Moving links"), head, rows, "links")
 
 
