@@ -120,6 +120,11 @@ def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
     assert law.driving(x) == pytest.approx(motor.moment(law.speed(x))[0], rel=1e-10)
 
 
+def test_a_motor_far_too_strong_holds_its_speed():
+    law = with_motor(machine(), 0.0, Kloss.rated(12.0, 11.6, 6e4, 2.2), 11.0)
+    assert law.speed(np.linspace(0, 6, 100)) == pytest.approx(12.0, rel=1e-3)
+
+
 def test_a_flywheel_is_found_for_a_motor_too():
     motor = Kloss.rated(12.0, 11.6, 60.0, 2.2)
     found = steady(machine(), SteadyTask(11.0, 0.05, motor))

@@ -11,6 +11,9 @@ from tmm_cli.dynamics.reduced import reduced
 from tmm_cli.dynamics.run import acceleration, run
 from tmm_cli.dynamics.task import Profile, RunTask
 from tmm_cli.errors import StandstillError
+from tmm_cli.library import problem_of
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -92,3 +95,10 @@ def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
     motor = found.task.motor.moment(np.abs(results.motion.rate))[0]
     speeding = found.task.flywheel * results.motion.acceleration
     assert results.reactions.balance.moment == pytest.approx(motor - speeding, rel=1e-7, abs=1e-4)
+
+
+def test_a_run_of_very_many_turns_is_refused():
+    text = (PROBLEMS / "press-single-run.yaml").read_text().replace("from: -90, to: 270, s", "from: -90000, to: 270, s")
+    with pytest.raises(ProblemError) as refused:
+        problem_of(read_text(text, "press.yaml"))
+    assert str(refused.value).split("\n", 1)[1] == "  found:   -90000\n  allowed: within 20 turns of the x axis"

@@ -83,11 +83,11 @@ def with_motor(machine: Reduced, flywheel: float, motor: Motor, guess: float) ->
     """
     edges = machine.moment.edges
     begin = (flywheel + float(machine.inertia(np.zeros(1))[0])) * guess**2 / 2
-    for _ in range(ROUNDS):
+    for left in reversed(range(ROUNDS)):
         begin, values = _periodic(_Cycle.of(machine, flywheel, motor, edges), begin)
         tails = np.abs(FIT[-2:] @ values).max(axis=0)
         rough = tails > TAIL * float(np.max(values))
-        if not rough.any():
+        if not (rough.any() and left):
             break
         edges = np.sort(np.concatenate([edges, (edges[:-1] + edges[1:])[rough] / 2]))
     return of_energy(machine, flywheel, Curve(edges, FIT @ values), motor)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 from tmm_cli.dynamics.motors import Kloss, Linear, Motor
@@ -25,6 +26,8 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )  # fmt: skip
+
+MOST_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
 def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
@@ -57,6 +60,12 @@ def _run(whole: Part, part: Part, driver: Driver, motor: Motor | None, flywheel:
     turns = driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     first, last = (None if getattr(given, key) is None else part.number(key, place) for key in ("from_", "to"))
+    for key, end in (("from_", first), ("to", last)):
+        if turns and end is not None and abs(end) > MOST_TURNS * 2 * math.pi:
+            raise part.refusal(
+                key, _("a run is of few turns"), str(getattr(given, key)),
+                _("within {most} turns of the x axis").format(most=MOST_TURNS),
+            )  # fmt: skip
     if first is not None and first == last:
         raise part.refusal("to", _("a run ends elsewhere than it begins"), str(given.to))
     drive = None
