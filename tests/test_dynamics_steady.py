@@ -121,7 +121,7 @@ def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
 
 
 def test_a_motor_far_too_strong_holds_its_speed():
-    law = with_motor(machine(), 0.0, Kloss.rated(12.0, 11.6, 6e4, 2.2), 11.0)
+    law = with_motor(machine(), 0.0, Kloss.rated(12.0, 11.6, 6e3, 2.2), 11.9)
     assert law.speed(np.linspace(0, 6, 100)) == pytest.approx(12.0, rel=1e-3)
 
 

@@ -21,6 +21,7 @@ from tmm_cli.vectors import Real
 
 STEPS = 60  # of Newton's method, at most
 ROUNDS = 8  # of halving panels on which the energy is no polynomial yet
+FINER = 4  # of them, where a machine seems to come to rest
 TAIL = 1e-13  # of the largest energy: its last coefficients are less
 
 
@@ -84,7 +85,13 @@ def with_motor(machine: Reduced, flywheel: float, motor: Motor, guess: float) ->
     edges = machine.moment.edges
     begin = (flywheel + float(machine.inertia(np.zeros(1))[0])) * guess**2 / 2
     for left in reversed(range(ROUNDS)):
-        begin, values = _periodic(_Cycle.of(machine, flywheel, motor, edges), begin)
+        try:
+            begin, values = _periodic(_Cycle.of(machine, flywheel, motor, edges), begin)
+        except StandstillError:  # or a motor so strong that the energy is no polynomial on a panel
+            if left < ROUNDS - FINER:
+                raise
+            edges = np.sort(np.concatenate([edges, (edges[:-1] + edges[1:]) / 2]))
+            continue
         tails = np.abs(FIT[-2:] @ values).max(axis=0)
         rough = tails > TAIL * float(np.max(values))
         if not (rough.any() and left):
