@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from multibody import compared
 from scipy.integrate import quad, solve_ivp
 
 from tmm_cli import load, solve
@@ -22,6 +23,8 @@ from tmm_cli.dynamics.task import SteadyTask
 from tmm_cli.errors import NoFlywheelError, StandstillError
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -193,3 +196,21 @@ def test_powers_balance_in_every_position_of_the_law_of_motion():
     loads = applied(motion, results.strokes)
     balance = react(motion, results.structure, loads).balance.moment
     assert sense * balance == pytest.approx(found.moment - law.flywheel * law.acceleration(x), rel=1e-10, abs=1e-9)
+
+
+@pytest.mark.parametrize("k", [2, 9])
+def test_reactions_under_the_law_of_motion_agree_with_lagrange_multipliers(k):
+    """In 60 digits, with omega and epsilon of the position as the law has them."""
+    results = solved("shaper-motor")
+    motion, driver = results.motion, results.linkage.driver
+    rate, acceleration = driver.sense * float(motion.rate[k]), driver.sense * float(motion.acceleration[k])
+    assert acceleration != 0
+    linkage = replace(results.linkage, driver=replace(driver, rate=rate, acceleration=acceleration))
+    q = motion.q[k : k + 1]
+    here = move(linkage, results.kernels, q, DriverMotion(float(q[0]), rate, acceleration, driver.sense))
+    reactions = react(here, results.structure, applied(here, results.strokes))
+    for pair in results.structure.pairs:
+        own = results.reactions.of(pair.name).force[k]
+        assert reactions.of(pair.name).force[0] == pytest.approx(own, rel=1e-13)
+    worst = compared(linkage, results.structure, here, reactions, [0], results.strokes)
+    assert max(worst.values()) < 1e-12, worst
