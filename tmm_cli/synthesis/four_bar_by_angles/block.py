@@ -129,7 +129,8 @@ def _function(shape: Shape, values: ValueReader) -> Function:
     if shape.function is not None and name not in FUNCTIONS:
         raise ProblemError(
             _("this function is not known here"), path=("function",), found=quote(shape.function),
-            allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)), near=nearest(name, FUNCTIONS),
+            allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
+            near=nearest(name, FUNCTIONS),
         )  # fmt: skip
     ends: dict[str, Any] = {
         key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))
