@@ -22,8 +22,8 @@ from tmm_cli.results.digits import AccuracyReport, accuracy, beside
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.for_people import Kind
 from tmm_cli.results.output import Written, write_results
+from tmm_cli.results.properties import properties_shown
 from tmm_cli.results.reports import walk
-from tmm_cli.results.shown import shown
 from tmm_cli.results.table import Table
 from tmm_cli.results.terminal import show as print_table
 from tmm_cli.results.text import json_text
@@ -96,7 +96,7 @@ def report(
 
 def checked(results: Results | ChainResults) -> int:
     """The exit code: whether properties are as expected, the lever holds, and a synthesis gave what it was asked."""
-    if not all(one.met for one in shown(results)):
+    if not all(one.met for one in properties_shown(results)):
         return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
         return OK

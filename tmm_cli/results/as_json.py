@@ -16,6 +16,7 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
+from tmm_cli.results.properties import properties_shown
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
 from tmm_cli.results.shapes import (
     FLAG,
@@ -32,7 +33,6 @@ from tmm_cli.results.shapes import (
     properties,
     record,
 )
-from tmm_cli.results.shown import shown
 from tmm_cli.results.text import plain
 from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings
@@ -94,7 +94,7 @@ LAST = (
     Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
-    Field("properties", list_of(PROPERTY), "what the file shows", shown, lambda r: r.problem.shows),
+    Field("properties", list_of(PROPERTY), "what the file shows", properties_shown, lambda r: r.problem.shows),
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
     Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
@@ -114,7 +114,7 @@ def sections(results: Results | ChainResults, digits: dict[str, Any] | None = No
     if isinstance(results, ChainResults):
         yield "chain", SPATIAL.content(results.chain)
         if results.problem.shows:
-            yield "properties", list_of(PROPERTY).content(shown(results))
+            yield "properties", list_of(PROPERTY).content(properties_shown(results))
         yield "warnings", []
         return
     yield from contents(FIRST, results)

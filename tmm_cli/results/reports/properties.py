@@ -8,13 +8,13 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import N_, _
 from tmm_cli.quantities import NUMBER
-from tmm_cli.results.shown import shown
+from tmm_cli.results.properties import properties_shown
 from tmm_cli.results.table import Column, Table
 
 
 def tables(results: Results | ChainResults) -> Iterable[Table]:
     """A row a property; values keep their own dimension."""
-    rows, units = shown(results), results.problem.units
+    rows, units = properties_shown(results), results.problem.units
     if not rows:
         return
     columns = [

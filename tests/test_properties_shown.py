@@ -13,7 +13,7 @@ from test_commands import tmm
 from tmm_cli import load, solve
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.as_json import to_json
-from tmm_cli.results.shown import shown
+from tmm_cli.results.properties import properties_shown
 
 SLIDER = (PROBLEMS / "crank-slider-offset.yaml").read_text(encoding="utf-8")
 
@@ -26,7 +26,7 @@ def file_with(tmp_path, block, text=SLIDER):
 
 def value(tmp_path, block, name="crank-slider-offset", stage="forces"):
     text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
-    (one,) = shown(solve(load(str(file_with(tmp_path, block, text))), stage))
+    (one,) = properties_shown(solve(load(str(file_with(tmp_path, block, text))), stage))
     return one.value
 
 
@@ -100,6 +100,6 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
 )
 def test_slips_are_refused_at_their_place(tmp_path, block, message):
     with pytest.raises(ProblemError) as refused:
-        shown(solve(load(str(file_with(tmp_path, block)))))
+        properties_shown(solve(load(str(file_with(tmp_path, block)))))
     assert message in str(refused.value)
     assert np.isfinite(refused.value.mark.line if refused.value.mark else 0)
