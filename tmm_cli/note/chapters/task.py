@@ -15,7 +15,7 @@ from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.bodies import named
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
-from tmm_cli.results.explain import given
+from tmm_cli.results.given import given
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.results.stages import heavy, link_name
 from tmm_cli.results.understood import motion
