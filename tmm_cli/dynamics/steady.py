@@ -168,8 +168,9 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
             task.delta, delta_of, task.flywheel, float(np.max(machine.inertia(machine.inertia.places())))
         )
     law = with_motor(machine, flywheel, motor)
-    start = float(law.energy(np.zeros(1))[0])
-    work = fitted(lambda x: (law.energy(x) - start,), law.energy.edges)[0]
+    gained = law.energy.coefficients.copy()
+    gained[0] -= law.energy(np.zeros(1))[0]
+    work = Curve(law.energy.edges, gained)
     return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
 
 

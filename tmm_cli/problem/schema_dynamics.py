@@ -63,7 +63,7 @@ class Dynamics(Strict):
     mean_speed: Value | None = Field(
         default=None,
         alias="mean speed",
-        description="mean of the largest and the least speed; the driver's. A motor finds its own",
+        description="mean of the largest and the least speed; the driver's",
     )
     delta: Value | None = Field(default=None, description="fluctuation of speed that a flywheel is to keep: 1/30")
     motor: Motor | None = Field(default=None, description="what drives; a constant moment when left out")
