@@ -27,6 +27,7 @@ from tmm_cli.problem.schema_parts import (
     checked_value,
 )  # fmt: skip
 from tmm_cli.problem.schema_sheet import SheetTexts
+from tmm_cli.problem.schema_shown import Shows
 from tmm_cli.problem.schema_springs import Friction, Spring
 
 
@@ -161,6 +162,8 @@ class File(Strict):
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
+    reference: str = Field(default="", max_length=100, description="of the mechanism, in a book or a list: M7, Fig. 7")
+    shows: Shows = Field(default={}, description="properties as numbers: {swing: {of: psi, expected: 2*a}}")
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
     synthesis: Any = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
