@@ -113,8 +113,8 @@ def _refusal(
             _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
         )
     if kind == "missing":
-        words = get_args(field.annotation) if field and get_origin(field.annotation) is Literal else ()
-        described = ", ".join(words) or described
+        named = get_args(field.annotation) if field and get_origin(field.annotation) is Literal else ()
+        described = ", ".join(named) or described
         return ProblemError(_("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=described)
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
