@@ -208,5 +208,5 @@ def _farthest(link: Link, point: str) -> str:
 
 
 def _short(number: float) -> str:
-    """Three figures, and all those before the point of a number that people would write so."""
-    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".3g")
+    """Four figures, and all those before the point of a number that people would write so."""
+    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")
