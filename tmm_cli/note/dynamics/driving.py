@@ -70,5 +70,5 @@ def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
     if value:
         under = Sum(((1, Quotient(slip, critical)), (1, Quotient(critical, slip))))
         moment = Quotient(Product((Constant(2), Leaf(BREAKDOWN, motor.breakdown))), under)
-        found = float(motor.moment(np.array([here.speed.value]))[0][0])
+        found = float(motor.moment(np.array([here.speed.value]))[0])
         yield Found(Substitution(DRIVING, moment, found, _("N·m")))
