@@ -22,6 +22,7 @@ LANGUAGES: Final = ("en", "ru", "sr")
 ENGLISH: Final = LANGUAGES[0]
 LOCALE: Final = Path(__file__).with_name("locale")
 DOMAIN: Final = "tmm"
+HALF: Final = 1e-13  # of a number: so near to a half of the last digit it is one
 CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by language
 
 Found = TypeVar("Found")
@@ -63,8 +64,13 @@ def _(message: str) -> str:
 
 def numeral(value: float, form: str) -> str:
     """A number for people in this format, with a comma where the language has one. What may be typed has points."""
-    text = f"{value:{form}}"
+    text = f"{halves_up(value):{form}}"
     return text if _spoken.get() == ENGLISH else text.replace(".", ",")
+
+
+def halves_up(value: float) -> float:
+    """A little larger, so that 14.715 is rounded as people do, on whichever side of it binary rounding has left it."""
+    return value * (1 + HALF)
 
 
 def spelt(unit: str) -> str:

@@ -125,7 +125,8 @@ def edged(drawing: Drawing) -> Drawing:
 
 
 def figures(text: str, language: str) -> str:
-    """Figures with the decimal mark and the minus of a language."""
+    """Figures with the decimal mark and the minus of a language; 1.2e-5 is 1.2·10⁻⁵."""
+    text = re.sub(r"(?<=\d)e([+-]?)0*(\d+)", lambda e: f"·10{'⁻' * (e[1] == '-')}{e[2].translate(ABOVE)}", text)
     return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
 
 
@@ -134,10 +135,12 @@ def with_degrees(text: str) -> str:
     return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
+ABOVE = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 GREEK = {"alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π", "phi": "φ", "psi": "ψ"}
 
 
 def by_hand(text: str) -> str:
-    """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
+    """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2; a minus of numbers too."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
-    return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), text).replace(" - ", " − ")
+    text = re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), text).replace(" - ", " − ")
+    return re.sub(r"(?<![\w-])-(?=\d)", "−", text)

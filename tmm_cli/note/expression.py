@@ -11,11 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
+from tmm_cli.language import halves_up
 from tmm_cli.note import math as paper
 from tmm_cli.plans.record import Symbol
 
 FIGURES = 4  # of a result, and of what is put in if that does
 MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
+LONG = 1e7  # from here on numbers are written with a power of ten
 NOTHING = 1e-9  # of the largest term: a sum that is less is zero
 
 
@@ -213,8 +215,11 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Sum(terms):
             parts: list[paper.Node | str] = []
             for sign, term in terms:
+                node = of(term)
+                if not parts and sign > 0 and isinstance(term, Leaf) and isinstance(node, paper.Brackets):
+                    node = node.inside  # a minus at the beginning
                 parts += ["−"] if sign < 0 else ["+"] if parts else []
-                parts.append(of(term))
+                parts.append(node)
             return paper.row(*parts) if parts else paper.Number("0")
         case Product(factors):
             shown: list[paper.Node | str] = []
@@ -248,16 +253,18 @@ def _inside(factor: Expression, node: paper.Node) -> paper.Node:
 
 
 def rounded(value: float, figures: int) -> float:
-    """To so many significant figures."""
-    return float(f"{value:.{figures - 1}e}")
+    """To so many significant figures, but not further than to units."""
+    if 10.0**figures <= abs(value) < LONG:
+        return float(f"{halves_up(value):.0f}")
+    return float(f"{halves_up(value):.{figures - 1}e}")
 
 
 def plain(value: float, figures: int) -> str:
     """Figures without a power of ten where that is short: 1234.5, 0.00123, 1.2e-05."""
     if value == 0:
         return "0"
-    power = math.floor(math.log10(abs(value)))
-    if -4 <= power < 7:
+    power, value = math.floor(math.log10(abs(value))), halves_up(value)
+    if power >= -4 and abs(value) < LONG:
         text = f"{value:.{max(figures - 1 - power, 0)}f}"
         return text.rstrip("0").rstrip(".") if "." in text else text
     mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
@@ -268,8 +275,8 @@ def fixed(value: float, figures: int, terms: float = 0.0) -> str:
     """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
-    power = math.floor(math.log10(abs(rounded(value, figures))))
-    if -4 <= power < 7:
+    power, value = math.floor(math.log10(abs(rounded(value, figures)))), halves_up(value)
+    if power >= -4 and abs(value) < LONG:
         return f"{value:.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
