@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Heading, paragraph
+from tmm_cli.note.blocks import Block, Heading, Ref, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
@@ -15,6 +15,7 @@ from tmm_cli.results.reports.cycle import signs
 if TYPE_CHECKING:
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
+    from tmm_cli.results.table import Table
 
 TABLES = ("dynamics", "law-of-motion")
 
@@ -35,7 +36,16 @@ def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
     yield Heading(_("Law of motion"))
     yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
     yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
-    yield from (rows_of(subject, table) for table in walk(subject.results, TABLES))
+    for table in walk(subject.results, TABLES):
+        yield from _referred(subject, table)
+
+
+def _referred(subject: Subject, table: Table) -> Iterable[Block]:
+    """A table after the sentence that names it."""
+    law = table.name == "law-of-motion"
+    text = _("The law of motion is given in table {table}.") if law else _("What is found is in table {table}.")
+    yield said(text, table=Ref(table.name))
+    yield rows_of(subject, table, key=table.name, zeros=law)
 
 
 def _steady(subject: Subject, running: Running) -> Iterable[Block]:
@@ -80,4 +90,4 @@ def _steady(subject: Subject, running: Running) -> Iterable[Block]:
     for table in walk(subject.results, TABLES):
         if table.name == "law-of-motion" and running.sense < 0:
             yield paragraph(signs(subject.results.linkage))
-        yield rows_of(subject, table)
+        yield from _referred(subject, table)
