@@ -6,7 +6,6 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from decimal import Decimal
 from functools import cache
 from itertools import combinations
 from typing import Any
@@ -27,8 +26,8 @@ from tmm_cli.quantities import KINDS
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.text import json_text
 
+LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 FIGURES = r"(?<![\w.,′'])[−-]?\d+(?:\.\d+)?(?![\w.]*\w)"
-POWERS = r"(\d+(?:\.\d+)?)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
 COUNTED = 100  # whole numbers below it count or name something
 
 
@@ -123,12 +122,8 @@ def printed(text: str) -> list[str]:
     body = text.partition("<body>")[2]
     for apart in ("nav", "header", "ol", "h1", "h2", "svg", "caption", "figcaption", 'math display="block"'):
         body = re.sub(rf"<{apart}[ >].*?</{apart.partition(' ')[0]}>", " ", body, flags=re.S)
-    return re.findall(FIGURES, re.sub(POWERS, written_out, re.sub(r"<[^>]+>", " ", body)))
-
-
-def written_out(power: re.Match[str]) -> str:
-    """0.00012 for 1.2·10⁻⁴."""
-    return f"{Decimal(power[1] + 'e' + power[2].translate(str.maketrans('⁻⁰¹²³⁴⁵⁶⁷⁸⁹', '-0123456789'))):f}"
+    body = re.sub(r"·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda power: f"e{power[1].translate(LOWERED)}", body)
+    return re.findall(FIGURES, re.sub(r"<[^>]+>", " ", body))
 
 
 def half_a_digit(figures: str) -> float:

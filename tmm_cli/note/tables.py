@@ -26,7 +26,7 @@ def rows_of(
     """
     units, every = subject.results.problem.units, range(table.rows)
     columns = [
-        (on_paper(c.heading(units)), _texts(replace(_on_paper(c), digits=digits), units, zeros), c.dimension)
+        (by_hand(on_paper(c.heading(units))), _texts(replace(_on_paper(c), digits=digits), units, zeros), c.dimension)
         for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]

@@ -123,7 +123,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
         TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
-        _balancing(shape, linkage, values), tree,
+        _balancing(shape, linkage, values), shape.reference, shape.shows, values, tree,
     )  # fmt: skip
 
 

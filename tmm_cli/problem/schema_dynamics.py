@@ -61,7 +61,9 @@ class Dynamics(Strict):
     """Steady running, or a single run: the law of motion of the driver follows from what acts on the machine."""
 
     mean_speed: Value | None = Field(
-        default=None, alias="mean speed", description="mean of the largest and the least speed; the driver's"
+        default=None,
+        alias="mean speed",
+        description="mean of the largest and the least speed; the driver's",
     )
     delta: Value | None = Field(default=None, description="fluctuation of speed that a flywheel is to keep: 1/30")
     motor: Motor | None = Field(default=None, description="what drives; a constant moment when left out")

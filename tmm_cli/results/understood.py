@@ -50,11 +50,11 @@ def bare_units(units: UnitSystem) -> str:
     )
 
 
-def motion(driver: Driver, digits: int = 3) -> str:
+def motion(driver: Driver) -> str:
     """`70 rad/s = 668 rpm, counterclockwise`."""
     if driver.kind == "slide":
         text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
-        return text.format(speed=_short(driver.rate, digits))
+        return text.format(speed=_short(driver.rate))
     if driver.law is not None:
         text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
         if driver.sense < 0:
@@ -62,14 +62,13 @@ def motion(driver: Driver, digits: int = 3) -> str:
         speeds = np.sqrt([float(rounded(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
-            low=_short(low, digits), high=_short(high, digits),
-            least=_short(low * 30 / math.pi, digits), most=_short(high * 30 / math.pi, digits),
+            low=_short(low), high=_short(high), least=_short(low * 30 / math.pi), most=_short(high * 30 / math.pi),
             between=between_rows(driver.law),
         )  # fmt: skip
     text = _("{speed} rad/s = {turns} rpm, counterclockwise")
     if driver.sense < 0:
         text = _("{speed} rad/s = {turns} rpm, clockwise")
-    return text.format(speed=_short(driver.rate, digits), turns=_short(driver.rate * 30 / math.pi, digits))
+    return text.format(speed=_short(driver.rate), turns=_short(driver.rate * 30 / math.pi))
 
 
 def between_rows(law: SpeedTable) -> str:
@@ -207,6 +206,6 @@ def _farthest(link: Link, point: str) -> str:
     return max(link.points, key=lambda other: float(abs(link.points[other] - link.points[point])))
 
 
-def _short(number: float, digits: int) -> str:
-    """A few figures, and all those before the point of a number that people would write so."""
-    return f"{number:.0f}" if 10.0**digits <= number < 1e6 else numeral(number, f".{digits}g")
+def _short(number: float) -> str:
+    """Four figures, and all those before the point of a number that people would write so."""
+    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

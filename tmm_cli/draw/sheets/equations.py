@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.script import Words, filled
 from tmm_cli.draw.sheets.beneath import Table
-from tmm_cli.language import _, halves_up, numeral, spelt
+from tmm_cli.language import _, half_up, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
@@ -18,7 +18,6 @@ from tmm_cli.quantities import LENGTH
 from tmm_cli.tolerances import NO_MOMENT
 
 INDENT = "    "
-UNITS = 1e4  # from here on a number is rounded to units
 PLAIN = 1e-6  # a smaller number is written with a power of ten
 Word = str | Symbol
 
@@ -120,8 +119,10 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
 
 
 def figure(value: float) -> str:
-    """A number with four figures or to units, without powers of ten as far as people write it so."""
-    rounded = float(f"{halves_up(value):{'.4g' if abs(value) < UNITS else '.0f'}}")
+    """A number with four figures and all those before its point, without powers of ten as far as people write it so."""
+    rounded = float(f"{half_up(value):.4g}")
+    if 1e4 <= abs(rounded) < 1e7:
+        return numeral(value, ".0f")
     if not 0 < abs(rounded) < 1e-4:  # no power of ten
         return numeral(rounded, ".10g")
     places = len(np.format_float_positional(rounded).partition(".")[2])

@@ -15,7 +15,6 @@ from tmm_cli.results.reports.cycle import signs
 if TYPE_CHECKING:
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
-    from tmm_cli.results.table import Table
 
 TABLES = ("dynamics", "law-of-motion")
 
@@ -36,16 +35,7 @@ def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
     yield Heading(_("Law of motion"))
     yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
     yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
-    for table in walk(subject.results, TABLES):
-        yield from _referred(subject, table)
-
-
-def _referred(subject: Subject, table: Table) -> Iterable[Block]:
-    """A table after the sentence that names it."""
-    law = table.name == "law-of-motion"
-    text = _("The law of motion is given in table {table}.") if law else _("What is found is in table {table}.")
-    yield said(text, table=Ref(table.name))
-    yield rows_of(subject, table, key=table.name, zeros=law)
+    yield from _tables(subject)
 
 
 def _steady(subject: Subject, running: Running) -> Iterable[Block]:
@@ -87,7 +77,14 @@ def _steady(subject: Subject, running: Running) -> Iterable[Block]:
         "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
         only="law-motion",
     )  # fmt: skip
-    for table in walk(subject.results, TABLES):
-        if table.name == "law-of-motion" and running.sense < 0:
-            yield paragraph(signs(subject.results.linkage))
-        yield from _referred(subject, table)
+    if running.sense < 0:
+        yield paragraph(signs(subject.results.linkage))
+    yield from _tables(subject)
+
+
+def _tables(subject: Subject) -> Iterable[Block]:
+    tables = list(walk(subject.results, TABLES))
+    sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
+    for table, sentence in zip(tables, sentences, strict=True):
+        yield said(sentence, table=Ref(table.name))
+        yield rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")

@@ -61,7 +61,7 @@ def _sized(
             way, size = np.angle(force) if told is None else told, np.abs(force)
             columns += [np.where(np.isnan(way) & np.isfinite(size), 0.0, size), way]
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
-        yield _table(subject, caption.format(names=names), head, columns, f"{key}-{first}", angles=True)
+        yield _table(subject, caption.format(names=names), head, columns, f"{key}-{first // PAIRS}", angles=True)
 
 
 def balancing(subject: Subject) -> Iterable[Block]:
@@ -87,9 +87,9 @@ def balancing(subject: Subject) -> Iterable[Block]:
         head.append(line(_("difference, %")))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     caption = _("What balances the driving link") if not several else _("What balances the driven links")
-    yield said(_("What balances in all positions is given in table {table}."), table=Ref("balancing"))
     yield from _signs(subject, of_all)
-    yield _table(subject, caption, head, columns, "balancing")
+    yield said(_("By both ways it is given in table {table}."), table=Ref("balance"))
+    yield _table(subject, caption, head, columns, "balance")
 
 
 def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
