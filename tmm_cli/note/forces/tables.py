@@ -28,6 +28,8 @@ def reactions(subject: Subject) -> Iterable[Block]:
     if len(pairs) > PAIRS:
         sentence = _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x.")
     last = (len(pairs) - 1) // PAIRS
+    if last == 1:
+        sentence = _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x.")
     yield said(sentence, first=Ref("reactions-0"), last=Ref(f"reactions-{last}"))
     yield from _sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions")
     pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
