@@ -34,7 +34,7 @@ class Flywheel(Strict):
     shape: Literal["disk", "rim"] = "disk"
     width: Value = Field(default="1/5", description="of the disk or the rim, over its mean diameter")
     height: Value = Field(default="1/8", description="of the rim, over its mean diameter")
-    density: Value = Field(default=7800, description="kg/m^3")
+    density: Value = Field(default=7800, description="of its material; a bare number: kg/m^3")
 
 
 class Profile(Strict):
