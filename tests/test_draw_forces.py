@@ -202,4 +202,4 @@ def test_a_unit_is_not_left_alone_on_a_line():
 
 
 def test_small_numbers_are_written_out():
-    assert figure(9.447e-05) == "0.00009447" and figure(12345.6) == "12350" and figure(4e-9) == "4e-09"
+    assert figure(9.447e-05) == "0.00009447" and figure(12345.6) == "12346" and figure(4e-9) == "4e-09"

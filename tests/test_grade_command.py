@@ -117,8 +117,8 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
         (["--submissions", "handed"], "error: --variants and --submissions are wanted, or --template\n"),
         (
             ["--variants", "variants.csv", "--submissions", "handed", "--formats", "csv,moodel"],
-            "error: --formats: there is no such format\n  found:   'moodel'\n"
-            "  allowed: csv,xlsx,feedback,gradescope,moodle,junit,drawing\n  did you mean 'moodle'?\n",
+            "error: --formats: there is no such format of the gradebook\n  found:   'moodel'\n"
+            "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n  did you mean 'moodle'?\n",
         ),
         (["--template", "sheet.odt"], "error: an answer sheet has another ending\n  found:   '.odt'\n"
                                       "  allowed: .xlsx, .csv, .yaml\n"),

@@ -9,7 +9,7 @@ from test_commands import ROOT, tmm
 from tmm_cli import load, solve
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.explain import given
+from tmm_cli.results.given import given
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}

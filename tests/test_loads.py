@@ -11,7 +11,7 @@ from tmm_cli.interpolation import Table
 from tmm_cli.library import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.explain import given
+from tmm_cli.results.given import given
 from tmm_cli.results.understood import doubts
 
 MACHINE = """tmm: 1

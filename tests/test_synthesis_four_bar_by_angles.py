@@ -366,6 +366,8 @@ REFUSED = {
         "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more",
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
+    "function: \"\", x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
+        "synthesis.function: this function is not known here\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), ",
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100":
         "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, "
         "or as the input locks on the way\n  found:   a list of 6",

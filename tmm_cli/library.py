@@ -108,7 +108,7 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     with in_words_of(whole):
         linkage = redriven(whole.linkage, link)
     request = replace(whole.request, places=(), start=0.0)
-    return replace(whole, linkage=linkage, request=request, extended=None, balancing=None)
+    return replace(whole, linkage=linkage, request=request, extended=None, balancing=None, shows={})
 
 
 def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None = None) -> Results:

@@ -93,6 +93,7 @@ MOMENT: Final = Dimension(2, 1, -2)
 INERTIA: Final = Dimension(2, 1)
 AREA: Final = Dimension(2)
 PRESSURE: Final = Dimension(-1, 1, -2)
+DENSITY: Final = Dimension(-3, 1)
 SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
@@ -120,6 +121,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
     "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
+    "density": Kind(DENSITY, "kg/m^3", "7800 kg/m^3"),
 }
 
 
@@ -130,7 +132,7 @@ ARTICLED: Final[Mapping[str, str]] = {
     "pressure": N_("a pressure"), "angular speed": N_("an angular speed"),
     "angular acceleration": N_("an angular acceleration"),
     "stiffness": N_("a stiffness"), "torsional stiffness": N_("a torsional stiffness"), "damping": N_("a damping"),
-    "torsional damping": N_("a torsional damping"),
+    "torsional damping": N_("a torsional damping"), "density": N_("a density"),
 }  # fmt: skip
 
 

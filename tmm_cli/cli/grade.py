@@ -26,7 +26,7 @@ from tmm_cli.grading.tables import read_table
 from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import chosen_names
 from tmm_cli.problem.reader import read_file
 from tmm_cli.results.terminal import show
 
@@ -80,7 +80,8 @@ def _graded(
     scheduler: str | None,
 ) -> int:  # fmt: skip
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
-    names = _chosen(formats, list(EXPORTS))
+    reason = _("there is no such format of the gradebook")
+    names = list(EXPORTS) if formats is None else chosen_names(formats, EXPORTS, "--formats", reason)
     introduce(task.problem)
     table = read_table(variants, task)
     jobs = jobs or os.cpu_count() or 1
@@ -103,18 +104,6 @@ def _graded(
     for found in tables(task, marks):
         show(found, task.units, console())
     return _verdict(handed, marks, out)
-
-
-def _chosen(formats: str | None, known: list[str]) -> list[str]:
-    """Names of formats. Raises ProblemError."""
-    found = known if formats is None else [name.strip() for name in formats.split(",")]
-    for name in found:
-        if name not in known:
-            raise ProblemError(
-                _("--formats: there is no such format"), found=quote(name), allowed=",".join(known),
-                near=nearest(name, known),
-            )  # fmt: skip
-    return found
 
 
 @contextmanager

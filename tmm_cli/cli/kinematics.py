@@ -49,7 +49,8 @@ def kinematics(
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
-    names = ("points", "link-motion") if asked else ("quality", "pressure", "cycle", "points", "link-motion", "slides")
+    usual = ("quality", "properties", "pressure", "cycle", "points", "link-motion", "slides")
+    names = ("points", "link-motion") if asked else usual
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)

@@ -22,6 +22,7 @@ from tmm_cli.results.digits import AccuracyReport, accuracy, beside
 from tmm_cli.results.files import Staged, folder_name, listed
 from tmm_cli.results.for_people import Kind
 from tmm_cli.results.output import Written, write_results
+from tmm_cli.results.properties import properties_shown
 from tmm_cli.results.reports import walk
 from tmm_cli.results.table import Table
 from tmm_cli.results.terminal import show as print_table
@@ -94,7 +95,9 @@ def report(
 
 
 def checked(results: Results | ChainResults) -> int:
-    """The exit code: whether the lever holds, and what a synthesis asked; of a structure there is nothing to check."""
+    """The exit code: whether properties are as expected, the lever holds, and a synthesis gave what it was asked."""
+    if not all(one.met for one in properties_shown(results)):
+        return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
         return OK
     return OK if results.lever_holds and all(m.met for m in measured_on(results)) else CHECK_FAILED

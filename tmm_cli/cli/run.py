@@ -25,6 +25,7 @@ SHOWN = (
     "links",
     "groups",
     "quality",
+    "properties",
     "cycle",
     "dynamics",
     "checks",

@@ -34,7 +34,7 @@ def structure(
     tables: Tables = None,
 ) -> None:
     """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
-    names = ("structure", "links", "pairs", "groups", "contours", "space", "replacements")
+    names = ("structure", "properties", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.forces.applied import Applied
 from tmm_cli.grading.mistakes.accelerations import Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.coriolis import Coriolis
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Poses, Rate, Rates, Wrench
 from tmm_cli.kinematics.motion import Motion

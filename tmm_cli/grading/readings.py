@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from tmm_cli.grading.quantities.base import Quantity
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.grading.record import Form, Given, Key, Submission
 from tmm_cli.grading.sheet import Right, Written
 from tmm_cli.language import _

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution, solve
 from tmm_cli.grading.task import Asked
 from tmm_cli.groups.base import Closed

@@ -13,6 +13,7 @@ from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.variants.family import Family
 
 if TYPE_CHECKING:
@@ -26,6 +27,10 @@ class Solution:
     family: Family
     motion: Motion
     reactions: Reactions
+
+    @property
+    def strokes(self) -> Strokes | None:
+        return self.family.strokes
 
 
 def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:

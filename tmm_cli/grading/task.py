@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from tmm_cli.analysis.quantities import quantities
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.grading.block import AnswerRule, Blocks, Grading
-from tmm_cli.grading.quantities import quantities
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, validated

@@ -22,8 +22,8 @@ from tmm_cli.library import structure_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import KINDS, LENGTH, NUMBER, Dimension
-from tmm_cli.results.explain import given
 from tmm_cli.results.files import folder_name
+from tmm_cli.results.given import given
 from tmm_cli.results.table import Table, table_of_words
 
 FOR_TEACHERS = ("variants", "grading")

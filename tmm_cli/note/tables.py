@@ -18,7 +18,7 @@ def rows_of(subject: Subject, table: Table, caption: str = "", key: str = "", di
     """The same table in the units of the file; columns in which nothing stands are left out."""
     units, every = subject.results.problem.units, range(table.rows)
     columns = [
-        (on_paper(c.heading(units)), cells(replace(_on_paper(c), digits=digits), units, every), c.dimension)
+        (by_hand(on_paper(c.heading(units))), cells(replace(_on_paper(c), digits=digits), units, every), c.dimension)
         for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]

@@ -123,14 +123,14 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
         TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
-        _balancing(shape, linkage, values), tree,
+        _balancing(shape, linkage, values), shape.reference, shape.shows, values, tree,
     )  # fmt: skip
 
 
 def bare_speed(driver: schema.Driver, values: ValueReader) -> bool:
     """Whether the driver's speed has no unit."""
     speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
-    return any(values.bare(speed) for speed in speeds)
+    return any(values.bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
 
 
 def refuse_tables(shape: schema.File) -> None:

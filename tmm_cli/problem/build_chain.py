@@ -30,7 +30,7 @@ def build_chain(tree: Tree) -> ChainProblem:
             BARE.known(spatial.output, chain.links, (*PART, "output"), "moving link")
         return ChainProblem(
             name, shape.title or name, chain, spatial.output, _local(spatial, chain), spatial.wanted, BARE.units,
-            shape.description,
+            shape.description, shape.reference, shape.shows, tree,
         )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import Link, Linkage, Load, LoadTable
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_loads
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
@@ -38,7 +38,7 @@ def with_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Li
 
 def _with_mass(link: Link, part: Part, gravity: complex) -> Link:
     """The link as a body; without a mass of its own it has point masses alone."""
-    given: schema.Mass = part.given
+    given: schema_loads.Mass = part.given
     if given.points and given.mass is None and given.weight is None:
         return replace(
             link, inertia=part.positive("inertia", INERTIA, zero=True), centre=next(iter(link.points.values()))
@@ -97,7 +97,7 @@ def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tu
 
 
 def _load(name: str, part: Part, linkage: Linkage) -> Load:
-    given: schema.Load = part.given
+    given: schema_loads.Load = part.given
     check_name(name, part.path, "load")
     link = part.known("on", linkage.moving, "link")
     base = part.values.known(given.from_, linkage.links, (*part.path, "from"), "link")
@@ -135,7 +135,7 @@ def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> _Comp
     part = Part(given, (*load.path, key), load.values)
     if given is None:
         return _Component(0j if force else 0.0)
-    if not isinstance(given, schema.Tabulated):
+    if not isinstance(given, schema_loads.Tabulated):
         return _Component(load.values.vector(given, want, part.path) if force else load.number(key, want))
     if given.resists is not None:
         part.one_of("size", "table", "angle", "resists")
@@ -164,7 +164,7 @@ def _pressing(load: Part, linkage: Linkage) -> _Component:
 
 def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _Component:
     """By one size or by a table, at an angle or about the axis of the drawing."""
-    given: schema.Tabulated = part.given
+    given: schema_loads.Tabulated = part.given
     if angled == (given.angle is None):
         wanted = _("a force by its size has an angle, a moment has none")
         raise part.refusal("angle", wanted, allowed=_("angle: 180 deg"))
@@ -202,7 +202,9 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
     return low, high
 
 
-def _table(given: schema.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path) -> LoadTable:
+def _table(
+    given: schema_loads.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path
+) -> LoadTable:
     argument = ANGLE
     if linkage.driver.kind == "slide":
         raise ProblemError(

@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.pairs.cam_law import CamLaw, Piece
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_meshes
 from tmm_cli.problem.build_links import Members
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
@@ -81,7 +81,7 @@ def _pressure(part: Part) -> float:
 
 
 def _gear(name: str, part: Part, members: Members) -> Mesh:
-    given: schema.Gear = part.given
+    given: schema_meshes.Gear = part.given
     between: Path = (*part.path, "between")
     (i, j), carrier = given.between, given.carrier
     _different((i, j, carrier), part, between, members)
@@ -93,7 +93,7 @@ def _gear(name: str, part: Part, members: Members) -> Mesh:
     return Mesh(name, "gear", i, j, carrier, ratio, part.number("offset", ANGLE), pressure=_pressure(part))
 
 
-def _ratio(part: Part, given: schema.Gear, distance: float) -> float:
+def _ratio(part: Part, given: schema_meshes.Gear, distance: float) -> float:
     """First radius over second, negative for an outer mesh; all that is given must agree."""
     values, path = part.values, part.path
     teeth, radii = None, None
@@ -146,7 +146,7 @@ def _teeth(values: ValueReader, value: object, path: Path) -> float:
 
 
 def _rack(name: str, part: Part, members: Members) -> Mesh:
-    given: schema.Rack = part.given
+    given: schema_meshes.Rack = part.given
     wheel, rack, carrier = given.wheel, given.rack, given.carrier
     _different((wheel, rack, carrier), part, part.path, members)
     axis = _axis(wheel, carrier, members, (*part.path, "wheel"))
@@ -169,7 +169,7 @@ def _rack(name: str, part: Part, members: Members) -> Mesh:
 
 
 def _cam(name: str, part: Part, members: Members) -> Mesh:
-    given: schema.Cam = part.given
+    given: schema_meshes.Cam = part.given
     cam, follower = given.cam, given.follower
     _different((cam, follower, FRAME), part, part.path, members)
     _axis(cam, FRAME, members, (*part.path, "cam"))

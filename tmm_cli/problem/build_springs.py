@@ -6,7 +6,7 @@ import math
 
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Linkage, Spring
-from tmm_cli.problem import schema
+from tmm_cli.problem import schema, schema_springs
 from tmm_cli.problem.values import Part, ValueReader, check_name
 from tmm_cli.quantities import ANGLE, DAMPING, FORCE, LENGTH, MOMENT, NUMBER, STIFFNESS, TORSION, TORSION_DAMPING
 from tmm_cli.structure.assur import analyse
@@ -21,7 +21,7 @@ def build_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> 
     return tuple(found)
 
 
-def _spring(name: str, given: schema.Spring, linkage: Linkage, part: Part) -> Spring:
+def _spring(name: str, given: schema_springs.Spring, linkage: Linkage, part: Part) -> Spring:
     i, j = part.two_links(linkage.links)
     twists = part.one_of("rate", "torsion") == "torsion"
     if twists and given.at is not None:

@@ -175,6 +175,16 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     return folded[close[0]] if close else None
 
 
+def chosen_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
+    """Names with commas between them, of those that an option knows. Raises ProblemError with the reason."""
+    wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)
+    for name in wanted or [text]:
+        if name not in allowed:
+            near = nearest(name, allowed)
+            raise ProblemError(reason, found=quote(name), allowed=", ".join(allowed), near=near, file=option)
+    return wanted
+
+
 def latin(text: str) -> str:
     """The text with Cyrillic letters that look like Latin ones replaced by these."""
     return text.translate(_LOOKALIKES)

@@ -16,6 +16,8 @@ from tmm_cli.structure.spatial import SpatialChain
 if TYPE_CHECKING:
     from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.problem.schema_shown import Shown
+    from tmm_cli.problem.values import ValueReader
     from tmm_cli.synthesis.record import Outcome
 
 
@@ -49,6 +51,7 @@ class Problem:
     errors found later are located with; extended: makes the same as double-doubles from the decimals of the file.
     pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
     them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
+    reference: of the mechanism in a list; shows: properties by their words, whose values are read by `values`.
     """
 
     name: str
@@ -65,6 +68,9 @@ class Problem:
     title_texts: TitleTexts = TitleTexts()
     dynamics: SteadyTask | RunTask | None = None
     balancing: BalancingTask | None = None
+    reference: str = ""
+    shows: Mapping[str, Shown] = field(default_factory=dict, compare=False, repr=False)
+    values: ValueReader | None = field(default=None, compare=False, repr=False)
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)
@@ -123,3 +129,6 @@ class ChainProblem:
     wanted: int | None
     units: UnitSystem
     description: str = ""
+    reference: str = ""
+    shows: Mapping[str, Shown] = field(default_factory=dict, compare=False)
+    source: Tree | None = field(default=None, compare=False, repr=False)

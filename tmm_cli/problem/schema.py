@@ -13,6 +13,8 @@ from pydantic import BeforeValidator, Field
 
 from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
+from tmm_cli.problem.schema_loads import Load, Mass
+from tmm_cli.problem.schema_meshes import Cam, Gear, Rack
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
@@ -23,9 +25,10 @@ from tmm_cli.problem.schema_parts import (
     Vector,
     checked_name,
     checked_value,
-    checked_vector,
 )  # fmt: skip
 from tmm_cli.problem.schema_sheet import SheetTexts
+from tmm_cli.problem.schema_shown import Shows
+from tmm_cli.problem.schema_springs import Friction, Spring
 
 
 class Guide(Strict):
@@ -108,162 +111,6 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
-class PointMass(Strict):
-    """A mass in one point of a link."""
-
-    mass: Value
-    at: Place = Field(description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
-
-
-class Mass(Strict):
-    """Mass properties of a link."""
-
-    mass: Value | None = None
-    weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
-    inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
-    centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
-    points: list[PointMass] = Field(
-        default_factory=list, max_length=50, description="masses in points of it, beside the others or alone"
-    )
-
-
-class Tabulated(Strict):
-    """A force, pressure or moment by table, or by size and angle."""
-
-    size: Value | None = None
-    resists: Value | None = Field(
-        default=None, description="instead of size: a constant friction, against the motion of the point or link"
-    )
-    angle: Value | None = Field(default=None, description="direction of the force from the x axis")
-    against: Literal["stroke", "crank angle", "crank turn"] | None = Field(
-        default=None,
-        description="what the table's first column is: run of the output from the start of its working stroke; "
-        "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
-    )
-    table: list[Vector] | None = Field(
-        default=None, min_length=2, max_length=10_000, description="rows [argument, size]"
-    )
-    between: Literal["linear", "step", "smooth"] = Field(
-        default="linear", description="rows; step: each holds up to the next, smooth: a cubic spline"
-    )
-
-
-def _force(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_vector(found)
-
-
-def _moment(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
-
-
-def _when(found: Any) -> Any:
-    return checked_vector(found) if isinstance(found, list) else found
-
-
-class Load(Strict):
-    """A force, a moment, or both, on a link."""
-
-    on: Name = Field(description="the link")
-    from_: Name = Field(default="0", alias="from", description="the link that has the opposite of it; the frame")
-    at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
-    force: Annotated[list[Any] | Tabulated | None, BeforeValidator(_force)] = Field(
-        default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
-    )
-    moment: Annotated[Value | Tabulated | None, BeforeValidator(_moment)] = Field(
-        default=None, description="positive counterclockwise; a value, or {against, table}"
-    )
-    pressure: Tabulated | None = Field(
-        default=None, description="instead of force: {size, angle} or {angle, against, table}, on an area or a bore"
-    )
-    area: Value | None = Field(default=None, description="that the pressure acts on")
-    bore: Value | None = Field(default=None, description="instead of area: diameter of the piston")
-    axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
-    when: Annotated[Literal["always", "working stroke"] | list[Value], BeforeValidator(_when)] = Field(
-        default="always", description="always, working stroke, or [from, to]: angles of the crank, counterclockwise"
-    )
-
-
-class Gear(Strict):
-    """Two toothed wheels in mesh, hinged to a common carrier."""
-
-    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
-    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
-    teeth: list[Value] | None = Field(default=None, min_length=2, max_length=2, description="numbers of teeth of both")
-    radii: list[Value] | None = Field(
-        default=None, min_length=2, max_length=2, description="radii of both pitch circles"
-    )
-    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
-    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
-    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
-    offset: Value = Field(
-        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
-    )
-    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
-
-
-class Rack(Strict):
-    """A wheel that rolls on a rack."""
-
-    wheel: Name
-    rack: Name = Field(description="the link with the rack; it slides on the carrier")
-    carrier: Name = Field(default="0", description="the link that holds both")
-    radius: Value = Field(description="of the wheel's pitch circle")
-    side: Literal["left", "right"] | None = Field(
-        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
-    )
-    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
-    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
-
-
-class CamPiece(Strict):
-    """A part of a cam's turn."""
-
-    over: Value = Field(description="angle of the cam")
-    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
-    law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
-
-
-class Cam(Strict):
-    """A cam on the frame and its follower, by the follower's law of motion."""
-
-    cam: Name
-    follower: Name = Field(description="it slides on the frame, or swings about a hinge on it")
-    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
-    start: Value = Field(default=0, description="angle of the cam where the first piece starts")
-    offset: Value = Field(default=0, description="run (or angle) of the follower there")
-
-
-class Spring(Strict):
-    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
-
-    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
-    at: list[Place] | None = Field(
-        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
-    )
-    rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
-    torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
-    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
-    preload: Value = Field(
-        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
-    )
-    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
-
-
-class PairFriction(Strict):
-    """Friction in one pair."""
-
-    coefficient: Value | None = None
-    radius: Value | None = Field(default=None, description="of the journal of a hinge")
-
-
-class Friction(Strict):
-    """Coulomb friction in pairs. Without this block nothing of it is computed."""
-
-    coefficient: Value = Field(default=0, description="in every pair that is not named")
-    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
-    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
-
-
 class Output(Strict):
     """The link whose stroke or swing is the purpose of the mechanism, or a point of a moving link: its x and y."""
 
@@ -315,6 +162,8 @@ class File(Strict):
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
+    reference: str = Field(default="", max_length=100, description="of the mechanism, in a book or a list: M7, Fig. 7")
+    shows: Shows = Field(default={}, description="properties as numbers: {swing: {of: psi, expected: 2*a}}")
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
     synthesis: Any = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from tmm_cli.problem.schema_parts import MAX_LINKS, Name, Strict
+from tmm_cli.problem.schema_shown import Shows
 
 MAX_PAIRS = 300
 MAX_MOBILITY = 6 * MAX_LINKS
@@ -57,4 +58,6 @@ class SpatialFile(Strict):
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
+    reference: str = Field(default="", max_length=100, description="of the mechanism in a book or a list")
+    shows: Shows = Field(default={}, description="W, Wm, q or m: {mobility: {of: W, expected: 9}}")
     structure: SpatialStructure

@@ -146,10 +146,15 @@ class Part:
     values: ValueReader
 
     def number(self, key: str, want: Dimension) -> float:
-        return self.values.number(getattr(self.given, key), want, (*self.path, key))
+        return self.values.number(getattr(self.given, key), want, self.at(key))
 
     def positive(self, key: str, want: Dimension, *, zero: bool = False) -> float:
-        return self.values.positive(getattr(self.given, key), want, (*self.path, key), zero=zero)
+        return self.values.positive(getattr(self.given, key), want, self.at(key), zero=zero)
+
+    def at(self, key: str) -> Path:
+        """The path of a key as the file spells it."""
+        fields = getattr(type(self.given), "model_fields", {})
+        return (*self.path, fields[key].alias or key if key in fields else key)
 
     def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
         return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
@@ -176,7 +181,7 @@ class Part:
         self, key: str, message: str, found: str | None = None, allowed: str | None = None, *, at_key: bool = False
     ) -> ProblemError:
         """Of the value of a key, or of the part itself (key ""); at_key: of the key, whatever its value."""
-        path = (*self.path, key) if key else self.path
+        path = self.at(key) if key else self.path
         return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
 
 

@@ -16,6 +16,7 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
+from tmm_cli.results.properties import properties_shown
 from tmm_cli.results.reports.synthesis import to_json as synthesis_json
 from tmm_cli.results.shapes import (
     FLAG,
@@ -52,6 +53,12 @@ FIRST = (
     Field("synthesis", JsonType({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
           lambda r: r.problem.synthesis is not None and r.motion is not None),
 )  # fmt: skip
+PROPERTY = record(
+    "a property that the file shows",
+    Field("property", TEXT, "in its words", "name"),
+    Field("value", NUMBER, "SI"),
+    Field("expected", optional(NUMBER), "what the file expects; null where it expects nothing"),
+)
 CHECK = record(
     "a number against its limit",
     Field("check", TEXT, "slot, pressure, load, near dead, lever", "kind"),
@@ -87,6 +94,7 @@ LAST = (
     Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
     Field("assemblies", list_of(ASSEMBLIES),
           "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
+    Field("properties", list_of(PROPERTY), "what the file shows", properties_shown, lambda r: r.problem.shows),
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
     Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
 )  # fmt: skip
@@ -105,6 +113,8 @@ def sections(results: Results | ChainResults, digits: dict[str, Any] | None = No
     yield "problem", PROBLEM.content(results.problem)
     if isinstance(results, ChainResults):
         yield "chain", SPATIAL.content(results.chain)
+        if results.problem.shows:
+            yield "properties", list_of(PROPERTY).content(properties_shown(results))
         yield "warnings", []
         return
     yield from contents(FIRST, results)

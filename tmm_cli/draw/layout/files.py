@@ -11,20 +11,14 @@ from tmm_cli.draw.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
 from tmm_cli.draw.layout.contents import chosen
 from tmm_cli.draw.layout.large import large_sheets
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, chosen_names
 
 MOST = 24  # positions of which plans are drawn
 
 
 def formats_of(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
-    wanted = [part.strip().lower() for part in text.split(",") if part.strip()]
-    for name in wanted or [text]:
-        if name not in FORMATS:
-            raise ProblemError(
-                _("there is no such format of drawings"), found=quote(name), allowed=", ".join(FORMATS),
-                near=nearest(name, FORMATS), file="--as",
-            )  # fmt: skip
+    wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of drawings"))
     if "dxf" in wanted and find_spec("ezdxf") is None:
         raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
     return wanted

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.forces.applied import Applied
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
 from tmm_cli.groups.base import Kernel
 from tmm_cli.kinematics.motion import Motion

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
 from tmm_cli.language import N_
 from tmm_cli.vectors import Real

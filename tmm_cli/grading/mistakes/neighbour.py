@@ -8,8 +8,8 @@ from typing import Self
 
 import numpy as np
 
+from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.quantities.base import Quantity
 from tmm_cli.grading.solution import Solution
 from tmm_cli.language import N_
 from tmm_cli.variants.family import Family

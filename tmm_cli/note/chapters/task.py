@@ -10,12 +10,12 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
-from tmm_cli.note.context import Subject
+from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.bodies import named
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
-from tmm_cli.results.explain import given
+from tmm_cli.results.given import given
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.results.stages import heavy, link_name
 from tmm_cli.results.understood import motion
@@ -36,7 +36,10 @@ def blocks(subject: Subject) -> Iterable[Block]:
         sentence = _("The sizes of the links are in table {table}; those that are not given are found by synthesis.")
     yield said(sentence, table=Ref("sizes"))
     yield _sizes(subject)
-    yield said(_("The coordinates of the fixed points and guides are given in table {table}."), table=Ref("fixed"))
+    sentence = _("The coordinates of the fixed points are given in table {table}.")
+    if _guided(subject):
+        sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
+    yield said(sentence, table=Ref("fixed"))
     yield _fixed(subject)
     for driver in linkage.drivers:
         yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
@@ -57,8 +60,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
         if table.name == "drivers" and not linkage.others:
             continue
         if table.name in FURTHER or table.name.startswith("load_table"):
-            yield rows_of(subject, table)
-            yield from (paragraph(note) for note in table.notes)
+            yield said(_("Further data are given in table {table}."), table=Ref(table.name))
+            yield rows_of(subject, table, key=table.name)
+            yield from (paragraph(with_degrees(note)) for note in table.notes)
     yield paragraph(_("It is required to find:"))
     yield Items(tuple(line(text) for text in _wanted(subject)))
 
@@ -114,7 +118,12 @@ def _fixed(subject: Subject) -> Rows:
     unit = subject.unit(LENGTH)
     head = (line(_("point")), line(f"x, {unit}"), line(f"y, {unit}"), line(_("direction")))
     shown = tuple(row if any(r[3] != ("",) for r in rows) else row[:3] for row in rows)
-    return Rows(_("Fixed points and guides"), head[: len(shown[0]) if shown else 3], shown, "fixed")
+    caption = _("Fixed points and guides") if _guided(subject) else _("Fixed points")
+    return Rows(caption, head[: len(shown[0]) if shown else 3], shown, "fixed")
+
+
+def _guided(subject: Subject) -> bool:
+    return any(slide.carrier == FRAME for slide in subject.results.linkage.slides)
 
 
 def _place(subject: Subject, place: complex) -> tuple[Line, Line]:

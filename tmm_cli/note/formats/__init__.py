@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.formats.html import html
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, chosen_names
 
 
 def _docx(note: Note) -> bytes:
@@ -22,13 +22,7 @@ FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 def formats_of(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
-    wanted = [part.strip().lower() for part in text.split(",") if part.strip()]
-    for name in wanted or [text]:
-        if name not in FORMATS:
-            raise ProblemError(
-                _("there is no such format of notes"), found=quote(name), allowed=", ".join(FORMATS),
-                near=nearest(name, FORMATS), file="--as",
-            )  # fmt: skip
+    wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of notes"))
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(
             _("DOCX is written by python-docx, which is not installed"),

@@ -37,6 +37,7 @@ from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
 STOPS = ".,;:)"
+SHORT = 16  # letters of a cell that is not broken
 WHOLE = 13  # rows of a table that is not parted between pages
 
 
@@ -135,7 +136,7 @@ class Writer:
         head = "".join(f"<th>{self.line(cell)}</th>" for cell in rows.head)
         body = "".join(
             "<tr>" + "".join(
-                f"<td{' class=' + chr(34) + 'number' + chr(34) if number else ''}>{self.line(cell)}</td>"
+                f"<td{kind_of(cell, number)}>{self.line(cell)}</td>"
                 for cell, number in zip(row, rows.numeric, strict=True)
             ) + "</tr>\n"
             for row in rows.rows
@@ -164,6 +165,12 @@ class Writer:
     def place(self, key: str) -> str:
         """The name of what is referred to."""
         return f' id="{self.places[key]}"' if key else ""
+
+
+def kind_of(cell: Line, number: bool) -> str:
+    """Its class: a number, or words that stay on one line."""
+    short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
+    return ' class="number"' if number else ' class="short"' if short else ""
 
 
 def title(block: Title) -> str:

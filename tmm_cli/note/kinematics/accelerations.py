@@ -17,6 +17,7 @@ from tmm_cli.note.kinematics.words import (
     listed,
     name_of,
     not_on_paper,
+    once_a_link,
     points_of,
     remaining,
     sense,
@@ -205,11 +206,7 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
 
 def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
     """Angular accelerations, each once, with its sense."""
-    done: set[str] = set()
-    for about in together:
-        if not isinstance(about, About) or about.known or about.link in done:
-            continue
-        done.add(about.link)
+    for about in once_a_link(together):
         symbol, value = Symbol("ε", about.link), here.epsilon.get(about.link, 0.0)
         a = _part(here, about, "τ")
         if not a.segment or not value:

@@ -17,6 +17,7 @@ from tmm_cli.note.kinematics.words import (
     name_of,
     not_on_paper,
     not_turning,
+    once_a_link,
     points_of,
     remaining,
     sense,
@@ -149,11 +150,7 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
 
 def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
     """What links turn with, each once, with its sense."""
-    done: set[str] = set()
-    for about in together:
-        if not isinstance(about, About) or about.known or about.link in done:
-            continue
-        done.add(about.link)
+    for about in once_a_link(together):
         symbol, value = Symbol("ω", about.link), here.omega.get(about.link, 0.0)
         v = here.v.relative(about.point, about.base)
         if not v.segment or not value:

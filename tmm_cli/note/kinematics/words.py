@@ -54,6 +54,15 @@ def sought(step: Step, known: Collection[str]) -> list[Spot]:
     return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
 
 
+def once_a_link(together: Iterable[VectorEquation]) -> list[About]:
+    """The equation of each link whose rotation is sought, by which it is found."""
+    found: dict[str, About] = {}
+    for one in together:
+        if isinstance(one, About) and not one.known:
+            found.setdefault(one.link, one)
+    return list(found.values())
+
+
 def further(step: Step) -> list[About]:
     """Further points of links that turn."""
     return [about for about in step.after if not about.idle]

@@ -20,6 +20,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("space", "structure", ("contours", "space", "replacements")),
     ("chain", "chain", ()),
     ("quality", "motion", ("quality",)),
+    ("properties", "problem", ("properties",)),
     ("pressure", "motion", ("pressure",)),
     ("cycle", "motion", ("cycle",)),
     ("kinematics", "motion", ("points", "link-motion", "slides")),

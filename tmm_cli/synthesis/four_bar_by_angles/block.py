@@ -90,7 +90,7 @@ def _lengths(lengths: dict[str, float], count: int) -> None:
     other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
-            _("one length gives the size of the four-bar"), found=", ".join(lengths) or "none",
+            _("one length gives the size of the four-bar"), found=", ".join(lengths) or _("none"),
             allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other, key=True,
         )  # fmt: skip
 
@@ -122,14 +122,15 @@ def _function(shape: Shape, values: ValueReader) -> Function:
     if (shape.function is None) == (shape.table is None) or missing:
         given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
         raise ProblemError(
-            _("these keys do not determine a four-bar"), found=", ".join(given) or "none",
+            _("these keys do not determine a four-bar"), found=", ".join(given) or _("none"),
             allowed=_("pairs; or function (or table), x, input, output"), key=True,
         )  # fmt: skip
     name = (shape.function or "").replace(" ", "")
-    if name and name not in FUNCTIONS:
+    if shape.function is not None and name not in FUNCTIONS:
         raise ProblemError(
             _("this function is not known here"), path=("function",), found=quote(shape.function),
-            allowed=", ".join(FUNCTIONS) + "; or table: [[x, y], ...]", near=nearest(name, FUNCTIONS),
+            allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
+            near=nearest(name, FUNCTIONS),
         )  # fmt: skip
     ends: dict[str, Any] = {
         key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))

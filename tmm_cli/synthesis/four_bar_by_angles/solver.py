@@ -108,7 +108,7 @@ def take(task: Task) -> tuple[Bars, int]:
         raise Infeasible(key, NO_FOUR_BAR if not found.size else EVERY_ONE_HAS[" and ".join(sorted(set(defects)))])
     if task.choose.isdigit() and task.choose not in fair:
         reason = _("there is no solution of this number, or it has a defect")
-        raise Infeasible("choose", reason, " or ".join(fair))
+        raise Infeasible("choose", reason, ", ".join(fair))
     return found, chosen(task, found)
 
 

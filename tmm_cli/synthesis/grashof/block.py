@@ -48,15 +48,15 @@ def read(shape: Shape, values: ValueReader) -> Task:
     fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
-            _("these keys do not make a mechanism"), found=", ".join(sorted(given)) or "none",
-            allowed="; or ".join(f"{', '.join(needed)} (and {', '.join(more)})" for _, needed, more in SETS), key=True,
+            _("these keys do not make a mechanism"), found=", ".join(sorted(given)) or _("none"),
+            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS), key=True,
         )  # fmt: skip
     record = fitting[0]
     if record is FourBar:
         frame = int((shape.frame or "l4")[1])
         driver = int(shape.driver[1]) if shape.driver else frame % 4 + 1
         if (driver - frame) % 2 == 0:
-            allowed = " or ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
+            allowed = ", ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
             raise ProblemError(
                 _("the driver is hinged to the frame"), path=("driver",),
                 found=_("'l{driver}' opposite the frame l{frame}").format(driver=driver, frame=frame),

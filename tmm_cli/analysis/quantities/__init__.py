@@ -1,11 +1,11 @@
-"""All that students may be asked. A further kind is a file here and a word in KINDS."""
+"""All quantities by name: what students may be asked, what a file shows. A further kind: a file, a word in KINDS."""
 
 from __future__ import annotations
 
-from tmm_cli.grading.quantities.base import Maker, Quantity
-from tmm_cli.grading.quantities.forces import forces
-from tmm_cli.grading.quantities.motion import motion
-from tmm_cli.grading.quantities.whole import whole
+from tmm_cli.analysis.quantities.base import Maker, Quantity
+from tmm_cli.analysis.quantities.forces import forces
+from tmm_cli.analysis.quantities.motion import motion
+from tmm_cli.analysis.quantities.whole import whole
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.analysis.selection import mass_centres, named_points
-from tmm_cli.grading.quantities.base import Quantity
-from tmm_cli.grading.solution import Solution
 from tmm_cli.kinematics.strokes import output_run
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import (
@@ -58,7 +57,7 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
     return found
 
 
-def _point(point: str, place: tuple[str, complex], part: str, solution: Solution) -> Any:
+def _point(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
     link = place[0]
     motion = solution.motion
     if point in motion.linkage.links[link].points:
@@ -66,17 +65,17 @@ def _point(point: str, place: tuple[str, complex], part: str, solution: Solution
     return getattr(motion.centre(link), part)
 
 
-def _coordinate(point: str, place: tuple[str, complex], part: str, solution: Solution) -> Any:
+def _coordinate(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
     return getattr(_point(point, place, "x", solution), part)
 
 
-def _link(link: str, part: str, solution: Solution) -> Any:
+def _link(link: str, part: str, solution: Solved) -> Any:
     return getattr(solution.motion.link(link), part)
 
 
-def _run(link: str, solution: Solution) -> Any:
+def _run(link: str, solution: Solved) -> Any:
     return output_run(solution.motion, link)[0]
 
 
-def _slide(name: str, part: str, solution: Solution) -> Any:
+def _slide(name: str, part: str, solution: Solved) -> Any:
     return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), part))

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.quantities.base import Quantity
-from tmm_cli.grading.solution import Solution
+from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import FORCE, LENGTH, MOMENT
 from tmm_cli.structure.assur import Structure
@@ -47,15 +46,15 @@ def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
     return found
 
 
-def _inertia(link: str, part: str, solution: Solution) -> Any:
+def _inertia(link: str, part: str, solution: Solved) -> Any:
     return next(getattr(x, part) for x in solution.reactions.applied if x.link == link and x.kind == "inertia")
 
 
-def _reaction(pair: str, on: str, solution: Solution) -> Any:
+def _reaction(pair: str, on: str, solution: Solved) -> Any:
     return solution.reactions.of(pair).onto(on)
 
 
-def _arm(pair: str, solution: Solution) -> Any:
+def _arm(pair: str, solution: Solved) -> Any:
     """Where a guide's force acts, along the guide from its running point; nothing where the force is nearly zero."""
     reaction = solution.reactions.of(pair)
     size = np.abs(reaction.force)
@@ -63,5 +62,5 @@ def _arm(pair: str, solution: Solution) -> Any:
     return np.where(size > NEARLY_ZERO * np.max(size, axis=-1, keepdims=True), reaction.arm, np.nan)
 
 
-def _balance(link: str, part: str, solution: Solution) -> Any:
+def _balance(link: str, part: str, solution: Solved) -> Any:
     return next(getattr(balance, part) for balance in solution.reactions.balances if balance.driver.link == link)

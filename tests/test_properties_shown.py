@@ -1,0 +1,105 @@
+"""Properties that a file shows: each number by another route, and what is said when it is not what was expected."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from models import PROBLEMS
+from test_commands import tmm
+
+from tmm_cli import load, solve
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.results.as_json import to_json
+from tmm_cli.results.properties import properties_shown
+
+SLIDER = (PROBLEMS / "crank-slider-offset.yaml").read_text(encoding="utf-8")
+
+
+def file_with(tmp_path, block, text=SLIDER):
+    path = tmp_path / "shows.yaml"
+    path.write_text(f"{text}shows:\n  it: {block}\n", encoding="utf-8")
+    return path
+
+
+def value(tmp_path, block, name="crank-slider-offset", stage="forces"):
+    text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    (one,) = properties_shown(solve(load(str(file_with(tmp_path, block, text))), stage))
+    return one.value
+
+
+def test_in_a_position_and_over_the_way(tmp_path):
+    at = value(tmp_path, "{of: phi of 1, at: 3}", "sine")
+    assert math.cos(at) == pytest.approx(0, abs=1e-14)
+    r, w = 0.09, 11.0
+    assert value(tmp_path, "{of: v of 3 on 0, over: largest}", "sine") == pytest.approx(r * w, rel=1e-13)
+    assert value(tmp_path, "{of: v of 3 on 0, over: least}", "sine") == pytest.approx(-r * w, rel=1e-13)
+    assert value(tmp_path, "{of: a of 3 on 0, over: range}", "sine") == pytest.approx(2 * r * w * w, rel=1e-13)
+    assert value(tmp_path, "{of: H, per: 2*r}", "sine") == pytest.approx(1, rel=1e-14)
+    assert value(tmp_path, "{of: H, set: {r: 60}}", "sine") == pytest.approx(0.12, rel=1e-13)
+    assert value(tmp_path, "{of: v of A, at: 2, per: v of 3 on 0}", "sine") == pytest.approx(1 / math.sin(math.pi / 3))
+
+
+def test_an_angle_is_followed_past_half_a_turn(tmp_path):
+    assert value(tmp_path, "{of: phi of 1, between: [1, 11]}", "sine") == pytest.approx(math.radians(300))
+    assert value(tmp_path, "{of: phi of 1, over: range}", "crossed-slots") == pytest.approx(4 * math.pi)
+    assert value(tmp_path, "{of: phi of 3, over: range}", "crossed-slots") == pytest.approx(2 * math.pi)
+
+
+def test_the_way_on_which_a_quantity_changes_little(tmp_path):
+    """s = r cos(phi) stays within h of an end while the crank is within acos(1 - h/r) of it."""
+    way = value(tmp_path, "{of: x of E, at: 0, within: 9 mm}", "sine")
+    assert way == pytest.approx(2 * math.acos(0.9), abs=1e-12)
+
+
+def test_a_hinge_that_breaks_gives_its_two_freedoms_back(tmp_path):
+    assert value(tmp_path, "{of: W, without: B}", stage="structure") == 3
+
+
+def test_an_expectation_that_is_not_met_ends_with_exit_code_1(tmp_path):
+    done = tmm("kinematics", file_with(tmp_path, "{of: W, expected: 1}"))
+    assert done.returncode == 0, done.stderr
+    assert "Properties" in done.stdout
+    done = tmm("kinematics", file_with(tmp_path, "{of: k, expected: 1.2}"))
+    assert done.returncode == 1
+
+
+def test_they_stand_in_result_json_as_far_as_stages_have_run(tmp_path):
+    path = file_with(tmp_path, "{of: M_b, at: 0}")
+    problem = load(str(path))
+    assert to_json(solve(problem))["properties"][0]["value"] == pytest.approx(
+        solve(problem).reactions.balance.moment[0]
+    )
+    assert to_json(solve(problem, "kinematics"))["properties"] == []
+    json.dumps(to_json(solve(problem, "structure")))
+
+
+def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
+    text = (PROBLEMS / "manipulator-open.yaml").read_text(encoding="utf-8")
+    done = tmm("structure", file_with(tmp_path, "{of: m, expected: 1}", text))
+    assert done.returncode == 0, done.stderr
+    done = tmm("structure", file_with(tmp_path, "{of: W, expected: 6}", text))
+    assert done.returncode == 1
+
+
+@pytest.mark.parametrize(
+    "block, message",
+    [
+        ("{of: v of Q, at: 1}", "shows.it.of: there is no quantity of that name\n  found:   'v of Q'\n"),
+        ("{of: v of A, at: 99}", "shows.it.at: there is no such position\n  found:   99\n  allowed: 0 to "),
+        (
+            "{of: v of A}",
+            "shows.it.of: in one position, between two, or over the way of the driver\n  found:   'v of A'",
+        ),
+        ("{of: H, per: k}", "shows.it.per: a quantity of the same kind is wanted\n  found:   'k'"),
+        ("{of: W, without: Q}", "shows.it.without: there is no hinge of that name\n  found:   'Q'"),
+        ("{of: H, set: {Q: 3}}", "there is no parameter of that name\n  found:   'Q'"),
+    ],
+)
+def test_slips_are_refused_at_their_place(tmp_path, block, message):
+    with pytest.raises(ProblemError) as refused:
+        properties_shown(solve(load(str(file_with(tmp_path, block)))))
+    assert message in str(refused.value)
+    assert np.isfinite(refused.value.mark.line if refused.value.mark else 0)

@@ -1,0 +1,84 @@
+"""Masses of links and loads on them, in a problem file."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from tmm_cli.problem.schema_parts import Name, Place, Strict, Value, Vector, checked_value, checked_vector
+
+
+class PointMass(Strict):
+    """A mass in one point of a link."""
+
+    mass: Value
+    at: Place = Field(description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+
+
+class Mass(Strict):
+    """Mass properties of a link."""
+
+    mass: Value | None = None
+    weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
+    inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
+    centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+    points: list[PointMass] = Field(
+        default_factory=list, max_length=50, description="masses in points of it, beside the others or alone"
+    )
+
+
+class Tabulated(Strict):
+    """A force, pressure or moment by table, or by size and angle."""
+
+    size: Value | None = None
+    resists: Value | None = Field(
+        default=None, description="instead of size: a constant friction, against the motion of the point or link"
+    )
+    angle: Value | None = Field(default=None, description="direction of the force from the x axis")
+    against: Literal["stroke", "crank angle", "crank turn"] | None = Field(
+        default=None,
+        description="what the table's first column is: run of the output from the start of its working stroke; "
+        "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
+    )
+    table: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=10_000, description="rows [argument, size]"
+    )
+    between: Literal["linear", "step", "smooth"] = Field(
+        default="linear", description="rows; step: each holds up to the next, smooth: a cubic spline"
+    )
+
+
+def _force(found: Any) -> Any:
+    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_vector(found)
+
+
+def _moment(found: Any) -> Any:
+    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
+
+
+def _when(found: Any) -> Any:
+    return checked_vector(found) if isinstance(found, list) else found
+
+
+class Load(Strict):
+    """A force, a moment, or both, on a link."""
+
+    on: Name = Field(description="the link")
+    from_: Name = Field(default="0", alias="from", description="the link that has the opposite of it; the frame")
+    at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
+    force: Annotated[list[Any] | Tabulated | None, BeforeValidator(_force)] = Field(
+        default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
+    )
+    moment: Annotated[Value | Tabulated | None, BeforeValidator(_moment)] = Field(
+        default=None, description="positive counterclockwise; a value, or {against, table}"
+    )
+    pressure: Tabulated | None = Field(
+        default=None, description="instead of force: {size, angle} or {angle, against, table}, on an area or a bore"
+    )
+    area: Value | None = Field(default=None, description="that the pressure acts on")
+    bore: Value | None = Field(default=None, description="instead of area: diameter of the piston")
+    axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
+    when: Annotated[Literal["always", "working stroke"] | list[Value], BeforeValidator(_when)] = Field(
+        default="always", description="always, working stroke, or [from, to]: angles of the crank, counterclockwise"
+    )

@@ -1,0 +1,88 @@
+"""Masses and loads of a file, as tables of words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.linkage import FRAME, Load, LoadTable
+from tmm_cli.problem.record import Problem
+from tmm_cli.quantities import (
+    ANGLE,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+)  # fmt: skip
+from tmm_cli.results.shown import FILE_WORDS, show, show_vector
+from tmm_cli.results.stages import heavy
+from tmm_cli.results.table import Table, table_of_words
+from tmm_cli.structure.assur import analyse
+from tmm_cli.structure.naming import output_link
+
+
+def masses(problem: Problem) -> Table:
+    """Masses of links, with their centres."""
+    links = [problem.linkage.links[name] for name in heavy(problem.linkage)]
+    return table_of_words(
+        "masses", _("Masses"), (_("link"), _("mass"), _("inertia about S"), _("S in the link's axes")),
+        [(x.name, show(problem, x.mass, MASS), show(problem, x.inertia, INERTIA), show_vector(problem, x.centre))
+         for x in links],
+    )  # fmt: skip
+
+
+def loads(problem: Problem) -> Iterable[Table]:
+    """All loads, then the rows of those by table."""
+    yield table_of_words(
+        "loads", _("Loads"), (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
+        [_load(problem, load) for load in problem.linkage.loads],
+    )  # fmt: skip
+    for load in problem.linkage.loads:
+        if load.table is not None:
+            yield _tabulated(problem, load, load.table)
+
+
+def _load(problem: Problem, load: Load) -> tuple[str, ...]:
+    dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
+    if load.table is not None:
+        size = _("table of {rows} rows against the {against}").format(
+            rows=len(load.table.values), against=_(FILE_WORDS[load.table.against])
+        )
+    elif load.resists:
+        size = _("{size} against the motion").format(size=show(problem, abs(value), dimension))
+    elif load.force:
+        size = f"{show_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
+    else:
+        size = show(problem, load.moment, MOMENT)
+    place = show_vector(problem, load.at) if load.force else ""
+    link = load.link if load.base == FRAME else _("{link} from {base}").format(link=load.link, base=load.base)
+    when = _(FILE_WORDS[load.when])
+    if load.window is not None:
+        first, last = (show(problem, angle, ANGLE) for angle in load.window)
+        when = _("crank from {first} to {last}").format(first=first, last=last)
+    return load.name, link, place, size, when
+
+
+def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
+    """The rows of a load's table; of a force, its direction too."""
+    linkage, measure = problem.linkage, ANGLE
+    if table.against == "stroke":
+        link = output_link(linkage, analyse(linkage).groups)
+        measure = ANGLE if link is None or linkage.output_swings(link) else LENGTH
+    rows = [
+        (show(problem, at, measure), show(problem, size, FORCE if load.force else MOMENT))
+        for at, size in zip(table.arguments, table.values, strict=True)
+    ]
+    direction = show(problem, np.angle(load.force), ANGLE)
+    notes = [_("Its direction is {direction}.").format(direction=direction)] if load.force else []
+    if table.between == "step":
+        notes.append(_("Each row holds up to the next one."))
+    elif table.between == "smooth":
+        closed, natural = _("Between rows: a cubic spline that closes."), _("Between rows: a natural cubic spline.")
+        notes.append(closed if table.closed else natural)
+    title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
+    name = f"load_table_{linkage.loads.index(load) + 1}"
+    return table_of_words(name, title, (_(FILE_WORDS[table.against]), _("size")), rows, tuple(notes))

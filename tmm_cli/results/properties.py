@@ -1,0 +1,234 @@
+"""Properties that a file shows: quantities by name, each as one number, beside what the file expects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+
+import numpy as np
+
+from tmm_cli.analysis import pipeline
+from tmm_cli.analysis.pipeline import Results, at_places
+from tmm_cli.analysis.quantities import quantities
+from tmm_cli.analysis.quantities.base import STAGES, Quantity
+from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.language import _
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError, nearest, quote, under
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.schema_shown import Shown
+from tmm_cli.problem.settings import with_settings
+from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.roots import bisect, least
+from tmm_cli.structure.assur import analyse
+from tmm_cli.vectors import Real
+
+STEPS = 720  # in a turn, or over the driver's way
+PARTS = 60  # of the way between two positions, through which an angle is followed
+SEAM = 1e-6  # of its range: what comes back so nearly goes on beyond the ends of a cycle as it began
+MET = 1e-9  # of the value, or of one in SI: rounding of what is found by search
+
+
+@dataclass(frozen=True)
+class Property:
+    """A number (SI; nan where there is none) by the words of the file, and what is expected of it, if that is told."""
+
+    name: str
+    value: float
+    dimension: Dimension
+    expected: float | None = None
+
+    @property
+    def met(self) -> bool:
+        return self.expected is None or math.isclose(self.value, self.expected, rel_tol=MET, abs_tol=MET)
+
+
+def properties_shown(results: Results | ChainResults) -> tuple[Property, ...]:
+    """What the file shows, as far as its stages have run. Raises ProblemError."""
+    problem = results.problem
+    if isinstance(results, ChainResults):
+        return tuple(_of_chain(name, task, results) for name, task in problem.shows.items())
+    return _of_linkage(results)
+
+
+@lru_cache(maxsize=1)
+def _of_linkage(results: Results) -> tuple[Property, ...]:
+    problem = results.problem
+    if problem is None or results.of:
+        return ()
+    found = []
+    for name, task in problem.shows.items():
+        try:
+            with under("shows", name):
+                one = _property(name, task, results)
+        except ProblemError as error:
+            raise error.located(problem.file, problem.source) from None
+        found += [one] if one is not None else []
+    return tuple(found)
+
+
+def _of_chain(name: str, task: Shown, results: ChainResults) -> Property:
+    found, path = results.chain, ("shows", name)
+    known = {"W": found.mobility, "Wm": found.local_mobility, "q": found.redundant, "m": found.manoeuvrability}
+    value = known.get(task.of)
+    if value is None or not isinstance(task.expected, int | None):
+        key, raw = ("of", task.of) if value is None else ("expected", task.expected)
+        allowed = ", ".join(k for k, v in known.items() if v is not None) if value is None else _("a number")
+        message = _("a chain without dimensions shows whole numbers")
+        error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
+        raise error.located(results.problem.name, results.problem.source)
+    return Property(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
+
+
+def _property(name: str, task: Shown, results: Results) -> Property | None:
+    """None where a stage that it needs has not run."""
+    problem: Problem = results.problem
+    values = problem.values
+    assert values is not None
+    if task.set:
+        results = _with_settings(task, results)
+    if task.without is not None:
+        results = _broken(task.without, results)
+    quantity = _known(task.of, "of", results)
+    if not _ran(quantity, results):
+        return None
+    value = _one(quantity, task, results)
+    dimension = quantity.dimension
+    if task.within is not None:
+        dimension = place_dimension(results.linkage.driver.kind)
+    if task.per is not None:
+        by, of = task.per, quantities(results.linkage, results.structure)
+        if isinstance(by, str) and by in of:
+            if of[by].dimension != dimension:
+                raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(by))
+            if not _ran(of[by], results):
+                return None
+            value /= _one(of[by], task, results)
+        else:
+            value /= values.positive(by, dimension, ("per",))
+        dimension = NUMBER
+    expected = None if task.expected is None else values.number(task.expected, dimension, ("expected",))
+    return Property(name, value, dimension, expected)
+
+
+def _known(name: str, key: str, results: Results) -> Quantity:
+    known = quantities(results.linkage, results.structure)
+    if name not in known:
+        raise ProblemError(
+            _("there is no quantity of that name"), path=(key,), found=quote(name), allowed=", ".join(known),
+            near=nearest(name, known),
+        )  # fmt: skip
+    return known[name]
+
+
+def _ran(quantity: Quantity, results: Results) -> bool:
+    if quantity.stage == "structure":
+        return True
+    forces = quantity.order >= STAGES.index("forces")
+    return results.motion is not None and not (forces and results.reactions is None)
+
+
+def _with_settings(task: Shown, results: Results) -> Results:
+    """The same linkage with other values of parameters, as far as the results go."""
+    problem: Problem = results.problem
+    assert problem.source is not None
+    other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+    stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
+    stage = stage if results.reactions is None else "forces"
+    inputs = replace(results.inputs, linkage=other.linkage, request=other.request, extended=None)
+    return pipeline.solve(inputs, stage, problem=other)
+
+
+def _broken(hinge: str, results: Results) -> Results:
+    """The structure without a hinge."""
+    linkage = results.linkage
+    results.problem.values.known(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
+    left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
+    return replace(results, inputs=replace(results.inputs, linkage=left), structure=analyse(left), motion=None)
+
+
+def _one(quantity: Quantity, task: Shown, results: Results) -> float:
+    """The number that a task asks of a quantity."""
+    if quantity.whole:
+        return float(np.asarray(quantity.read(results)).ravel()[0])
+    ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
+    if len(ways) != 1 or (task.within is not None and ways != ["at"]):
+        wanted = _("in one position, between two, or over the way of the driver")
+        raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
+    read = partial(_read, quantity, results)
+    if task.over is not None:
+        return _over(read, task.over, results, quantity.dimension == ANGLE)
+    places = [_place(number, results) for number in ([task.at] if task.at is not None else task.between or [])]
+    if task.within is not None:
+        most = results.problem.values.positive(task.within, quantity.dimension, ("within",))
+        return _zone(read, places[0], most, results)
+    if len(places) == 1:
+        return float(read(np.array(places))[0])
+    way = np.linspace(places[0], places[1], PARTS + 1)
+    values = read(way)
+    values = np.unwrap(values) if quantity.dimension == ANGLE else values
+    return float(values[-1] - values[0])
+
+
+def _read(quantity: Quantity, results: Results, q: Real) -> Real:
+    """The values at places of the driver; sizes of vectors."""
+    there = at_places(results, q)
+    found = np.asarray(quantity.read(there))
+    return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
+
+
+def _place(number: int | None, results: Results) -> float:
+    asked = results.asked
+    if number is None or number >= len(asked):
+        raise ProblemError(
+            _("there is no such position"), path=("at",), found=str(number),
+            allowed=_("0 to {last}").format(last=len(asked) - 1),
+        )  # fmt: skip
+    return float(asked[number])
+
+
+def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
+    """The largest, the least, or their difference over the way of the driver, found between its places."""
+    q = results.closely(STEPS * max(results.turns, 1) + 1)
+    values = read(q)
+    values = np.unwrap(values) if turns else values
+    low, high = np.min(q), np.max(q)
+    closed = results.turns and np.isclose(values[0], values[-1], rtol=0, atol=SEAM * np.ptp(values))
+
+    def extreme(sign: float) -> float:
+        number = int(np.nanargmin(sign * values))
+        step, near = abs(q[1] - q[0]), values[number]
+
+        def smooth(place: Real) -> Real:
+            away: Real = read(np.ravel(place)).reshape(np.shape(place)) - near
+            away = np.remainder(away + np.pi, 2 * np.pi) - np.pi if turns else away
+            return np.asarray(sign * away)
+
+        first, last = (-np.inf, np.inf) if closed else (low, high)
+        at = q[number : number + 1]
+        __, away = least(smooth, np.maximum(at - step, first), np.minimum(at + step, last))
+        return float(near + sign * min(float(away[0]), 0.0))
+
+    if over == "range":
+        return extreme(-1.0) - extreme(1.0)
+    return extreme(-1.0 if over == "largest" else 1.0)
+
+
+def _zone(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
+    """How far the driver goes about a place while a quantity differs from its value there by no more than so much."""
+    middle = read(np.array([place]))[0]
+    way = abs(results.closely(2)[1] - results.closely(2)[0])
+    low, high = np.min(results.closely(2)), np.max(results.closely(2))
+    ends = []
+    for sign in (-1.0, 1.0):
+        far = way if results.turns else abs((low if sign < 0 else high) - place)
+        q = place + sign * np.linspace(0, far, STEPS * max(results.turns, 1) + 1)
+        gone = np.flatnonzero(~(np.abs(read(q) - middle) <= most))
+        if not gone.size:
+            ends.append(float(q[-1]))
+            continue
+        inside, __ = bisect(lambda x: np.abs(read(x) - middle) <= most, q[gone[:1] - 1], q[gone[:1]])
+        ends.append(float(inside[0]))
+    return min(ends[1] - ends[0], way if results.turns else np.inf)
