@@ -13,7 +13,6 @@ from tmm_cli.analysis import pipeline
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import AssemblyError, LinkageError
 from tmm_cli.forces.plan import Reactions
-from tmm_cli.grading.solution import Solution
 from tmm_cli.grading.task import Task
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _
@@ -30,7 +29,6 @@ from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
 from tmm_cli.sweep.taped import Turning, beyond
 from tmm_cli.synthesis import measures
 from tmm_cli.tape import DependsOnData
-from tmm_cli.variants.family import Family
 from tmm_cli.variants.variant import NoTapeError, sketch_of
 from tmm_cli.vectors import Real
 
@@ -43,6 +41,15 @@ class FirstLinks(Motion):
 
     def _sway(self, link: str, point: str) -> float:
         return 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """What quantities are read from, see analysis.quantities.base.Solved."""
+
+    motion: Any = None
+    reactions: Any = None
+    strokes: Any = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +83,7 @@ class Mechanisms:
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             taped = FirstLinks(**{field.name: getattr(motion, field.name) for field in fields(motion)})
-            solution: Any = Solution(None, taped, reactions)  # type: ignore[arg-type]
-            return {one.name: one.at_positions(solution) for one in at_positions}
+            return {one.name: one.at_positions(Read(taped, reactions)) for one in at_positions}
 
         try:
             turning = Turning(
@@ -168,16 +174,13 @@ class Mechanisms:
         assert turning is not None
         strokes = strokes_of(turning, columns, looked, varied)
         q, at_positions = turning.at_positions(columns, strokes, varied)
-        sound = np.ones(len(q), dtype=bool)
-        family = Family(turning.linkage, turning.structure, turning.kernels, varied.request, q, strokes, sound)
-        solution: Any = Solution(family, None, None)  # type: ignore[arg-type]
         found = np.full((len(q), len(self.shown)), np.nan)
         for k, one in enumerate(self.shown):
             if one.name == PRESSURE:
                 peaks = [looked.peaks[name] for name in self._pressures()]
                 found[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
             elif one.quantity is not None and one.whole:
-                found[:, k] = one.quantity.read(solution)[:, 0]
+                found[:, k] = np.ravel(one.quantity.read(Read(strokes=strokes)))
             else:
                 found[:, k] = one.one(np.broadcast_to(at_positions[one.name], q.shape))
         return found
@@ -217,19 +220,13 @@ class Mechanisms:
         """What is shown of a mechanism that was solved by the ordinary stages."""
         assert results.motion is not None
         searched = {"H": measures.stroke, "psi": measures.stroke, "k": measures.ratio, PRESSURE: measures.pressure}
-        q = np.asarray(results.motion.q)[None, :]
-        family = Family(
-            results.linkage, results.structure, results.kernels, results.inputs.request, q, results.strokes,
-            np.ones(1, dtype=bool),
-        )  # fmt: skip
-        solution: Any = Solution(family, results.motion, results.reactions)  # type: ignore[arg-type]
+        sound = results.motion.moving & ~results.locked
         found = []
         for one in self.shown:
             if one.name in searched:
                 found.append(searched[one.name](results))
             elif one.quantity is not None and one.whole:
-                found.append(float(one.quantity.read(solution)[0, 0]))
+                found.append(float(np.ravel(one.quantity.read(results))[0]))
             else:
-                values = np.broadcast_to(one.at_positions(solution), q.shape)
-                found.append(float(one.one(np.where(results.motion.moving & ~results.locked, values, np.nan))[0]))
+                found.append(float(one.one(np.where(sound, one.at_positions(results), np.nan)[None, :])[0]))
         return np.array(found)

@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.quantities.base import Quantity
-from tmm_cli.grading.solution import Solution
+from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.grading.task import Task
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -57,10 +56,10 @@ class Shown:
     def ranges(self) -> bool:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
-    def at_positions(self, solution: Solution) -> Any:
+    def at_positions(self, solved: Solved) -> Any:
         """What a tape is to give of it at positions, see `one`."""
         assert self.quantity is not None
-        found = self.quantity.read(solution)
+        found = self.quantity.read(solved)
         return found if self.ranges else np.abs(found)
 
     def one(self, values: Real) -> Real:

@@ -25,7 +25,7 @@ from tmm_cli.structure.naming import output_link
 from tmm_cli.tape import Program, record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import END_OF_SLOT
-from tmm_cli.variants.batch import CHECKS, solved
+from tmm_cli.variants.batch import CHECKS, SURE, solved
 from tmm_cli.variants.family import places_of, stands
 from tmm_cli.variants.stack import changed, numbers
 from tmm_cli.variants.variant import Make, NoTapeError, Variant
@@ -78,7 +78,7 @@ class Turning:
         self.forces = record(
             lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 5), 3
         )  # fmt: skip
-        self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in CHECKS))
+        self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
 
     @cached_property
     def strokes(self) -> int:
