@@ -10,6 +10,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.layout.law_values import law_tables
 from tmm_cli.draw.layout.values import balance_table, forces_table, motion_tables, structure_tables
+from tmm_cli.draw.sheets.centres import sheets as centres
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -81,6 +82,7 @@ CONTENTS = (
     Source(1, all_positions, 240),
     Source(1, motion_plans, 300, over="plans"),
     Source(1, motion_tables),
+    Source(1, centres, 200),
     Source(1, diagrams, 240),
     Source(2, position, 200, over="detail"),
     Source(2, group_loads, 160, over="detail"),
