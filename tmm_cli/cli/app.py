@@ -28,6 +28,7 @@ COMMANDS = {
     "schema": "Print the JSON Schema of problem files, for editors.",
     "schemes": "Structural synthesis: all schemes built of Assur groups.",
     "synthesis": "Find lengths from what a mechanism must do.",
+    "sweep": "Show quantities over parameters, and where it fails.",
     "variants": "Draw variants of a task for a group of students.",
     "grade": "Mark what the students of a group handed in.",
     "import": "Write a problem file from a file of another program.",
