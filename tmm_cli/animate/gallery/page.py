@@ -88,7 +88,7 @@ def _picture(card: Card) -> str:
     turning = card.turning
     if turning is None:
         return f'<div class="space">{_text(_("a chain in space, given by pairs alone: nothing to draw"))}</div>'
-    sides = " ".join(f"{side:.1f}" for side in turning.view)
+    sides = " ".join(f"{round(side, 1):g}" for side in turning.view)
     name = _text(_("{title}: turn or stop").format(title=card.title))
     svg = f'<svg viewBox="{sides}" aria-hidden="true">{turning.svg}</svg>'
     pressed = ' aria-pressed="true"' if turning.bodies else ' aria-disabled="true"'
