@@ -162,6 +162,8 @@ def transforms(tab, number):
     [
         ("#words", "SLOTTED rpr", ["slotted-lever"]),
         ("#words", "no such word", []),
+        ("#words", "link 3 = thet", ["slotted-lever"]),
+        ("#words", "I(0,1", ["crank-slider", "slotted-lever", "cam-lever", "double-crank"]),
         ("#fact", "swing", ["slotted-lever", "excavator"]),
         ("#fact", "k > 1,5", ["slotted-lever"]),
         ("#fact", "stroke H >= 100", ["crank-slider"]),
