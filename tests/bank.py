@@ -17,6 +17,9 @@ from tmm_cli.note.blocks import Note
 NAMES = [  # chains given by pairs alone have no dimensions: test_spatial
     path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "\nstructure:" not in path.read_text(encoding="utf-8")
 ]
+IN_FOLDERS = [  # by chapters of the sources: folder/name
+    f"{path.parent.name}/{path.stem}" for path in sorted(PROBLEMS.glob("*/*.yaml"))
+]
 
 
 @cache
