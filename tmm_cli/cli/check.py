@@ -22,7 +22,7 @@ def check(
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem of a folder and of those in it again, and compare it with expected/<problem>.json beside it.
+    """Compute every problem again, also in folders of DIR, and compare it with expected/<problem>.json beside it.
 
     Graded examples are graded again too. What is expected is a golden run: what an earlier version computed. Every
     quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the expected
